@@ -13,6 +13,7 @@
 #include "printer.hpp"
 #include "score_volumes.hpp"
 #include "vam-view/bodies.hpp"
+#include "vam-view/movie.hpp"
 #include "vam-view/options.hpp"
 #include "vam-view/trace.hpp"
 
@@ -75,6 +76,15 @@ double threshold_of(const Options& options, const io::SparseVolume& dose, const 
   return options.threshold ? *options.threshold : tool::score_volumes(dose, with.target, with.how).print_threshold();
 }
 
+bool is_movie(const Options& options) { return options.output.ends_with(".mp4"); }
+
+void write_movie(const Options& options, const io::SparseVolume& dose, const std::string& history) {
+  const Judged with = judged(options, dose);
+  const score::Score result = tool::score_volumes(dose, with.target, with.how);
+  const double threshold = options.threshold.value_or(result.print_threshold());
+  view_tool::write_movie(options.output, dose, with.target, {threshold, result.plan()}, options.view, history);
+}
+
 plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& volume) {
   if (options.cure || (options.render && !options.target.empty())) {
     const Judged with = judged(options, volume);
@@ -98,6 +108,7 @@ void show_volume(const Options& options, const std::string& history) {
     const plot::Plot plot = plot::dose_histogram(volume, with.target, with.how.circle, options.view);
     return plot::save(options.output, plot::draw(plot), history, options.dpi);
   }
+  if (is_movie(options)) return write_movie(options, volume, history);
   write_figure(options, volume_figure(options, volume), history);
 }
 

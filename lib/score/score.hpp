@@ -54,6 +54,8 @@ class Score {
   /// The dose whose isosurface the print is: the critical dose, for the dose of one turn what the planned exposure
   /// brings to it, else score::aimed_dose.
   [[nodiscard]] double print_threshold() const;
+  /// None where the exposure is not known, or nothing is lit.
+  [[nodiscard]] std::optional<ExposurePlan> plan() const;
   /// Of the relative figures, whatever the options say.
   [[nodiscard]] Verdict verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
@@ -67,8 +69,6 @@ class Score {
     return options_.part->contains(static_cast<int>(pixel % width), static_cast<int>(pixel / width), slice);
   }
   [[nodiscard]] double outside(const std::string& name) const;
-  /// None where the exposure is not known, or nothing is lit.
-  [[nodiscard]] std::optional<ExposurePlan> plan() const;
 
   ScoreOptions options_;
   int width_;

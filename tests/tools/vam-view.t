@@ -39,6 +39,22 @@ ok "what it cures" vam-view wider.vdb --target small.vdb --cure-map --sheet 4 -o
 ok "at another threshold" vam-view wider.vdb --target small.vdb --cure-map --threshold 0.2 -o cure2.png
 holds "another map" "$($png sum cure.png) != $($png sum cure2.png)"
 ok "the print beside the target" vam-view wider.vdb --target small.vdb --render -o print.png
+ok "a movie of the print as it grows" vam-view wider.vdb --target small.vdb --render --image-size 200 -o growth.mp4
+ffmpeg -v error -i growth.mp4 -vf "select='eq(n,0)+eq(n,60)+eq(n,119)+eq(n,139)'" -vsync 0 growth%d.png
+shape=$(ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,color_space -of csv=p=0 growth.mp4)
+is "seven seconds of it" "$shape" 'bt709,140'
+# Pixels of the right half that the grey body covers: more and more, and then no more.
+python3 - <<'PY' >grown
+import subprocess
+for n in 1, 2, 3, 4:
+    raw = subprocess.run(['ffmpeg', '-v', 'error', '-i', 'growth%d.png' % n, '-vf', 'crop=iw/2-40:ih-180:iw/2+20:90',
+                          '-f', 'rawvideo', '-pix_fmt', 'gray', '-'], stdout=subprocess.PIPE, check=True).stdout
+    print(sum(value < 240 for value in raw))
+PY
+holds "the print grows, then stands" "$(tr '\n' ' ' <grown | awk '{ print ($1 * 4 < $2 && $2 < $3 && $4 > 0.98 * $3 && $4 < 1.02 * $3) }') == 1"
+fails 64 'requires --render and --target' vam-view small.vdb -o x.mp4
+fails 64 'requires --render and --target' vam-view small.vdb --render -o x.mp4
+fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.mp4
 ok "a body" vam-view small.vdb --render -o body.pdf
 ok "the same dose twice" vam-view wider.vdb --compare wider.vdb -o same.png
 box 2 3 1 >box.off

@@ -6,63 +6,16 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "io/mesh/file.hpp"
 #include "plot/render.hpp"
 #include "solid/mesh/surface.hpp"
-#include "solid/voxel/isosurface.hpp"
+#include "vam-view/sight.hpp"
 
 namespace vam::view_tool {
 
 namespace {
 
-constexpr double air = 1.04;  // of the square around the body
 constexpr Rgb right_colour{190, 190, 190};
-
-model::TriangleSoup surface_of(const io::SparseVolume& volume, double level) {
-  return solid::isosurface(
-      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, level);
-}
-
-/// The square that holds the bodies from every side.
-struct Sight {
-  Vector3 centre{};
-  double side_mm = 0;
-};
-
-Sight sight_of(const std::vector<const plot::Body*>& bodies) {
-  solid::Box box = solid::bounding_box(bodies.front()->mesh);
-  for (const plot::Body* body : bodies) {
-    const solid::Box other = solid::bounding_box(body->mesh);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], other.low[axis]);
-      box.high[axis] = std::max(box.high[axis], other.high[axis]);
-    }
-  }
-  const Vector3 centre = 0.5 * (box.low + box.high);
-  return {centre, air * plot::side_mm(bodies, centre, {})};
-}
-
-void add_panel(plot::ImageFigure& figure, const std::vector<const plot::Body*>& bodies, const Sight& sight, int pixels,
-               const std::string& caption) {
-  plot::Panel panel{Image(pixels, pixels), caption, {}};
-  panel.picture = plot::render(bodies, sight.centre, sight.side_mm, {}, pixels);
-  figure.panels.push_back(std::move(panel));
-}
-
-void label(plot::ImageFigure& figure, const Sight& sight, const plot::ViewOptions& view, const std::string& what) {
-  const double half = 0.5 * sight.side_mm;
-  figure.x = {"across the line of sight (mm)", -half, half};
-  figure.y = {"mm", -half, half};
-  figure.size = view.size;
-  figure.title = view.title.value_or(view.name + what);
-}
-
-std::string size_text(const solid::Box& box) {
-  const Vector3 size = box.high - box.low;
-  return format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2], 3) +
-         " mm, z upwards, seen from 25° above";
-}
 
 plot::ImageFigure single(const plot::Body& body, const plot::ViewOptions& view, const std::string& what) {
   plot::ImageFigure figure;
@@ -93,26 +46,23 @@ plot::ImageFigure mesh_figure(const std::string& path, const plot::ViewOptions& 
 }
 
 plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, const plot::ViewOptions& view) {
-  plot::Body body{surface_of(volume, level), {}};
+  plot::Body body{surface_of(volume, level, volume), {}};
   if (body.mesh.triangles.empty()) {
     throw Error{Fault::data, view.name + ": grid '" + volume.name() + "' reaches " + format_number(level, 4) +
                                  " nowhere; choose another --threshold"};
   }
-  tool::unstretch(body.mesh, volume.metadata);
   return single(body, view, ": " + volume.name() + " at " + format_number(level, 4) + " " + volume.units);
 }
 
 plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
                                const plot::ViewOptions& view) {
-  plot::Body part{surface_of(target, 0.5), {}};
-  plot::Body print{surface_of(dose, threshold), {}};
+  plot::Body part{surface_of(target, 0.5, target), {}};
+  plot::Body print{surface_of(dose, threshold, target), {}};
   if (part.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
   if (print.mesh.triangles.empty()) {
     throw Error{Fault::data, view.name + ": nothing prints at a threshold of " + format_number(threshold, 4) + " " +
                                  dose.units + "; choose a lower --threshold"};
   }
-  tool::unstretch(part.mesh, target.metadata);
-  tool::unstretch(print.mesh, target.metadata);
   const double voxel_mm = target.grid().voxel_mm;
   const std::vector<float> away = solid::Surface(part.mesh).signed_distances(print.mesh.points);
   for (const float distance : away) {

@@ -21,7 +21,9 @@ cli::Manual manual() {
        "circle are excluded.",
        "--cure-map shows what prints at a threshold: cured as wanted (grey), missing (blue) and overcured (vermilion). "
        "--render shows the same in three dimensions, the print beside the target; without --target it shows the "
-       "surface of any grid. --compare shows two volumes beside each other in the same colours, and their "
+       "surface of any grid. With an output in .mp4 it is a movie: the print as it grows, from where the first resin "
+       "gels to the end of the exposure, at a constant intensity. --compare shows two volumes beside each other in the "
+       "same colours, and their "
        "difference. Meshes are shown as bodies, in the colours of their vertices if there are any (vam-sdf "
        "--output); the --trace of vam-optimize, a file that ends in .csv, as curves over the iterations.",
        "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
@@ -42,6 +44,10 @@ cli::Manual manual() {
         "vam-sinogram part.vdb --filter ram-lak | vam-dose --like part.vdb -o dose.vdb\n"
         "vam-view dose.vdb --target part.vdb --cure-map -o cure.png\n"
         "vam-view dose.vdb --target part.vdb --render -o print.png"},
+       {"The print as it grows, for a talk:",
+        "vam-slice --shape gyroid --voxel 0.4 -o part.vdb\n"
+        "vam-sinogram part.vdb --filter ram-lak | vam-dose --like part.vdb -o dose.vdb\n"
+        "vam-view dose.vdb --target part.vdb --render --image-size 320 -o growth.mp4"},
        {"A section for a paper:",
         "vam-slice --shape gyroid --voxel 0.2 | vam-view --title '' --image-size 320 -o part.pdf"},
        {"Values for ParaView:", "vam-slice --shape gyroid --voxel 0.2 | vam-view --export part.nrrd"}},

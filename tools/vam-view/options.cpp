@@ -10,14 +10,26 @@ std::string file_name(const std::string& path) {
   return path == "-" ? "stdin" : path.substr(path.find_last_of('/') + 1);
 }
 
+namespace {
+
+std::vector<std::string> outputs() {
+  std::vector<std::string> endings = plot::figure_endings();
+  endings.emplace_back(".mp4");
+  return endings;
+}
+
+}  // namespace
+
 void declare(cli::App& app, Options& options) {
   app.positional("FILE", options.input,
                  "Volume (VDB), stack (EXR), video (MKV, MP4), folder of images, mesh (PLY, STL, OBJ, OFF, 3MF) or "
                  "trace (.csv).")
       .reads();
-  app.option("-o,--output", "FILE", options.output,
-             "Write the figure to FILE: PNG, PDF or SVG, by the ending of its name; - is PNG to standard output.")
-      .writes(plot::figure_endings());
+  app.option(
+         "-o,--output", "FILE", options.output,
+         "Write the figure to FILE: PNG, PDF or SVG, by the ending of its name, or MP4, with --render and --target: a "
+         "movie of the print as it grows during the exposure; - is PNG to standard output.")
+      .writes(outputs());
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
   app.group("Selection");
   app.option("--grid", "NAME", options.grid,
@@ -76,6 +88,8 @@ void check(const Options& options) {
     throw Error{Fault::usage, "--threshold: requires --cure-map or --render"};
   if (options.plain && plot::is_figure(options.output) && !options.output.ends_with(".png"))
     throw Error{Fault::usage, "--plain: writes pixels; --output must end in .png"};
+  if (options.output.ends_with(".mp4") && (!options.render || options.target.empty()))
+    throw Error{Fault::usage, options.output + ": a movie requires --render and --target"};
   if (!options.exported.empty() && options.output != "-") {
     throw Error{Fault::usage, "--export: writes the values instead of the image; omit --output"};
   }

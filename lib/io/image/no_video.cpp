@@ -20,6 +20,7 @@ Error no_video(Fault fault, const std::string& path) {
 VideoWriter::VideoWriter(const std::string& path, const VideoFormat&) { throw no_video(Fault::usage, path); }
 VideoWriter::~VideoWriter() = default;
 void VideoWriter::write(const GreyImage&) {}
+void VideoWriter::write(const RgbImage&) {}
 void VideoWriter::write(int, const std::function<const GreyImage&(int)>&) {}
 void VideoWriter::commit() {}
 

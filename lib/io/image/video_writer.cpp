@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -76,6 +79,13 @@ std::vector<std::uint8_t> stored_bytes(int bits) {
   return bytes;
 }
 
+std::uint8_t byte_of(double value) { return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L)); }
+
+template <class Pixel>
+double luma(const Pixel& rgb) {
+  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
 std::uint32_t checksum(const std::uint8_t* bytes, std::size_t count) {
   return av::api().av_crc(av::api().av_crc_get_table(AV_CRC_32_IEEE), 0, bytes, count);
 }
@@ -133,6 +143,11 @@ struct VideoWriter::State {
     if (encoder == nullptr)
       throw Error{Fault::absent, sink.file.name() + ": this libavcodec has no H.264 encoder (libx264); write .mkv"};
     codec.reset(av::api().avcodec_alloc_context3(encoder));
+    if (format.colour) {
+      codec->colorspace = AVCOL_SPC_BT709;
+      codec->color_primaries = AVCOL_PRI_BT709;
+      codec->color_trc = AVCOL_TRC_BT709;
+    }
     codec->width = lossless ? format.width : format.width + format.width % 2;
     codec->height = lossless ? format.height : format.height + format.height % 2;
     codec->pix_fmt = pixel_format(lossless, format.bits);
@@ -235,6 +250,35 @@ struct VideoWriter::State {
     }
   }
 
+  /// Luma of each pixel, colour differences of two by two [ITU-R BT.709].
+  void fill(const RgbImage& image) {
+    for (int y = 0; y < frame->height; y += 2) {
+      for (int x = 0; x < frame->width; x += 2) {
+        std::array<double, 3> sum{};
+        for (int corner = 0; corner < 4; ++corner) {
+          const int i = x + corner % 2, j = y + corner / 2;
+          const Rgb& pixel = image(std::min(i, image.width - 1), std::min(j, image.height - 1));
+          frame->data[0][static_cast<std::ptrdiff_t>(j) * frame->linesize[0] + i] = byte_of(luma(pixel));
+          for (std::size_t c = 0; c < 3; ++c) sum[c] += pixel[c] / 4.0;
+        }
+        const double mean = luma(sum);
+        const auto at = [&](int plane) -> std::uint8_t& {
+          return frame->data[plane][static_cast<std::ptrdiff_t>(y / 2) * frame->linesize[plane] + x / 2];
+        };
+        at(1) = byte_of(128 + (sum[2] - mean) / 1.8556);
+        at(2) = byte_of(128 + (sum[0] - mean) / 1.5748);
+      }
+    }
+  }
+
+  template <class Image>
+  void put_frame(const Image& image) {
+    check(av::api().av_frame_make_writable(frame.get()), "video frame");
+    fill(image);
+    frame->pts = written++;
+    send(frame.get());
+  }
+
   void send(const AVFrame* next) {
     check(av::api().avcodec_send_frame(codec.get(), next), "video encoding");
     for (;;) {
@@ -277,12 +321,14 @@ void VideoWriter::write(int count, const std::function<const GreyImage&(int)>& i
     for (Bytes& packet : packets) s.put(packet);
     return;
   }
-  for (int i = 0; i < count; ++i) {
-    s.check(av::api().av_frame_make_writable(s.frame.get()), "video frame");
-    s.fill(image(i));
-    s.frame->pts = s.written++;
-    s.send(s.frame.get());
-  }
+  for (int i = 0; i < count; ++i) s.put_frame(image(i));
+}
+
+void VideoWriter::write(const RgbImage& image) {
+  State& s = *state_;
+  if (!s.format.colour || image.width != s.format.width || image.height != s.format.height)
+    throw Error{Fault::bug, s.sink.file.name() + ": frame " + std::to_string(s.written) + " is not as the video"};
+  s.put_frame(image);
 }
 
 void VideoWriter::commit() {

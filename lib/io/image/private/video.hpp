@@ -15,6 +15,7 @@ struct VideoFormat {
   int bits = 8;         // of the frames: 1, 2, 4, 8, 10 or 16
   double fps = 0;       // frames per second
   std::string comment;  // goes into the file's metadata
+  bool colour = false;  // H.264 of RgbImages
 };
 
 /// Writes frames of one size. The name chooses the format:
@@ -30,6 +31,8 @@ class VideoWriter {
   VideoWriter(const std::string& path, const VideoFormat& format);
   ~VideoWriter();
   void write(const GreyImage& frame);
+  /// Of a video in colour.
+  void write(const RgbImage& frame);
   /// Frames 0 .. count - 1, encoded side by side where the format allows it.
   void write(int count, const std::function<const GreyImage&(int)>& frame);
   void commit();

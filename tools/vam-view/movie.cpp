@@ -1,0 +1,126 @@
+#include "vam-view/movie.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "base/progress.hpp"
+#include "base/text.hpp"
+#include "io/image/movie.hpp"
+#include "plot/image_figure.hpp"
+#include "plot/render.hpp"
+#include "vam-view/sight.hpp"
+
+namespace vam::view_tool {
+
+namespace {
+
+constexpr double fps = 20;
+constexpr int growing = 120, standing = 20;  // frames
+constexpr int at_once = 8;                   // of them are drawn
+
+double largest(const io::SparseVolume& dose) {
+  const model::Grid& grid = dose.grid();
+  std::vector<float> slice(grid.slice_size());
+  float most = 0;
+  for (int k = 0; k < grid.nz; ++k) {
+    dose.read_slices(k, 1, slice.data());
+    most = std::max(most, *std::max_element(slice.begin(), slice.end()));
+  }
+  return static_cast<double>(most);
+}
+
+/// "turn 2.4 of 6, 43 s" or "57 % of the exposure", of the same length at all times.
+std::string time_text(double fraction, const std::optional<score::ExposurePlan>& plan) {
+  const auto rounded = [](double value, int decimals) {
+    std::string text(32, ' ');
+    text.resize(static_cast<std::size_t>(std::snprintf(text.data(), text.size(), "%.*f", decimals, value)));
+    return text;
+  };
+  if (!plan) return rounded(100 * fraction, 0) + " % of the exposure";
+  return "turn " + rounded(fraction * plan->turns, 1) + " of " + std::to_string(plan->turns) + ", " +
+         rounded(fraction * plan->seconds, 0) + " s";
+}
+
+/// Figures may differ by a pixel, frames may not.
+RgbImage of_size(const RgbImage& image, int width, int height) {
+  RgbImage out(width, height, plot::paint::white);
+  for (int y = 0; y < std::min(height, image.height); ++y) {
+    for (int x = 0; x < std::min(width, image.width); ++x) out(x, y) = image(x, y);
+  }
+  return out;
+}
+
+class Growth {
+ public:
+  Growth(const io::SparseVolume& dose, const io::SparseVolume& target, const Exposure& exposure,
+         const plot::ViewOptions& view)
+      : dose_(dose), target_(target), exposure_(exposure), view_(view), part_{surface_of(target, 0.5, target), {}} {
+    if (part_.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
+    const plot::Body print = print_after(1);
+    if (print.mesh.triangles.empty()) {
+      throw Error{Fault::data, view.name + ": nothing prints at a threshold of " +
+                                   format_number(exposure.threshold, 4) + " " + dose.units +
+                                   "; choose a lower --threshold"};
+    }
+    sight_ = sight_of({&part_, &print});
+    first_ = exposure.threshold / largest(dose);
+    figure_.columns = 2;
+    add_panel(figure_, {&part_}, sight_, view_.size * 7 / 10, "target");
+    label(figure_, sight_, view_, ": the print as it grows");
+    figure_.legend = {{plot::Mark::none, {}, "target " + size_text(solid::bounding_box(part_.mesh))}};
+  }
+
+  /// Of the growing frames.
+  [[nodiscard]] RgbImage frame(int n) const {
+    const double fraction = first_ + (1 - first_) * static_cast<double>(n) / (growing - 1);
+    const plot::Body print = print_after(fraction);
+    std::vector<const plot::Body*> so_far;
+    if (!print.mesh.triangles.empty()) so_far.push_back(&print);
+    plot::ImageFigure figure = figure_;
+    add_panel(figure, so_far, sight_, view_.size * 7 / 10, time_text(fraction, exposure_.plan));
+    return plot::draw(figure).image();
+  }
+
+ private:
+  [[nodiscard]] plot::Body print_after(double fraction) const {
+    return {surface_of(dose_, exposure_.threshold / fraction, target_), {}};
+  }
+
+  const io::SparseVolume& dose_;
+  const io::SparseVolume& target_;
+  const Exposure& exposure_;
+  const plot::ViewOptions& view_;
+  plot::Body part_;
+  Sight sight_;
+  plot::ImageFigure figure_;  // with the target alone
+  double first_ = 0;          // fraction of the exposure at which the first resin gels
+};
+
+}  // namespace
+
+void write_movie(const std::string& path, const io::SparseVolume& dose, const io::SparseVolume& target,
+                 const Exposure& exposure, const plot::ViewOptions& view, const std::string& history) {
+  const Growth growth(dose, target, exposure, view);
+  RgbImage frame = growth.frame(0);
+  const int width = frame.width, height = frame.height;
+  io::Movie movie(path, width, height, fps, history);
+  Progress progress("drawing", growing);
+  for (int n = 0; n < growing; n += at_once) {
+    std::vector<RgbImage> frames(std::min(at_once, growing - n));
+    parallel_for(count_of(frames), [&](int i) {
+      frames[i] = of_size(growth.frame(n + i), width, height);
+      progress.tick();
+    });
+    for (const RgbImage& one : frames) movie.write(one);
+    frame = frames.back();
+  }
+  for (int n = 0; n < standing; ++n) movie.write(frame);
+  movie.commit();
+}
+
+}  // namespace vam::view_tool

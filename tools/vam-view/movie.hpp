@@ -1,0 +1,25 @@
+// The print as it grows during the exposure.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/vdb/vdb.hpp"
+#include "plot/view.hpp"
+#include "score/exposure_plan.hpp"
+
+namespace vam::view_tool {
+
+/// What prints of the dose of the whole exposure, and when: after the fraction f of the exposure what has the dose
+/// threshold / f. With a plan the time is told in turns and seconds, else in per cent.
+struct Exposure {
+  double threshold = 0;
+  std::optional<score::ExposurePlan> plan;
+};
+
+/// Six seconds from where the first resin gels to the end of the exposure, which stands for one more: the target, and
+/// beside it the print so far. Throws Fault::data where nothing prints, and as io::Movie does.
+void write_movie(const std::string& path, const io::SparseVolume& dose, const io::SparseVolume& target,
+                 const Exposure& exposure, const plot::ViewOptions& view, const std::string& history);
+
+}  // namespace vam::view_tool

@@ -1,0 +1,57 @@
+#include "vam-view/sight.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.hpp"
+#include "facts.hpp"
+#include "solid/voxel/isosurface.hpp"
+
+namespace vam::view_tool {
+
+namespace {
+constexpr double air = 1.04;  // of the square around the body
+}
+
+model::TriangleSoup surface_of(const io::SparseVolume& volume, double level, const io::SparseVolume& part) {
+  model::TriangleSoup mesh = solid::isosurface(
+      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, level);
+  tool::unstretch(mesh, part.metadata);
+  return mesh;
+}
+
+Sight sight_of(const std::vector<const plot::Body*>& bodies) {
+  solid::Box box = solid::bounding_box(bodies.front()->mesh);
+  for (const plot::Body* body : bodies) {
+    const solid::Box other = solid::bounding_box(body->mesh);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::min(box.low[axis], other.low[axis]);
+      box.high[axis] = std::max(box.high[axis], other.high[axis]);
+    }
+  }
+  const Vector3 centre = 0.5 * (box.low + box.high);
+  return {centre, air * plot::side_mm(bodies, centre, {})};
+}
+
+void add_panel(plot::ImageFigure& figure, const std::vector<const plot::Body*>& bodies, const Sight& sight, int pixels,
+               const std::string& caption) {
+  plot::Panel panel{Image(pixels, pixels), caption, {}};
+  panel.picture = plot::render(bodies, sight.centre, sight.side_mm, {}, pixels);
+  figure.panels.push_back(std::move(panel));
+}
+
+void label(plot::ImageFigure& figure, const Sight& sight, const plot::ViewOptions& view, const std::string& what) {
+  const double half = 0.5 * sight.side_mm;
+  figure.x = {"across the line of sight (mm)", -half, half};
+  figure.y = {"mm", -half, half};
+  figure.size = view.size;
+  figure.title = view.title.value_or(view.name + what);
+}
+
+std::string size_text(const solid::Box& box) {
+  const Vector3 size = box.high - box.low;
+  return format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2], 3) +
+         " mm, z upwards, seen from 25° above";
+}
+
+}  // namespace vam::view_tool

@@ -1,0 +1,37 @@
+// Bodies in a figure: the surfaces of volumes, seen from one place in one scale.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/vector3.hpp"
+#include "io/vdb/vdb.hpp"
+#include "plot/image_figure.hpp"
+#include "plot/render.hpp"
+#include "plot/view.hpp"
+#include "solid/mesh/surface.hpp"
+
+namespace vam::view_tool {
+
+/// Where the volume reaches the level, in the frame of the part: the stretch in z that `part` states is undone.
+[[nodiscard]] model::TriangleSoup surface_of(const io::SparseVolume& volume, double level,
+                                             const io::SparseVolume& part);
+
+/// The square that holds the bodies from every side.
+struct Sight {
+  Vector3 centre{};
+  double side_mm = 0;
+};
+[[nodiscard]] Sight sight_of(const std::vector<const plot::Body*>& bodies);
+
+/// A square image of the bodies beside those that the figure has.
+void add_panel(plot::ImageFigure& figure, const std::vector<const plot::Body*>& bodies, const Sight& sight, int pixels,
+               const std::string& caption);
+
+/// Axes and title: `what` after the name of the file, unless the title is given.
+void label(plot::ImageFigure& figure, const Sight& sight, const plot::ViewOptions& view, const std::string& what);
+
+/// "10 x 10 x 10 mm, z upwards, seen from 25° above".
+[[nodiscard]] std::string size_text(const solid::Box& box);
+
+}  // namespace vam::view_tool
