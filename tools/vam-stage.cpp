@@ -83,8 +83,10 @@ std::vector<std::string> notes() {
       "disconnected "
       "controller completes its last motion, which is never longer than the requested turns. Install a hardware "
       "interlock that cuts lamp and motor where people can reach either.",
-      "Accuracy. The time of a sample is the midpoint between query and reply; its standard deviation follows from the "
-      "interval between them. spin fails before angle 0 (status 76) when the speed error exceeds --speed-tolerance, "
+      "Accuracy. The time of a sample is the midpoint between query and reply; its standard deviation follows from "
+      "what "
+      "the interval between them exceeds the shortest one by, and a third of that. spin fails before angle 0 (status "
+      "76) when the speed error exceeds --speed-tolerance, "
       "and "
       "ends when the stage deviates from uniform rotation by more than 2 degrees. Port latency adds to the error: at "
       "25 "

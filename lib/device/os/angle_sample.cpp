@@ -12,8 +12,8 @@ namespace vam::device {
 
 std::string to_line(const AngleSample& sample) {
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), R"({"t_monotonic_s":%.7f,"angle_deg":%.5f,"sigma_deg":%.5f})", sample.t_s,
-                sample.angle_deg, sample.sigma_deg);
+  std::snprintf(text.data(), text.size(), R"({"t_monotonic_s":%.7f,"angle_deg":%.5f,"sigma_deg":%.5f%s})", sample.t_s,
+                sample.angle_deg, sample.sigma_deg, sample.ramp ? R"(,"ramp":true)" : "");
   return text.data();
 }
 
@@ -34,6 +34,7 @@ AngleSample parse_angle_line(const std::string& line, long number) {
   read("angle_deg", sample.angle_deg);
   // Recordings of 0.1.0 say sigma.
   read(parsed.contains("sigma") && !parsed.contains("sigma_deg") ? "sigma" : "sigma_deg", sample.sigma_deg);
+  sample.ramp = parsed.value("ramp", Json()) == true;
   return sample;
 }
 

@@ -11,9 +11,10 @@ struct AngleSample {
   double t_s = 0;  // CLOCK_MONOTONIC
   double angle_deg = 0;
   double sigma_deg = 0;
+  bool ramp = false;  // the stage has not yet reached its speed
 };
 
-/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma_deg":0.00123}
+/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma_deg":0.00123}, with "ramp":true on the ramp.
 [[nodiscard]] std::string to_line(const AngleSample& sample);
 /// Throws Fault::data for anything else: "stage angles: line 7: ...".
 [[nodiscard]] AngleSample parse_angle_line(const std::string& line, long number);

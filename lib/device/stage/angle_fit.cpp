@@ -7,10 +7,15 @@ namespace vam::device {
 
 namespace {
 constexpr double encoder_sigma_deg = 1e-4;
-}
+constexpr double unequal = 1.0 / 3;  // of the shortest round trip
+constexpr long enough = 10;          // samples, of which one is as quick as can be
+}  // namespace
 
-AngleSample to_angle_sample(const StageSample& sample, double speed_deg_s) {
-  const double blur_deg = std::abs(speed_deg_s) * (sample.t1_s - sample.t0_s) / std::sqrt(12.0);
+AngleSample RoundTrips::timed(const StageSample& sample, double speed_deg_s) {
+  const double taken_s = sample.t1_s - sample.t0_s;
+  shortest_s_ = std::min(shortest_s_, taken_s);
+  const double spread_s = ++seen_ <= enough ? taken_s : std::hypot(taken_s - shortest_s_, unequal * shortest_s_);
+  const double blur_deg = std::abs(speed_deg_s) * spread_s / std::sqrt(12.0);
   return {0.5 * (sample.t0_s + sample.t1_s), sample.angle_deg, std::hypot(blur_deg, encoder_sigma_deg)};
 }
 

@@ -3,15 +3,26 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 
 #include "device/os/angle_sample.hpp"
 #include "device/stage/stage.hpp"
 
 namespace vam::device {
 
-/// The middle of question and answer; the uncertainty is that of a moment uniformly spread between them (1/sqrt(12))
-/// times the speed, and of the encoder's last digit.
-[[nodiscard]] AngleSample to_angle_sample(const StageSample& sample, double speed_deg_s);
+/// The times of a stage's answers: the middle of question and answer. What a round trip takes beyond the shortest one
+/// may be lost on either way, so the moment is spread evenly over that (1/sqrt(12)), and over a third of the
+/// shortest, whose two ways may differ; of the first samples over the whole [physics §10]. Times the speed, and with
+/// the encoder's last digit, that is the uncertainty of the angle. A busy machine reads answers late: beside the
+/// shortest round trips such samples count little beside the shortest round trips.
+class RoundTrips {
+ public:
+  [[nodiscard]] AngleSample timed(const StageSample& sample, double speed_deg_s);
+
+ private:
+  long seen_ = 0;
+  double shortest_s_ = std::numeric_limits<double>::infinity();
+};
 
 /// Weighted least squares over the samples of the last window_s seconds.
 class AngleFit {

@@ -90,7 +90,7 @@ class FollowedAngle final : public AngleSource {
     std::size_t begin = 0;
     for (std::size_t end = 0; (end = buffer_.find('\n', begin)) != std::string::npos; begin = end + 1) {
       last_ = parse_angle_line(buffer_.substr(begin, end - begin), ++lines_);
-      fit_.add(last_);
+      if (!last_.ramp) fit_.add(last_);  // what it learned there would be taken for ripple
       heard_s_ = clock_.now_s();
     }
     buffer_.erase(0, begin);

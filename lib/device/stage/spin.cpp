@@ -116,6 +116,7 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
   const double start_s = clock.now_s();
   const double looks = std::ceil(plan.period_s / heartbeat_s);  // for every sample that is reported
   const double period_s = plan.period_s / looks;
+  RoundTrips trips;
   AngleFit fit;
   bool judged = false;
   long look = 0;
@@ -124,13 +125,14 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
     next_s = std::max(next_s, clock.now_s() - period_s);  // late samples are not made up for
     StageSample raw = stage.sample();
     raw.angle_deg *= plan.direction;
-    const AngleSample now = to_angle_sample(raw, plan.speed_deg_s);
+    AngleSample now = trips.timed(raw, plan.speed_deg_s);
+    now.ramp = now.angle_deg < course.cruise_deg;
     if (now.angle_deg >= -judged_s * plan.speed_deg_s && !std::exchange(judged, true)) require_speed(plan, fit);
-    if (now.angle_deg >= course.cruise_deg) {
+    if (now.ramp) {
+      require_moving(course, now, clock.now_s() - start_s);
+    } else {
       require_on_line(fit, now);
       fit.add(now);
-    } else {
-      require_moving(course, now, clock.now_s() - start_s);
     }
     const bool ended = now.angle_deg >= 360.0 * plan.turns;
     if (ended || look++ % std::lround(looks) == 0) report(now);

@@ -19,7 +19,7 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
     if (clock.now_s() > deadline_s) {
       throw Error{Fault::busy, "stage: still moving after " + format_number(timeout_s) + " s"};
     }
-    if (report) report(to_angle_sample(stage.sample(), 0));
+    if (report) report(RoundTrips().timed(stage.sample(), 0));
     clock.sleep_until(clock.now_s() + std::min(period_s, heartbeat_s));
   }
 }
@@ -87,11 +87,12 @@ void halt(Stage& stage, Clock& clock, Stop how) {
 void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> seconds,
             const std::function<void(const AngleSample&)>& report) {
   const double start_s = clock.now_s();
+  RoundTrips trips;
   AngleFit fit;
   const double samples = seconds ? std::ceil(*seconds / period_s - 1e-6) : 0;  // one at the start, none at the end
   for (long n = 0; !seconds || static_cast<double>(n) < samples; ++n) {
     clock.sleep_until(start_s + static_cast<double>(n) * period_s);
-    const AngleSample now = to_angle_sample(stage.sample(), fit.ready() ? fit.speed_deg_s() : 0);
+    const AngleSample now = trips.timed(stage.sample(), fit.ready() ? fit.speed_deg_s() : 0);
     fit.add(now);
     report(now);
   }

@@ -54,6 +54,9 @@ TEST_CASE("Lines of samples are written and read back unchanged") {
   CHECK(back.angle_deg == sample.angle_deg);
   CHECK(back.sigma_deg == sample.sigma_deg);
   CHECK(parse_angle_line(R"({"t_monotonic_s":1,"angle_deg":2,"sigma":0.5})", 1).sigma_deg == 0.5);  // of 0.1.0
+  CHECK(to_line({1, 2, 3, true}).find(R"(,"ramp":true)") != std::string::npos);
+  CHECK(parse_angle_line(to_line({1, 2, 3, true}), 1).ramp);
+  CHECK_FALSE(back.ramp);
   for (const char* bad : {"", "7", "{}", R"({"t_monotonic_s":1,"angle_deg":"x","sigma_deg":1})",
                           R"({"t_monotonic_s":1e999,"angle_deg":1,"sigma_deg":1})", "{\"t_mono"}) {
     CAPTURE(bad);
@@ -62,8 +65,29 @@ TEST_CASE("Lines of samples are written and read back unchanged") {
   }
 }
 
-TEST_CASE("A sample has the time of the middle of its query and half the duration as uncertainty") {
-  const AngleSample sample = to_angle_sample({90, 10.000, 10.012}, 25);
-  CHECK(sample.t_s == doctest::Approx(10.006));
-  CHECK(sample.sigma_deg == doctest::Approx(25 * 0.012 / std::sqrt(12.0)).epsilon(1e-3));
+TEST_CASE("A sample has the time of the middle of its query, and what is beyond the shortest one as uncertainty") {
+  RoundTrips trips;
+  const AngleSample first = trips.timed({90, 10.000, 10.012}, 25);
+  CHECK(first.t_s == doctest::Approx(10.006));
+  CHECK(first.sigma_deg == doctest::Approx(25 * 0.012 / std::sqrt(12.0)).epsilon(1e-3));
+  for (int i = 0; i < 10; ++i) (void)trips.timed({90, 10.0, 10.004}, 25);
+  CHECK(trips.timed({90, 10.0, 10.004}, 25).sigma_deg ==
+        doctest::Approx(25 * 0.004 / 3 / std::sqrt(12.0)).epsilon(1e-3));
+  CHECK(trips.timed({90, 10.0, 10.024}, 25).sigma_deg ==
+        doctest::Approx(25 * std::hypot(0.020, 0.004 / 3) / std::sqrt(12.0)).epsilon(1e-3));
+}
+
+TEST_CASE("Answers that are read late do not move the angle to one side by more than a third of their delay") {
+  // 3 ms there and 2 ms back, and up to 20 ms more until a busy machine reads them: the mean midpoint is 4.5 ms late.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> late_s(0, 0.02);
+  RoundTrips trips;
+  AngleFit fit(1e9);
+  for (int i = 0; i < 1000; ++i) {
+    const double asked_s = 0.03 * i;
+    fit.add(trips.timed({25 * (asked_s + 0.003), asked_s, asked_s + 0.005 + late_s(random)}, 25));
+  }
+  const double by_ms = 1e3 * (fit.at(15).angle_deg - 25 * 15) / 25;
+  CHECK(by_ms < 0);
+  CHECK(by_ms > -0.3 * 4.5);
 }

@@ -3,7 +3,10 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <random>
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
@@ -60,6 +63,32 @@ TEST_CASE("Followed lines: a prediction, then stale, ended or bad ones are error
   }
   VirtualClock clock;
   CHECK(fault_of([&] { (void)followed_angle("/nonexistent", clock, 26); }) == Fault::no_input);
+}
+
+TEST_CASE("What a stage does before it has its speed is not taken for its ripple") {
+  // From -720 degrees on, at 200 deg/s2 to 30 deg/s, with angles as uncertain as those of late replies. Where the
+  // second turn begins the ripple that the first one taught is used: there the error shows.
+  const auto angle_deg = [](double t_s) { return -720 + (t_s < 0.15 ? 100 * t_s * t_s : 30 * t_s - 2.25); };
+  const auto worst_deg = [&](bool marked) {
+    std::array<int, 2> line{};
+    REQUIRE(pipe(line.data()) == 0);
+    VirtualClock clock;
+    const auto angles = followed_angle("/dev/fd/" + std::to_string(line[0]), clock, 1e9);
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal(0, 0.15);
+    double worst = 0;
+    for (double t_s = 0; t_s < 14; t_s += 0.02) {
+      const std::string text = to_line({t_s, angle_deg(t_s) + normal(random), 0.15, marked && t_s < 0.4}) + "\n";
+      REQUIRE(write(line[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+      angles->update();
+      if (t_s > 10) worst = std::max(worst, std::abs(angles->at(t_s + 0.03)->angle_deg - angle_deg(t_s + 0.03)));
+    }
+    close(line[0]);
+    close(line[1]);
+    return worst;
+  };
+  CHECK(worst_deg(true) < 0.15);
+  CHECK(worst_deg(false) > 0.25);
 }
 
 TEST_CASE("An angle by the time since the first look, and one that stands") {

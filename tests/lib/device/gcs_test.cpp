@@ -203,5 +203,5 @@ TEST_CASE("A sample's times hold the moment of its angle, also when the process 
   const StageSample sample = stalling->sample();
   CHECK(sample.t0_s >= before_s);
   CHECK(sample.t1_s - sample.t0_s > 0.0599);
-  CHECK(to_angle_sample(sample, 25).sigma_deg > 0.4);  // 25 deg/s x 60 ms / sqrt(12)
+  CHECK(RoundTrips().timed(sample, 25).sigma_deg > 0.4);  // 25 deg/s x 60 ms / sqrt(12)
 }

@@ -40,6 +40,7 @@ Errors print(double ripple, double jitter_s, int seed) {
   double sum = 0;
   int covered = 0;
   double blank_s = 0.5;
+  RoundTrips trips;
   for (double asked_s = 0.1; asked_s < end_s;) {
     const double taken_s = asked_s + delay_s(random);
     const double answered_s = taken_s + delay_s(random);
@@ -56,7 +57,7 @@ Errors print(double ripple, double jitter_s, int seed) {
     sample.angle_deg = at(taken_s);
     sample.t0_s = asked_s;
     sample.t1_s = answered_s;
-    fit.add(to_angle_sample(sample, 25));
+    fit.add(trips.timed(sample, 25));
     asked_s = std::max(answered_s, asked_s + 0.01);
   }
   REQUIRE(errors.size() > 1000);
