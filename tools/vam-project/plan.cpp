@@ -34,14 +34,16 @@ double memory_mb(const model::StackInfo& info, const model::Projector& projector
   return 1e-6 * (sinogram + 4.0 * frames * projector.columns * projector.rows);
 }
 
-/// Where the dose of a turn is the threshold that vam-optimize aimed at, the critical dose after so many turns.
-std::string dose_text(const model::StackInfo& info, const model::Printer& printer, double turns, double full_scale) {
+std::optional<double> stated_threshold(const model::StackInfo& info) {
   const auto stated = info.extra.find("vam:threshold_dose");
-  const auto threshold = stated == info.extra.end() ? std::nullopt : parse_number(stated->second);
-  if (!threshold) return "unknown: the sinogram states no threshold; see vam-dose --exposure-plan";
-  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
-  if (!per_radian) return "unknown; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
-  const double dose = turns * *per_radian / full_scale * *threshold;
+  return stated == info.extra.end() ? std::nullopt : parse_number(stated->second);
+}
+
+std::string dose_text(const model::StackInfo& info, const model::Printer& printer, double turns, double full_scale) {
+  if (!stated_threshold(info)) return "unknown: the sinogram states no threshold; see vam-dose --exposure-plan";
+  const auto reached = dose_at_threshold_mj_cm3(info, printer, turns, full_scale);
+  if (!reached) return "unknown; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
+  const double dose = *reached;
   const double critical = *printer.resin.critical_dose_mj_cm3;
   return format_number(dose, 4) + " mJ/cm3 at the threshold of the sinogram, " + format_number(dose / critical, 3) +
          " of the critical dose of " + format_number(critical) + ", which is reached after " +
@@ -61,6 +63,14 @@ std::string identity_text(const Json& identity) {
 }
 
 }  // namespace
+
+std::optional<double> dose_at_threshold_mj_cm3(const model::StackInfo& info, const model::Printer& printer,
+                                               double turns, double full_scale) {
+  const auto threshold = stated_threshold(info);
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
+  if (!threshold || !per_radian) return std::nullopt;
+  return turns * *per_radian / full_scale * *threshold;
+}
 
 void print_plan(const Options& options, const model::Printer& printer) {
   if (is_folder(options.input)) refuse_slices(options.input);

@@ -5,11 +5,13 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-project/live.hpp"
 #include "vam-project/match.hpp"
+#include "vam-project/plan.hpp"
 #include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"
 
@@ -45,6 +47,19 @@ void require_repeating_poses(const Options& options, const model::StackInfo& inf
                                 "--turns 1 to show a single turn"};
 }
 
+// Half the critical dose prints nothing, and twice of it far too much.
+void warn_of_dose(const Options& options, const io::StackReader& reader, const model::Printer& printer, int turns,
+                  double full_scale) {
+  if (options.live.from_deg > 0) return;  // the rest of a print
+  const auto dose = dose_at_threshold_mj_cm3(reader.info(), printer, turns, full_scale);
+  if (!dose) return;
+  const double reached = *dose / *printer.resin.critical_dose_mj_cm3;
+  if (reached >= 0.5 && reached <= 2) return;
+  warn(options.input + ": " + std::to_string(turns) + (turns == 1 ? " turn gives " : " turns give ") +
+       format_number(reached, 3) + " of the resin's critical dose, which is reached after " +
+       format_number(turns / reached, 4) + " turns (--turns)");
+}
+
 // One turn's frames, or those of the turns that differ, into the display, then the print: the angle of the stage
 // chooses the frame.
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader,
@@ -53,6 +68,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const auto differences = require_printer(options, reader.info(), printer);
   const Light light = read_light(options, reader, printer.projector);
   const double peak = options.full_scale.value_or(light.peak);
+  warn_of_dose(options, reader, printer, turns, peak / options.multiplier);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
   const Dithering dithering = dithering_of(options, frames, turns);
   const auto schedule = optics::frame_schedule(frames, 360, std::max(1, dithering.turns));

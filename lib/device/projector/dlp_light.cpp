@@ -58,6 +58,7 @@ class DlpLight final : public LightEngine {
                                     " is above the limit of " + in_percent(settings.max_current_percent) +
                                     "; raise projector.max_led_current_percent only within the rating of the LEDs"};
     }
+    if (settings.leds.empty()) throw Error{Fault::usage, link_.name() + ": leds= names no LED; give any of r, g and b"};
     for (const char led : settings.leds) {
       const std::size_t bit = std::string("rgb").find(led);
       if (bit == std::string::npos)

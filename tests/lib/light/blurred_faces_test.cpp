@@ -18,6 +18,7 @@ TEST_CASE("faces are hard where rays smear them and voxels nearby are wrong") {
   CHECK(blurred_faces(printer, grid, wrong, faces).empty());
   wrong[96] = 5;
   wrong[92] = 3;
+  wrong[91] = wrong[98] = 1;  // beyond
   const auto hard = blurred_faces(printer, grid, wrong, faces);
   REQUIRE(hard.size() == 1);  // the narrow one is smeared by less than a voxel
   CHECK(hard[0].face.z_mm == 4.5);
