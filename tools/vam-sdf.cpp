@@ -152,7 +152,8 @@ void declare(cli::App& app, Options& options) {
            "Conditions of --require must hold for all values within the expanded uncertainty (ISO 14253-1).");
   app.option(
       "--tolerance", "[NAME=]MM", options.tolerances,
-      "Report the fraction of the print's surface within this distance of the design; with NAME, of that region, "
+      "Report the fraction of the print's surface within this distance of the design, more than 0; with NAME, of that "
+      "region, "
       "which otherwise has the tolerance of the whole print.");
   cli::add_report(app, options.report);
   declare_inspection(app, options);

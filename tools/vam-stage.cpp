@@ -84,11 +84,9 @@ std::vector<std::string> notes() {
       "controller completes its last motion, which is never longer than the requested turns. Install a hardware "
       "interlock that cuts lamp and motor where people can reach either.",
       "Accuracy. The time of a sample is the midpoint between query and reply; its standard deviation follows from "
-      "what "
-      "the interval between them exceeds the shortest one by, and a third of that. spin fails before angle 0 (status "
-      "76) when the speed error exceeds --speed-tolerance, "
-      "and "
-      "ends when the stage deviates from uniform rotation by more than 2 degrees. Port latency adds to the error: at "
+      "the excess of the interval between them over the shortest one, and from a third of the shortest one. spin fails "
+      "before angle 0 (status 76) when the speed error exceeds --speed-tolerance, and ends when the stage deviates "
+      "from uniform rotation by more than 2 degrees. Port latency adds to the error: at "
       "25 "
       "deg/s, 16 ms (the FTDI default, which is set to 1 ms where permitted) correspond to 0.4 degrees.",
       "Priority. On a busy machine a reply may be read too late. As root, or with permission for a real-time priority "

@@ -80,9 +80,15 @@ bool is_movie(const Options& options) { return options.output.ends_with(".mp4");
 
 void write_movie(const Options& options, const io::SparseVolume& dose, const std::string& history) {
   const Judged with = judged(options, dose);
-  const score::Score result = tool::score_volumes(dose, with.target, with.how);
-  const double threshold = options.threshold.value_or(result.print_threshold());
-  view_tool::write_movie(options.output, dose, with.target, {threshold, result.plan()}, options.view, history);
+  view_tool::Exposure exposure;
+  if (options.threshold) {
+    exposure.threshold = *options.threshold;
+  } else {
+    const score::Score result = tool::score_volumes(dose, with.target, with.how);
+    exposure.threshold = result.print_threshold();
+    if (!with.how.threshold) exposure.plan = result.plan();  // else the dose is that of another exposure
+  }
+  view_tool::write_movie(options.output, dose, with.target, exposure, options.view, options.dpi, history);
 }
 
 plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& volume) {

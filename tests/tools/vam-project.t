@@ -137,6 +137,9 @@ fails 66 'none.exr' vam-project none.exr -o x/
 fails 64 'not to .avi' vam-project part.exr -o x.avi
 fails 64 'not one of 1, 2, 4, 8, 10, 16' vam-project part.exr --bits 3 -o x/
 fails 64 "'null2' is no kind of display" vam-project part.exr -o null2:
+fails 64 "'Null' is no kind of display" vam-project part.exr -o Null:
+fails 64 "'relay' is no kind of display" vam-project part.exr -o relay:/dev/ttyUSB0
+quiet 'a file whose name has colons' vam-project part.exr -o 2026-11-25T15:00.mkv
 quiet 'a folder whose name has a colon' vam-project part.exr -o ./print:2/
 fails 64 'frames a turn' vam-project part.exr --speed 300 -o x/
 fails 64 'part.exr' vam-project part.exr -o part.exr

@@ -72,6 +72,7 @@ fails 64 "'sest' is not a name" vam-sdf grown.off design.off $own --tolerance se
 fails 64 'must be more than 0' vam-sdf grown.off design.off $own --tolerance seat=-1
 fails 64 'must be more than 0' vam-sdf grown.off design.off $own --tolerance wide
 fails 64 'given already' vam-sdf grown.off design.off $own --tolerance 1 --tolerance 2
+fails 64 "'5.1mm' is not a number" vam-sdf grown.off design.off --region top=plane:-5,-5,4.9,5,5,5.1mm
 fails 66 'none.off' vam-sdf grown.off design.off --region seat=plane:none.off
 sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)$/3 \1 \3 \2/' seat.off >turned.off
 fails 65 'face the same way' vam-sdf grown.off design.off --align none --region seat=plane:turned.off

@@ -58,6 +58,8 @@ fails 64 'no axis 7; the controller has 1' env LD_PRELOAD=$shim vam-stage move -
 quiet 'home over the line' stage home
 stage spin --speed 360 --run-up 0.25 --turns 1 --log events >samples 2>errors
 is 'spin has status 0' $? 0
+is 'the ramp is marked, and no more' "$(grep -c '"ramp":true' samples) $(awk -F '[:,]' '/"ramp"/ && $4 > -90' samples | grep -c .)" \
+  "$(sed -n '/"ramp"/=' samples | tail -n 1) 0"
 is 'and prints no message' "$(cat errors)" ''
 holds 'the last angle is beyond the turn' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
 holds 'the first angle is before the run-up' "$(head -n 1 samples | json /dev/stdin angle_deg) < -90"

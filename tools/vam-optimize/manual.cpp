@@ -167,7 +167,8 @@ std::vector<std::string> notes() {
       "256 voxels at 360 angles then take 3 s on two cores. Otherwise identical slices are computed once. A parallel "
       "beam gives the same dose from either side, so for an even number of angles half of them are computed and "
       "mirrored.",
-      "Memory: three arrays of a slice and four of a sinogram's lit columns each (apg: seven and three), 4 bytes per "
+      "Memory: three arrays of a slice and three of a sinogram's lit columns each (apg: seven and three), with "
+      "--patience one more of the latter, 4 bytes per "
       "value, of all slices if they are coupled, else of 64 slices at a time, plus 0.2 GiB and at most 512 MiB for "
       "finished slices that recur; with --bits all projections. Of coupled slices, what exceeds --memory is kept in "
       "scratch files in TMPDIR (default: /var/tmp). With --robust an iteration "

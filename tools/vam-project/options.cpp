@@ -1,5 +1,9 @@
 #include "vam-project/options.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+
 #include "base/error.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
@@ -125,9 +129,15 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
 }
 
+/// "nul:" or "drn:HDMI-A-1", but not "2026-11-25T15:00.mkv".
 void refuse_unknown_display(const std::string& output) {
   const auto colon = output.find(':');
-  if (colon == std::string::npos || output.find('/') < colon) return;
+  const bool scheme = colon != std::string::npos && std::isalpha(static_cast<unsigned char>(output.front())) != 0 &&
+                      std::all_of(output.begin(), output.begin() + static_cast<std::ptrdiff_t>(colon),
+                                  [](unsigned char c) { return std::isalnum(c) != 0; });
+  const bool file =
+      output.ends_with('/') || output.ends_with(".mkv") || output.ends_with(".mp4") || output.ends_with(".exr");
+  if (!scheme || file) return;
   throw Error{Fault::usage, output + ": '" + output.substr(0, colon) + "' is no kind of display; give -o " +
                                 device::display_devices() + ", or ./" + output + " for files"};
 }

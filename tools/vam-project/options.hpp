@@ -54,7 +54,8 @@ struct Options {
   PatternOptions pattern;
 };
 
-/// Of output to files. Throws Fault::usage when an option of live output is given, or it names a display that is none.
+/// Of output to files. Throws Fault::usage when an option of live output is given, or the output looks like a display
+/// but is of no known kind.
 void refuse_live(const cli::App& app, const std::string& output);
 
 [[nodiscard]] cli::Manual manual();

@@ -47,7 +47,7 @@ void require_repeating_poses(const Options& options, const model::StackInfo& inf
                                 "--turns 1 to show a single turn"};
 }
 
-// Half the critical dose prints nothing, and twice of it far too much.
+// Half the critical dose cures nothing, and twice as much cures far too much.
 void warn_of_dose(const Options& options, const io::StackReader& reader, const model::Printer& printer, int turns,
                   double full_scale) {
   if (options.live.from_deg > 0) return;  // the rest of a print

@@ -1,12 +1,12 @@
 #include "vam-view/movie.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
@@ -34,16 +34,23 @@ double largest(const io::SparseVolume& dose) {
   return static_cast<double>(most);
 }
 
-/// "turn 2.4 of 6, 43 s" or "57 % of the exposure", of the same length at all times.
-std::string time_text(double fraction, const std::optional<score::ExposurePlan>& plan) {
-  const auto rounded = [](double value, int decimals) {
-    std::string text(32, ' ');
-    text.resize(static_cast<std::size_t>(std::snprintf(text.data(), text.size(), "%.*f", decimals, value)));
-    return text;
+/// As wide as its value at the end, by blanks that are as wide as a digit.
+std::string part_of(double whole, double fraction, int decimals) {
+  const auto rounded = [decimals](double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+    return std::string(text.data());
   };
-  if (!plan) return rounded(100 * fraction, 0) + " % of the exposure";
-  return "turn " + rounded(fraction * plan->turns, 1) + " of " + std::to_string(plan->turns) + ", " +
-         rounded(fraction * plan->seconds, 0) + " s";
+  std::string text = rounded(fraction * whole);
+  for (std::size_t n = text.size(); n < rounded(whole).size(); ++n) text.insert(0, "\u2007");
+  return text;
+}
+
+/// "turn 2.4 of 6, 43 s" or "57 % of the exposure".
+std::string time_text(double fraction, const std::optional<score::ExposurePlan>& plan) {
+  if (!plan) return part_of(100, fraction, 0) + " % of the exposure";
+  return "turn " + part_of(plan->turns, fraction, 1) + " of " + std::to_string(plan->turns) + ", " +
+         part_of(plan->seconds, fraction, 0) + " s";
 }
 
 /// Figures may differ by a pixel, frames may not.
@@ -75,18 +82,19 @@ class Growth {
     figure_.legend = {{plot::Mark::none, {}, "target " + size_text(solid::bounding_box(part_.mesh))}};
   }
 
-  /// Of the growing frames.
-  [[nodiscard]] RgbImage frame(int n) const {
-    const double fraction = first_ + (1 - first_) * static_cast<double>(n) / (growing - 1);
-    const plot::Body print = print_after(fraction);
+  /// What a growing frame shows.
+  [[nodiscard]] plot::Body print(int n) const { return print_after(fraction(n)); }
+
+  [[nodiscard]] RgbImage frame(int n, const plot::Body& print, double dpi) const {
     std::vector<const plot::Body*> so_far;
     if (!print.mesh.triangles.empty()) so_far.push_back(&print);
     plot::ImageFigure figure = figure_;
-    add_panel(figure, so_far, sight_, view_.size * 7 / 10, time_text(fraction, exposure_.plan));
-    return plot::draw(figure).image();
+    add_panel(figure, so_far, sight_, view_.size * 7 / 10, time_text(fraction(n), exposure_.plan));
+    return plot::draw(figure).image(dpi);
   }
 
  private:
+  [[nodiscard]] double fraction(int n) const { return first_ + (1 - first_) * static_cast<double>(n) / (growing - 1); }
   [[nodiscard]] plot::Body print_after(double fraction) const {
     return {surface_of(dose_, exposure_.threshold / fraction, target_), {}};
   }
@@ -104,16 +112,19 @@ class Growth {
 }  // namespace
 
 void write_movie(const std::string& path, const io::SparseVolume& dose, const io::SparseVolume& target,
-                 const Exposure& exposure, const plot::ViewOptions& view, const std::string& history) {
+                 const Exposure& exposure, const plot::ViewOptions& view, double dpi, const std::string& history) {
   const Growth growth(dose, target, exposure, view);
-  RgbImage frame = growth.frame(0);
+  RgbImage frame = growth.frame(growing - 1, growth.print(growing - 1), dpi);
   const int width = frame.width, height = frame.height;
   io::Movie movie(path, width, height, fps, history);
   Progress progress("drawing", growing);
   for (int n = 0; n < growing; n += at_once) {
-    std::vector<RgbImage> frames(std::min(at_once, growing - n));
-    parallel_for(count_of(frames), [&](int i) {
-      frames[i] = of_size(growth.frame(n + i), width, height);
+    const int count = std::min(at_once, growing - n);
+    std::vector<plot::Body> prints;  // one after the other, each by all threads: each takes the volume once more
+    for (int i = 0; i < count; ++i) prints.push_back(growth.print(n + i));
+    std::vector<RgbImage> frames(prints.size());
+    parallel_for(count, [&](int i) {
+      frames[i] = of_size(growth.frame(n + i, prints[i], dpi), width, height);
       progress.tick();
     });
     for (const RgbImage& one : frames) movie.write(one);

@@ -8,7 +8,7 @@ namespace vam::device {
 namespace {
 constexpr double encoder_sigma_deg = 1e-4;
 constexpr double unequal = 1.0 / 3;  // of the shortest round trip
-constexpr long enough = 10;          // samples, of which one is as quick as can be
+constexpr long enough = 10;          // samples, after which the shortest is taken as known
 }  // namespace
 
 AngleSample RoundTrips::timed(const StageSample& sample, double speed_deg_s) {

@@ -13,8 +13,8 @@ namespace vam::device {
 /// The times of a stage's answers: the middle of question and answer. What a round trip takes beyond the shortest one
 /// may be lost on either way, so the moment is spread evenly over that (1/sqrt(12)), and over a third of the
 /// shortest, whose two ways may differ; of the first samples over the whole [physics §10]. Times the speed, and with
-/// the encoder's last digit, that is the uncertainty of the angle. A busy machine reads answers late: beside the
-/// shortest round trips such samples count little beside the shortest round trips.
+/// the encoder's last digit, that is the uncertainty of the angle. A busy machine reads answers late, which moves the
+/// middle to one side: such samples count little beside the shortest round trips.
 class RoundTrips {
  public:
   [[nodiscard]] AngleSample timed(const StageSample& sample, double speed_deg_s);

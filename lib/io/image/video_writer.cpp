@@ -141,7 +141,8 @@ struct VideoWriter::State {
     const AVCodec* encoder =
         lossless ? av::api().avcodec_find_encoder(AV_CODEC_ID_FFV1) : av::api().avcodec_find_encoder_by_name("libx264");
     if (encoder == nullptr)
-      throw Error{Fault::absent, sink.file.name() + ": this libavcodec has no H.264 encoder (libx264); write .mkv"};
+      throw Error{Fault::absent, sink.file.name() + ": this libavcodec has no H.264 encoder (libx264); " +
+                                     (format.colour ? "install it" : "write .mkv")};
     codec.reset(av::api().avcodec_alloc_context3(encoder));
     if (format.colour) {
       codec->colorspace = AVCOL_SPC_BT709;

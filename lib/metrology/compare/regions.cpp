@@ -93,10 +93,11 @@ void require_enough(const RegionPoints& points) {
   const std::size_t least = std::min(points.print.size(), points.design.size());
   if (least >= fewest) return;
   const std::string& file = points.region.faces_file;
+  const std::string remedy =
+      file.empty() ? "enlarge its box, or --samples"
+                   : "the faces of " + file + " must lie on the design and face the same way; else increase --samples";
   throw Error{Fault::data, "region '" + points.region.name + "': has " + std::to_string(least) +
-                               " points of the surface; enlarge " + (file.empty() ? "its box" : file) +
-                               ", or --samples" +
-                               (file.empty() ? "" : "; its faces must lie on the design and face the same way")};
+                               " points of the surface; " + remedy};
 }
 
 void find_walls(const Distances& distances, const solid::Surface& design, const solid::Surface& print,
@@ -182,8 +183,7 @@ Region parse_region(const std::string& text) {
     region.kind = found->kind;
     corners = corners.substr(colon + 1);
   }
-  const std::string last = trimmed(corners.substr(corners.rfind(',') + 1));
-  if (last.find('.') != std::string::npos && !parse_number(last)) {
+  if (!parse_number(trimmed(corners.substr(0, corners.find(','))))) {
     region.faces_file = corners;
     return region;
   }

@@ -66,6 +66,8 @@ class Method {
   [[nodiscard]] virtual std::optional<SurfaceMiss> surface_miss(std::span<const Slab> /*dose*/) const {
     return std::nullopt;
   }
+  /// Whether it asks for more than the nominal doses show: for the print's surface, for other printers.
+  [[nodiscard]] virtual bool asks_more(const Problem& /*problem*/) const { return false; }
   /// MethodOptions::eigenvalue of a method that has computed it; of coarser voxels it is the same within 5 %.
   [[nodiscard]] virtual double eigenvalue() const { return 0; }
 

@@ -53,6 +53,8 @@ class Robust final : public Method {
     ++done_;
   }
 
+  [[nodiscard]] bool asks_more(const Problem& /*problem*/) const override { return true; }
+
   void exchange(Archive& archive) override {
     nominal_->exchange(archive);
     archive(before_.g);

@@ -21,10 +21,12 @@ void begin(Archive& to, RecordTag record) {
 }  // namespace
 
 void exchange(Archive& archive, const RunMark& mark) {
-  constexpr int magic = 0x564D4F32;
+  constexpr int magic = 0x564D4F33;
   int given_magic = magic;
   archive(given_magic);
-  if (given_magic != magic) throw Error{Fault::data, archive.name() + ": is not a checkpoint of vam-optimize"};
+  if (given_magic != magic)
+    throw Error{Fault::data,
+                archive.name() + ": is no checkpoint of this version of vam-optimize; remove it and start again"};
   std::string job = mark.job;
   SliceDigest target = mark.target;
   int watched = mark.watched ? 1 : 0;

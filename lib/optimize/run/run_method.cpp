@@ -111,7 +111,7 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
     }
     standing.iteration = 0;
   }
-  const bool keeps = limits.patience > 0 && limits.iterations > 0 && !method.surface_miss(state.dose);
+  const bool keeps = limits.patience > 0 && limits.iterations > 1 && !method.asks_more(problem);
   for (;; ++standing.iteration) {
     const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, standing, keeps, watch);
     if (stop) return {standing.iteration, *stop};
@@ -121,10 +121,11 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
   }
 }
 
-void return_to_best(const light::Operator& light, Standing& standing, Iterate& state) {
-  if (standing.best_light.empty() || standing.best_at == standing.iteration) return;
+bool return_to_best(const light::Operator& light, Standing& standing, Iterate& state) {
+  if (standing.best_light.empty() || standing.best_at == standing.iteration) return false;
   state.g = std::move(standing.best_light);
   light.adjoint(state.g, state.dose);
+  return true;
 }
 
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,

@@ -24,7 +24,7 @@ struct Limits {
   std::vector<model::Condition> until;    // stop when all hold; names as in SliceFigures::names()
   int at_least = 0;                       // iterations before they count
   int early = 0;                          // so many do where the print's surface is true by then; 0: none
-  int patience = 10;                      // stop when nothing improved in so many iterations, at the best; 0 = never
+  int patience = 10;                      // stop when nothing improved in so many iterations; 0 = never
   double least_gain = 1e-4;               // an improvement of the mean of IoU + PW smaller than this is none
   bool watch_last = false;                // evaluate the last iterate, too, on which nothing depends
   std::optional<Deadline> deadline = {};  // no iteration begins that might end after it
@@ -57,12 +57,13 @@ struct Standing {
 };
 
 /// Runs the method on one pass. The light of the best merit is kept where there is patience, unless the method asks for
-/// the surface, of which the merit knows nothing. When iterate.g is not empty it is where the method starts from; a run
+/// more than the merit shows. When iterate.g is not empty it is where the method starts from; a run
 /// that has begun resumes from where it was interrupted (method and iterate as they were), as if it had not been.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate, Standing& standing, const Watch& watch = {}, const Pause& pause = {});
-/// The light of the best iterate and its dose take the place of the last one's, if it is another.
-void return_to_best(const light::Operator& light, Standing& standing, Iterate& iterate);
+/// The light of the best iterate and its dose take the place of the last one's; false where that is the best, or none
+/// was kept.
+bool return_to_best(const light::Operator& light, Standing& standing, Iterate& iterate);
 /// From the start to the end.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate);

@@ -32,8 +32,9 @@ inline constexpr int front_iterations = front_raising.first + (front_points - 1)
 /// Where a search stands.
 struct Search {
   Standing standing;
-  double max_intensity = 0;  // in force; 0: none
-  int until = 0;             // the iteration up to which it is
+  double max_intensity = 0;       // in force; 0: none
+  double best_max_intensity = 0;  // that was in force for standing.best_light
+  int until = 0;                  // the iteration up to which it is
   void exchange(Archive& archive);
 };
 

@@ -145,10 +145,14 @@ class VolumeRun {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
       return false;
     }
-    if (outcome.stop != StopReason::goal) return_to_best(light.blurred(), work.search.standing, work.state);
+    double most = work.search.max_intensity;
+    if (outcome.stop != StopReason::goal && return_to_best(light.blurred(), work.search.standing, work.state)) {
+      most = work.search.best_max_intensity;
+    }
+    work.search.standing.best_light = {};
     ledger_.end(outcome);
     eigenvalue_ = work.method->eigenvalue();
-    max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
+    max_intensity_ = std::max(max_intensity_, most);  // the brightest pass sets the duration
     if (task_.certify > 0) certificate_ = certify(input.problem, light.blurred(), work.state.g, task_.certify);
     finish(input.problem, work, pass, light.sharp(), faced);
     return true;

@@ -80,6 +80,31 @@ TEST_CASE("a run interrupted repeatedly gives the bytes of an uninterrupted one,
   }
 }
 
+TEST_CASE("the same where a run ends without progress, at its best iterate or its last") {
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
+  for (const std::string name : {"apg", "cal", "osmo"}) {
+    for (const bool surface : {true, false}) {
+      CAPTURE(name);
+      CAPTURE(surface);
+      VolumeTask task;
+      task.demands.free_surface = !surface;
+      task.limits = {.iterations = 40, .until = {}, .patience = 6};
+      task.limit.of_even = 1.5;
+      task.raising = {.factor = 1.3, .first = 12, .next = 8};
+      task.make = [&](double most) {
+        MethodOptions options;
+        options.max_intensity = most;
+        return make_method(name, options);
+      };
+      const auto whole = run(slices, task);
+      const auto broken = run_in_pieces(slices, task, 2);
+      CHECK(broken.times >= 2);
+      CHECK(broken.result.images[0].values == whole.images[0].values);
+      CHECK(report(broken.result.outcome).dump() == report(whole.outcome).dump());
+    }
+  }
+}
+
 TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   std::vector<std::vector<float>> slices;
   for (int k = 0; k < 70; ++k) {

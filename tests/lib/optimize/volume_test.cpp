@@ -168,6 +168,7 @@ TEST_CASE("the loop stops at its goal, and when it stagnates") {
 
 TEST_CASE("without a goal the best iterate is the result, whatever comes after it") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
+  int later = 0;  // iterations after the best one
   for (const std::string name : {"cal", "osmo", "pm", "bclp"}) {
     CAPTURE(name);
     VolumeTask task;
@@ -179,10 +180,12 @@ TEST_CASE("without a goal the best iterate is the result, whatever comes after i
     const auto at = std::max_element(trace.begin(), trace.end(),
                                      [](const auto& a, const auto& b) { return a.iou + a.pw < b.iou + b.pw; });
     CHECK(best.outcome.metrics.iou + best.outcome.metrics.pw == doctest::Approx(at->iou + at->pw).epsilon(2e-4));
+    later += static_cast<int>(trace.end() - at) - 1;
     // The same as ending there.
     task.limits = {.iterations = static_cast<int>(at - trace.begin()), .until = {}, .patience = 0};
     CHECK(run(slices, task).images[0].values == best.images[0].values);
   }
+  CHECK(later > 0);
 }
 
 TEST_CASE("initial projections are used") {
