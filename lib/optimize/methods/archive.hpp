@@ -47,8 +47,7 @@ class Archive {
   }
   template <class T>
   void operator()(std::vector<T>& values) {
-    values.resize(count(values.size()));
-    for (T& value : values) (*this)(value);
+    list(values, [this](T& value) { (*this)(value); });
   }
   /// each(element) moves one. Memory is taken as elements arrive: a damaged size ends with the file.
   template <class T, class Each>
@@ -61,8 +60,14 @@ class Archive {
     }
   }
   void operator()(std::vector<float>& values) {
-    values.resize(count(values.size()));
-    numbers(values.data(), values.size());
+    constexpr std::size_t at_once = std::size_t{1} << 20U;
+    const std::size_t size = count(values.size());
+    for (std::size_t first = 0; first < size; first += at_once) {
+      const std::size_t last = std::min(size, first + at_once);
+      if (reading()) values.resize(last);
+      numbers(values.data() + first, last - first);
+    }
+    values.resize(size);
   }
 
  private:

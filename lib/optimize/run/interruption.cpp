@@ -25,8 +25,10 @@ void exchange(Archive& archive, const RunMark& mark) {
   int given_magic = magic;
   archive(given_magic);
   if (given_magic != magic)
-    throw Error{Fault::data,
-                archive.name() + ": is no checkpoint of this version of vam-optimize; remove it and start again"};
+    throw Error{
+        Fault::data,
+        archive.name() +
+            ": is not a checkpoint of this version of vam-optimize; name another file, or remove it to start anew"};
   std::string job = mark.job;
   SliceDigest target = mark.target;
   int watched = mark.watched ? 1 : 0;
