@@ -1,9 +1,7 @@
 // What a real bench adds to the views of a print: an even background, light that flickers, specks that stay where they
-// are, bubbles that pass. Specks and bubbles are distinguished from the print by consistency over the angles: a line is
-// seen twice a turn, from either end.
+// are, bubbles that pass.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "base/image.hpp"
@@ -29,12 +27,6 @@ struct Dirt {
 /// their mean over the angles that departs from its row and has no mirror image about the axis is a speck; with two
 /// pixels around it, it is replaced by the line seen from the other end. Returns the share of the rays.
 double remove_specks(std::vector<Image>& sinograms);
-
-/// Replaces rays that are brighter than the same line from the other end, anywhere within two columns and `rows[k]`
-/// heights of it, by more than 6 deviations of the noise and 3 % of the brightest: something passed. Where this is more
-/// than 10 % of the rays nothing is replaced. Returns the share.
-double remove_bubbles(std::vector<Image>& sinograms, std::span<const int> rows);
-inline constexpr double most_bubbles = 0.1;
 
 [[nodiscard]] Json to_json(const Dirt& dirt);
 

@@ -13,6 +13,7 @@
 #include "base/text.hpp"
 #include "metrology/ost/flicker.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
+#include "metrology/ost/private/bubbles.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"
 #include "metrology/ost/private/mlem.hpp"
 #include "metrology/ost/private/ost_state.hpp"
@@ -144,7 +145,7 @@ void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<con
   for (const double height : heights_mm) {
     rows.push_back(1 + ceil_int(2 * std::abs(height) * rate * detector.x_mm(detector.columns - 1) / grid.voxel_mm));
   }
-  const double share = remove_bubbles(sinograms, rows);
+  const double share = remove_bubbles(geometry(sinograms.front().height), sinograms, rows);
   found.bubbles_exceed_limit = found.bubbles_exceed_limit || share > most_bubbles;
   found.bubble_percent += 100 * part * share;
 }
