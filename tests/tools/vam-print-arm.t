@@ -20,7 +20,7 @@ fails 64 'vam-print: stage.device: no device is set; .*--set stage.device=DEVICE
 # The plan: the figures, every problem, and no file left.
 plan() { print --plan "$@"; }
 sed 's/sim:?/sim:?log=moved\&/' printer.toml >watched.toml
-is 'a plan' "$(plan --turns 3 --printer watched.toml 2>&1 | sed 's/ .*//' | tr '\n' ' ')" 'sinogram records frames exposure intensity dose display engine stage motion '
+is 'a plan' "$(plan --turns 3 --printer watched.toml 2>&1 | sed 's/ .*//' | tr '\n' ' ')" 'sinogram records frames exposure intensity dose display engine stage motion disk '
 is 'in which nothing moves' "$(grep -c '"event":"moving"' moved)" 0
 plan --turns 3 --light 'sim:?log=leds' >plan.txt
 is 'and no light is on' "$(grep -c '"bits":[1-9]' leds)" 0
@@ -47,6 +47,7 @@ is 'a plan continues after a problem' "$? $(grep -c 'failed$' plan.txt) $(grep -
 ok 'each reported in one line' sh -c 'grep -q "vial.radius_mm 12.7, now 6" errors && grep -q "drm:X: no such" errors && grep -q "/nowhere: not a serial" errors && grep -q "/nowhere: cannot open" errors'
 plan --set 'stage.device=sim:?min_angle=-360&max_angle=360' >plan.txt 2>errors
 is 'travel beyond the limits' "$? $(grep -c 'require travel from .* but the controller allows -360 to 360' errors)" '65 1'
+is 'free space' "$(plan --run runs/new 2>&1 | grep -c 'runs: no such folder; create it for --run\|^disk  *failed')" 2
 is 'no plan leaves anything' "$(ls -d print-* 2>/dev/null)" ''
 
 # A folder of records that was copied with its links followed.

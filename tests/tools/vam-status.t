@@ -55,6 +55,8 @@ without; rm part/*.jsonl
 is 'settings but no log yet' "$(line_of)" 'preparing  turn 0.00 of unknown | dose delivered unknown  missed 0 of 0 vertical blanks'
 rm part/printer.toml; echo '{}' >part/calibration.json
 is 'no settings yet' "$(line_of)" 'preparing  turn 0.00 of unknown | dose delivered unknown  missed 0 of 0 vertical blanks'
+mkdir own; printf '[stage]\nspeed_deg_s = 90\n' >own/printer.toml
+fails 65 'own: has no events.jsonl' vam-status own
 without events
 is 'events are lost: the number of turns and the dose are unknown' "$(line_of | sed 's/[0-9]* vert/N vert/')" \
   'printing  turn 3.00 of unknown | dose delivered unknown  missed 0 of N vertical blanks'

@@ -13,6 +13,7 @@
 #include "base/json_text.hpp"
 #include "base/printable.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::status_tool {
@@ -50,12 +51,18 @@ std::string word(const Json& line, const char* key) {
   return line.contains(key) && line[key].is_string() ? line[key].get<std::string>() : "";
 }
 
+// vam-print writes these before it is armed; a printer file with more beside it is a user's own.
+bool about_to_be_armed(const RunFolder& run) {
+  if (fs::exists(run.file("calibration.json"))) return true;
+  const std::string settings = run.file("printer.toml");
+  return fs::exists(settings) && io::require_text_seal(io::read_all(settings), settings);
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path) : path_(path) {
   if (!fs::is_directory(path)) throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
-  const bool begun = fs::exists(file("printer.toml")) || fs::exists(file("calibration.json"));  // about to be armed
-  if (!begun && !fs::exists(file("events.jsonl"))) {
+  if (!fs::exists(file("events.jsonl")) && !about_to_be_armed(*this)) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
   load_settings();

@@ -18,7 +18,7 @@ namespace {
 class SimDlp final : public device::UsbLink {
  public:
   SimDlp(const SimDlpSettings& settings, SimLog log) : settings_(settings), log_(std::move(log)) {
-    name_ = settings.dlpc900 ? "usb:0451:c900:LCR6500" : "usb:0451:6401:LCR4500";
+    name_ = settings.dlpc900 ? "sim: (LightCrafter 6500)" : "sim: (LightCrafter 4500)";
     registers_[0x0200] = std::string(1, '\1');  // Power Control: standby
     // Retrieve Firmware Version: four numbers, the least significant byte first.
     registers_[0x0205] = std::string("\x01\x00\x00\x04", 4) + std::string(12, '\0');

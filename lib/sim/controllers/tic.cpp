@@ -182,7 +182,7 @@ class SimTic final : public device::UsbLink {
   bool uncertain_ = true;
   bool homing_ = false;
   bool to_position_ = false;
-  std::string name_ = "usb:1ffb:00b3:00312345";
+  std::string name_ = "sim: (Tic T825)";
 };
 
 }  // namespace
