@@ -7,16 +7,37 @@ namespace vam::device {
 
 namespace {
 constexpr double encoder_sigma_deg = 1e-4;
-constexpr double unequal = 1.0 / 3;  // of the shortest round trip
-constexpr long enough = 10;          // samples, after which the shortest is taken as known
+constexpr double unequal = 1.0 / 3;    // of the shortest round trip
+constexpr long enough = 10;            // samples, after which the shortest is taken as known
+constexpr double slowest_deg_s = 0.5;  // below, offsets are noise
+constexpr double ripple_s = 3e-3;      // what else moves the angle off a line, in time
 }  // namespace
 
 AngleSample RoundTrips::timed(const StageSample& sample, double speed_deg_s) {
   const double taken_s = sample.t1_s - sample.t0_s;
   shortest_s_ = std::min(shortest_s_, taken_s);
-  const double spread_s = ++seen_ <= enough ? taken_s : std::hypot(taken_s - shortest_s_, unequal * shortest_s_);
+  beyond_s_ = taken_s - shortest_s_;
+  // Even over both ways where the share is 0, of one way alone where it is 0.5.
+  const double unknown = std::sqrt(1 - 4 * share_ * share_);
+  const double spread_s = ++seen_ <= enough ? taken_s : std::hypot(unknown * beyond_s_, unequal * shortest_s_);
   const double blur_deg = std::abs(speed_deg_s) * spread_s / std::sqrt(12.0);
-  return {0.5 * (sample.t0_s + sample.t1_s), sample.angle_deg, std::hypot(blur_deg, encoder_sigma_deg)};
+  const double t_s = 0.5 * (sample.t0_s + sample.t1_s) + share_ * beyond_s_;
+  return {t_s, sample.angle_deg, std::hypot(blur_deg, encoder_sigma_deg)};
+}
+
+// The slope of the offsets in time, by least squares about their means, with the prior that every share is as likely.
+void RoundTrips::learn(double off_deg, double speed_deg_s) {
+  if (seen_ <= enough || std::abs(speed_deg_s) < slowest_deg_s) return;
+  const double off_s = off_deg / speed_deg_s + share_ * beyond_s_;  // from the middle
+  ++count_;
+  sum_ += beyond_s_;
+  sum_off_ += off_s;
+  squares_ += beyond_s_ * beyond_s_;
+  products_ += beyond_s_ * off_s;
+  const double prior = 12 * ripple_s * ripple_s;
+  const double slope = (products_ - sum_ * sum_off_ / count_) / (squares_ - sum_ * sum_ / count_ + prior);
+  constexpr double most = 0.49;  // something is always unknown
+  share_ = std::clamp(slope, -most, most);
 }
 
 void AngleFit::add(const AngleSample& sample) {
@@ -77,6 +98,10 @@ double AngleFit::speed_deg_s() const {
 double AngleFit::speed_sigma_deg_s() const {
   solve();
   return std::sqrt(slope_variance_);
+}
+
+void learn(RoundTrips& trips, const AngleFit& fit, const AngleSample& now) {
+  if (fit.ready()) trips.learn(now.angle_deg - fit.at(now.t_s).angle_deg, fit.speed_deg_s());
 }
 
 }  // namespace vam::device

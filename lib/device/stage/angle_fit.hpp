@@ -10,18 +10,24 @@
 
 namespace vam::device {
 
-/// The times of a stage's answers: the middle of question and answer. What a round trip takes beyond the shortest one
-/// may be lost on either way, so the moment is spread evenly over that (1/sqrt(12)), and over a third of the
-/// shortest, whose two ways may differ; of the first samples over the whole [physics §10]. Times the speed, and with
-/// the encoder's last digit, that is the uncertainty of the angle. A busy machine reads answers late, which moves the
-/// middle to one side: such samples count little beside the shortest round trips.
+/// The times of a stage's answers: the middle of question and answer, corrected. What a round trip takes beyond the
+/// shortest one is lost on either way, in a share that is learned: serial adapters and busy machines deliver answers
+/// late, and the angle is then older than the middle. The moment is uncertain by what is not known of that share, and
+/// by a third of the shortest, whose two ways may differ; of the first samples by the whole [physics §10]. Times the
+/// speed, and with the encoder's last digit, that is the uncertainty of the angle.
 class RoundTrips {
  public:
   [[nodiscard]] AngleSample timed(const StageSample& sample, double speed_deg_s);
+  /// The sample that was timed last differs by so much from the angle expected at that time.
+  void learn(double off_deg, double speed_deg_s);
+  /// Of the time beyond the shortest round trip: -0.5 where answers are late, 0.5 where questions are.
+  [[nodiscard]] double share() const { return share_; }
 
  private:
   long seen_ = 0;
   double shortest_s_ = std::numeric_limits<double>::infinity();
+  double beyond_s_ = 0, share_ = 0;
+  double count_ = 0, sum_ = 0, sum_off_ = 0, squares_ = 0, products_ = 0;  // of beyond_s_ and the offsets in time
 };
 
 /// Weighted least squares over the samples of the last window_s seconds.
@@ -44,5 +50,8 @@ class AngleFit {
   mutable bool solved_ = false;
   mutable double mean_t_s_ = 0, mean_deg_ = 0, slope_ = 0, slope_variance_ = 0, mean_variance_ = 0;
 };
+
+/// The times from the line so far; `now` is the sample timed last.
+void learn(RoundTrips& trips, const AngleFit& fit, const AngleSample& now);
 
 }  // namespace vam::device

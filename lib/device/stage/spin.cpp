@@ -132,6 +132,7 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
       require_moving(course, now, clock.now_s() - start_s);
     } else {
       require_on_line(fit, now);
+      learn(trips, fit, now);
       fit.add(now);
     }
     const bool ended = now.angle_deg >= 360.0 * plan.turns;

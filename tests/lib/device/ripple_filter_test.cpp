@@ -41,6 +41,7 @@ Errors print(double ripple, double jitter_s, int seed) {
   int covered = 0;
   double blank_s = 0.5;
   RoundTrips trips;
+  AngleFit line;
   for (double asked_s = 0.1; asked_s < end_s;) {
     const double taken_s = asked_s + delay_s(random);
     const double answered_s = taken_s + delay_s(random);
@@ -57,7 +58,10 @@ Errors print(double ripple, double jitter_s, int seed) {
     sample.angle_deg = at(taken_s);
     sample.t0_s = asked_s;
     sample.t1_s = answered_s;
-    fit.add(trips.timed(sample, 25));
+    const AngleSample now = trips.timed(sample, 25);
+    learn(trips, line, now);
+    line.add(now);
+    fit.add(now);
     asked_s = std::max(answered_s, asked_s + 0.01);
   }
   REQUIRE(errors.size() > 1000);
