@@ -39,13 +39,7 @@ optimize::StackSamples samples(const Scene& scene, const Options& options) {
 
 bool worthwhile(const model::Grid& grid) { return std::min(grid.nx, grid.ny) >= 2 * least_voxels && grid.nz > 1; }
 
-/// The level's own work.
-struct Level {
-  optimize::VolumeOutcome outcome;
-  std::vector<Image> images;
-};
-
-Level solve_level(const Inputs& in, const Scene& scene, Options options, std::optional<CoarseStart> before) {
+SolvedLevel solve_level(const Inputs& in, const Scene& scene, Options options, std::optional<CoarseStart> before) {
   optimize::VolumeTask task = make_task(scene, in, options);
   task.title += " at " + mm_text(scene.grid.voxel_mm);
   task.limits.patience = task.limits.early = 0;
@@ -57,11 +51,8 @@ Level solve_level(const Inputs& in, const Scene& scene, Options options, std::op
     task.raising.next = next_iterations;
     task.limits.iterations = task.raising.first + (options.shortest ? shortest_raises : raises) * next_iterations;
   }
-  Level level;
-  task.write = [&](int, const Image& image) { level.images.push_back(image); };
   task.interruption.pause = device::interrupted;
-  level.outcome = optimize::optimise(task, *make_light(scene, options));
-  return level;
+  return solved(task, scene, options);
 }
 
 /// What is refused at a coarser level is left to the finer one.
@@ -70,19 +61,31 @@ std::optional<CoarseStart> start_from_coarser(const Inputs& in, const Scene& fin
   const Scene scene = make_scene(in.target.front(), model::coarser(finer.printer), options);
   std::optional<CoarseStart> before = coarse_start(in, scene, options);
   if (device::interrupted()) return std::nullopt;
-  auto [outcome, images] = solve_level(in, scene, options, std::move(before));
+  return start_of(solve_level(in, scene, options, std::move(before)), scene, options, finer, finer_options);
+}
+
+}  // namespace
+
+SolvedLevel solved(optimize::VolumeTask& task, const Scene& scene, const Options& options) {
+  SolvedLevel level;
+  task.write = [&](int, const Image& image) { level.images.push_back(image); };
+  level.outcome = optimize::optimise(task, *make_light(scene, options));
+  return level;
+}
+
+std::optional<CoarseStart> start_of(SolvedLevel level, const Scene& scene, const Options& options, const Scene& finer,
+                                    const Options& finer_options) {
+  const optimize::VolumeOutcome& outcome = level.outcome;
   const model::DoseMetrics& m = outcome.metrics;
   if (outcome.stop == optimize::StopReason::interrupted || m.part == 0 || m.ver > most_wrong) return std::nullopt;
   note("vam-optimize: voxels of " + mm_text(scene.grid.voxel_mm) + ": process window " + format_number(m.pw, 2) +
        ", VER " + format_number(m.ver, 2) + " after " + std::to_string(outcome.iterations) + " iterations");
-  return CoarseStart{{std::move(images), samples(scene, options), samples(finer, finer_options)},
+  return CoarseStart{{std::move(level.images), samples(scene, options), samples(finer, finer_options)},
                      m.pw > 0 ? std::clamp(0.5 * m.pw, least_half_width, largest_half_width) : 0,
                      outcome.even,
                      outcome.eigenvalue,
                      outcome.max_intensity};
 }
-
-}  // namespace
 
 std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options) {
   if (!options.coarse_start || !worthwhile(in.grid())) return std::nullopt;

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "base/image.hpp"
 #include "optimize/run/prolongation.hpp"
+#include "optimize/run/volume.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
@@ -24,6 +27,17 @@ struct CoarseStart {
 /// small to be of use, or has no light that prints it, nearly; and after an interruption, for which
 /// device::interrupted() is to be asked.
 [[nodiscard]] std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options);
+
+/// A problem solved, with its projections.
+struct SolvedLevel {
+  optimize::VolumeOutcome outcome;
+  std::vector<Image> images;
+};
+[[nodiscard]] SolvedLevel solved(optimize::VolumeTask& task, const Scene& scene, const Options& options);
+
+/// The start of a finer level from one that is solved; none where that has no light that prints the part, nearly.
+[[nodiscard]] std::optional<CoarseStart> start_of(SolvedLevel level, const Scene& scene, const Options& options,
+                                                  const Scene& finer, const Options& finer_options);
 
 /// The task starts from it.
 void continue_from(CoarseStart start, optimize::VolumeTask& task, Options& options);

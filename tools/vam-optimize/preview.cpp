@@ -43,7 +43,7 @@ struct Level {
   Inputs own;            // none at the target's own resolution
   const Inputs* finest;  // the target's own
   Scene scene = {};
-  optimize::Unresolved unresolved = {};
+  optimize::Unresolved unresolved = {};  // of the coarser ones, once it is asked for
 
   [[nodiscard]] const Inputs& in() const { return own.target.empty() ? *finest : own; }
   [[nodiscard]] double updates() const { return static_cast<double>(scene.grid.size()) * options.angles; }
@@ -58,7 +58,6 @@ optimize::Unresolved unresolved_of(const io::SparseVolume& target) {
 Level coarser(const Level& fine) {
   Level coarse{2 * fine.pixels, model::coarser(fine.printer), coarser(fine.options), coarser(fine.in()), nullptr};
   coarse.scene = make_scene(coarse.own.target.front(), coarse.printer, coarse.options);
-  coarse.unresolved = unresolved_of(coarse.own.target.front());
   return coarse;
 }
 
@@ -72,14 +71,16 @@ Level level_of(const model::Printer& printer, const Inputs& in, const Options& o
     if (!can_be_coarser(levels.back().in().grid())) break;
     levels.push_back(coarser(levels.back()));
   }
-  while (levels.size() > 1 && levels.back().unresolved.share() > most_unresolved &&
-         levels[levels.size() - 2].updates() <= most_updates) {
-    levels.pop_back();
+  for (; levels.size() > 1; levels.pop_back()) {
+    Level& level = levels.back();
+    level.unresolved = unresolved_of(level.own.target.front());
+    const bool finer_is_quick = levels[levels.size() - 2].updates() <= most_updates;
+    if (level.unresolved.share() <= most_unresolved || !finer_is_quick) break;
   }
   return std::move(levels.back());
 }
 
-optimize::VolumeOutcome solved(Level& level, int proof) {
+SolvedLevel solved(Level& level, int proof, std::optional<CoarseStart> start) {
   const Scene& scene = level.scene;
   optimize::VolumeTask task = make_task(scene, level.in(), level.options);
   if (level.pixels == 1) {
@@ -89,11 +90,9 @@ optimize::VolumeOutcome solved(Level& level, int proof) {
   task.limits.iterations = std::min(task.limits.iterations, most_iterations);
   task.limits.at_least = std::min(task.limits.iterations, least_iterations);
   task.certify = proof;
-  task.write = [](int, const Image&) {};
-  if (auto start = coarse_start(level.in(), scene, level.options)) {
-    continue_from(std::move(*start), task, level.options);
-  }
-  return optimize::optimise(task, *make_light(scene, level.options));
+  if (!start) start = coarse_start(level.in(), scene, level.options);
+  if (start) continue_from(std::move(*start), task, level.options);
+  return solved(task, scene, level.options);
 }
 
 /// In the print.
@@ -159,17 +158,29 @@ int proof_on(const Level& level) {
   return static_cast<int>(std::clamp(proof_updates / level.updates(), 1.0, 1.0 * proof_iterations));
 }
 
-/// The least max_V x / min_G x of any light, on coarser voxels; 0: not known.
-double least_on(Level coarse) {
-  return coarse.unresolved.share() > hopeless ? 0 : solved(coarse, proof_on(coarse)).certificate->least;
+/// What coarser voxels tell of this level.
+struct FromCoarser {
+  double least = 0;  // max_V x / min_G x of any light; 0: not known
+  std::optional<CoarseStart> start = {};
+};
+
+FromCoarser from_coarser(const Level& level) {
+  Level coarse = coarser(level);
+  if (unresolved_of(coarse.own.target.front()).share() > hopeless) return {};
+  SolvedLevel found = solved(coarse, proof_on(coarse), {});
+  const double least = found.outcome.certificate->least;
+  return {least, start_of(std::move(found), coarse.scene, coarse.options, level.scene, level.options)};
 }
 
 Seen see(Level level) {
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
   warn_of(level.scene, level.in().target.front(), level.options);
-  const optimize::VolumeOutcome outcome = solved(level, can_be_coarser(level.in().grid()) ? 0 : proof_on(level));
+  const bool has_coarser = can_be_coarser(level.in().grid());
+  FromCoarser below = has_coarser ? from_coarser(level) : FromCoarser{};
+  const optimize::VolumeOutcome outcome =
+      solved(level, has_coarser ? 0 : proof_on(level), std::move(below.start)).outcome;
   optimize::require_light(outcome, io::input_name(level.options.input));
-  const double least = outcome.certificate ? outcome.certificate->least : least_on(coarser(level));
+  const double least = outcome.certificate ? outcome.certificate->least : below.least;
   Seen seen{answer_of(level, outcome.metrics, least), outcome.metrics, least};
   seen.place = place_of(outcome, level.scene);
   seen.plan = exposure_of(outcome.metrics, outcome.peak_intensity, level.printer, {}, level.options);
