@@ -5,7 +5,9 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/log.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
@@ -73,9 +75,11 @@ void run(const cli::App& app, Options& options) {
   job.info.history.push_back(app.history());
   if (projector) job.info.extra["vam:printer"] = io::printer_settings(printer);
   io::StackWriter out(options.output, job.info, options.stack);
+  Progress progress("resampling", in.info().count);
   io::transform(in, out, 16, [&](const std::vector<Image>& slices) {
     std::vector<Image> resampled(slices.size());
     optics::resample(job.plan, slices, resampled);
+    progress.tick(count_of(slices));
     return resampled;
   });
   out.commit();

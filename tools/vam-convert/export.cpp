@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "io/array/array_writer.hpp"
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
@@ -15,10 +16,12 @@ void export_volume(const Options& options) {
   const model::Grid& grid = volume.grid();
   io::ArrayWriter out(options.output, {grid.nz, grid.ny, grid.nx});
   std::vector<float> slices(grid.slice_size() * slab);
+  Progress progress("converting", grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
     volume.read_slices(k, count, slices.data());
     out.write(slices.data(), grid.slice_size() * static_cast<std::size_t>(count));
+    progress.tick(count);
   }
   out.commit();
 }
@@ -27,7 +30,8 @@ void export_stack(const Options& options) {
   io::StackReader in(options.input);
   io::ArrayWriter out(options.output, {in.info().count, in.info().height, in.info().width});
   Image image;
-  for (model::ImageInfo about; in.next(image, about);) out.write(image.values.data(), image.size());
+  Progress progress("converting", in.info().count);
+  for (model::ImageInfo about; in.next(image, about); progress.tick()) out.write(image.values.data(), image.size());
   out.commit();
 }
 

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/log.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/printer_file.hpp"
@@ -189,9 +190,11 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, frames), options.stack);
   Image slice;
   float least = 0;
+  Progress progress("converting", heights.count);
   while (resliced.next(slice)) {
     least = std::min(least, *std::min_element(slice.values.begin(), slice.values.end()));
     out.write(shifted(one_turn(slice, plan), plan, io::input_name(options.input)));
+    progress.tick();
   }
   warn_of_negative(options, least);
   warn_of_light(options, resliced.left_out());

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/progress.hpp"
 #include "io/array/array_reader.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
@@ -39,6 +40,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   io::SparseVolume volume(options.grid.empty() ? "target" : options.grid, grid);
   std::vector<float> slices;
   Image image;
+  Progress progress("converting", grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
     slices.clear();
     const int count = std::min(slab, grid.nz - k);
@@ -50,6 +52,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
       slices.insert(slices.end(), image.values.begin(), image.values.end());
     }
     volume.write_slices(k, count, slices.data());
+    progress.tick(count);
   }
   io::require_usable(options.input, volume, io::TargetKind::grey);
   volume.units = options.units;
