@@ -80,7 +80,9 @@ void run(const cli::App& app, Options& options) {
     beginning.keep();
     return;
   }
-  if (!options.demands.grey) optimize::require_light(outcome, subject);  // whose figures are misses, not doses
+  if (!options.demands.grey) {  // whose figures are misses, not doses
+    optimize::require_light(outcome, subject, task.source.band_px);
+  }
   sink.finish();
   sink.require_light(outcome.peak_intensity);
   if (options.bits) {

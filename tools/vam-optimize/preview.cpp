@@ -179,7 +179,8 @@ Seen see(Level level) {
   FromCoarser below = has_coarser ? from_coarser(level) : FromCoarser{};
   const optimize::VolumeOutcome outcome =
       solved(level, has_coarser ? 0 : proof_on(level), std::move(below.start)).outcome;
-  optimize::require_light(outcome, io::input_name(level.options.input));
+  optimize::require_light(outcome, io::input_name(level.options.input),
+                          level.options.surface_margin_mm / level.in().grid().voxel_mm);
   const double least = outcome.certificate ? outcome.certificate->least : below.least;
   Seen seen{answer_of(level, outcome.metrics, least), outcome.metrics, least};
   seen.place = place_of(outcome, level.scene);

@@ -38,10 +38,15 @@ void require_printable(const VolumeTask& task, light::Shape shape, const std::st
                                "); use smaller voxels or thicken the part"};
 }
 
-void require_light(const VolumeOutcome& outcome, const std::string& subject) {
+void require_light(const VolumeOutcome& outcome, const std::string& subject, double band_px) {
   if (outcome.metrics.part == 0) {
     throw Error{Fault::data, subject + ": no part voxel is constrained (" + std::to_string(outcome.dark_part_voxels) +
                                  " are in an insert's shadow); check inserts, weights and tolerances"};
+  }
+  if (outcome.metrics.max_part <= 0 && band_px > 0) {
+    throw Error{Fault::data, subject + ": no light reaches the part: hardly any of it is more than " +
+                                 format_number(band_px, 3) +
+                                 " voxels from its surface; reduce the margin left unconstrained there"};
   }
   if (outcome.metrics.max_part <= 0) {
     throw Error{Fault::data, subject +

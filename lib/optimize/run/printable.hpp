@@ -11,8 +11,8 @@ namespace vam::optimize {
 /// (append). Empty targets are left to check().
 void require_printable(const VolumeTask& task, light::Shape shape, const std::string& subject);
 
-/// Throws Fault::data when no voxel was asked to be part, or when none of these got light. Not for grey targets, whose
-/// figures are not doses.
-void require_light(const VolumeOutcome& outcome, const std::string& subject);
+/// Throws Fault::data when no voxel was asked to be part, or when none of these got light, with the band about the
+/// surface that is unconstrained (VolumeSource::band_px). Not for grey targets, whose figures are not doses.
+void require_light(const VolumeOutcome& outcome, const std::string& subject, double band_px = 0);
 
 }  // namespace vam::optimize

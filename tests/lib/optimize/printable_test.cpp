@@ -51,6 +51,8 @@ TEST_CASE("unconstrained or unexposed parts are refused") {
                        doctest::Contains("part.vdb: no part voxel is constrained (12 are"), Error);
   outcome.metrics.part = 100;
   CHECK_THROWS_WITH_AS(require_light(outcome, "part.vdb"), doctest::Contains("no light reaches the part"), Error);
+  CHECK_THROWS_WITH_AS(require_light(outcome, "part.vdb", 1.25),
+                       doctest::Contains("more than 1.25 voxels from its surface"), Error);
   outcome.metrics.max_part = 0.9;
   CHECK_NOTHROW(require_light(outcome, "part.vdb"));
 }
