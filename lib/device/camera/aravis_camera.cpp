@@ -22,6 +22,7 @@
 #include "device/camera/private/aravis_problem.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
+#include "device/camera/private/read_back.hpp"
 #include "device/os/identity.hpp"
 #include "device/os/interrupt.hpp"
 
@@ -180,9 +181,7 @@ class AravisCamera final : public Camera {
   }
 
   void same(const std::string& what, double wanted, double got, double grain) const {
-    if (std::abs(wanted - got) <= 0.01 * std::abs(wanted) + grain) return;
-    throw Error{Fault::protocol, name_ + ": " + what + " reads back as " + format_number(got) + " instead of " +
-                                     format_number(wanted) + "; choose a supported value"};
+    require_read_back(name_ + ": " + what, wanted, got, grain);
   }
 
   void choose_format() {

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "device/camera/private/aravis_problem.hpp"
+#include "device/camera/private/read_back.hpp"
 
 namespace vam::device {
 
@@ -58,10 +59,7 @@ class Levels {
     if (problem.there()) throw Error{Fault::protocol, name_ + ": " + what + ": " + problem.text()};
     const double got = read();
     if (problem.there()) throw Error{Fault::protocol, name_ + ": " + what + ": " + problem.text()};
-    if (wanted && std::abs(*wanted - got) > 0.01 * std::abs(*wanted) + step) {
-      throw Error{Fault::protocol, name_ + ": " + what + " reads back as " + format_number(got) + " instead of " +
-                                       format_number(*wanted) + "; choose a supported value"};
-    }
+    if (wanted) require_read_back(name_ + ": " + what, *wanted, got, step);
     return got;
   }
 

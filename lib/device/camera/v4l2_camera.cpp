@@ -21,6 +21,7 @@
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
+#include "device/camera/private/read_back.hpp"
 #include "device/os/interrupt.hpp"
 
 namespace vam::device {
@@ -273,9 +274,7 @@ class V4l2Camera final : public Camera {
   }
 
   void check(const std::string& what, double wanted, double got, double grain) const {
-    if (std::abs(wanted - got) <= 0.01 * std::abs(wanted) + grain) return;
-    throw Error{Fault::protocol, path_ + ": the " + what + " reads back as " + format_number(got) + " instead of " +
-                                     format_number(wanted) + "; choose a supported value"};
+    require_read_back(path_ + ": the " + what, wanted, got, grain);
   }
 
   void map_buffers(int count) {
