@@ -1,13 +1,12 @@
 // vam-sinogram: the projections of a part, plain, filtered or exponential.
 #include <algorithm>
-#include <future>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
 #include "io/exr/stack.hpp"
+#include "io/exr/stack_batches.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
@@ -68,20 +67,14 @@ void run(const cli::App& app, const Options& options) {
       for (const Slab& slab : slabs) raise = std::max(raise, -tomo::lowest(slab));
     });
   }
-  std::future<void> writing;
+  io::WriteBehind writer(out);
   for_each_pass(volume, spec, [&](std::vector<Slab>& slabs, int count) {
     if (options.negative != "keep") {
       for (Slab& slab : slabs) tomo::raise_and_clip(slab, raise, 0);
     }
-    // Copied, not moved: where no thread is to be had, std::async takes it a second time.
-    const auto images = std::make_shared<const std::vector<Image>>(sinogram_tool::unpacked(slabs, count));
-    const auto write = [&out, images] {
-      for (const Image& image : *images) out.write(image);
-    };
-    if (writing.valid()) writing.get();
-    writing = std::async(std::launch::async | std::launch::deferred, write);
+    writer.put(sinogram_tool::unpacked(slabs, count));
   });
-  if (writing.valid()) writing.get();
+  writer.finish();
   out.commit();
 }
 

@@ -30,20 +30,26 @@ std::vector<Image> ReadAhead::next() {
   return images;
 }
 
+void WriteBehind::put(std::vector<Image> images) {
+  // Copied, not moved: where no thread is to be had, std::async takes it a second time.
+  const auto held = std::make_shared<const std::vector<Image>>(std::move(images));
+  const auto write = [&writer = writer_, held] {
+    for (const Image& image : *held) writer.write(image);
+  };
+  finish();
+  writing_ = std::async(std::launch::async | std::launch::deferred, write);
+}
+
+void WriteBehind::finish() {
+  if (writing_.valid()) writing_.get();
+}
+
 void transform(StackReader& in, StackWriter& out, int batch,
                const std::function<std::vector<Image>(const std::vector<Image>&)>& work) {
   ReadAhead reader(in, batch);
-  std::future<void> writing;
-  for (std::vector<Image> images = reader.next(); !images.empty(); images = reader.next()) {
-    // Copied, not moved: where no thread is to be had, std::async takes it a second time.
-    const auto results = std::make_shared<const std::vector<Image>>(work(images));
-    const auto write = [&out, results] {
-      for (const Image& image : *results) out.write(image);
-    };
-    if (writing.valid()) writing.get();
-    writing = std::async(std::launch::async | std::launch::deferred, write);
-  }
-  if (writing.valid()) writing.get();
+  WriteBehind writer(out);
+  for (std::vector<Image> images = reader.next(); !images.empty(); images = reader.next()) writer.put(work(images));
+  writer.finish();
 }
 
 }  // namespace vam::io

@@ -27,6 +27,19 @@ class ReadAhead {
   std::future<std::vector<Image>> ahead_;
 };
 
+/// Writes batches of images on a thread of its own while the next one is made. finish() before the writer's commit.
+class WriteBehind {
+ public:
+  explicit WriteBehind(StackWriter& writer) : writer_(writer) {}
+  /// Waits for the batch before. Throws what StackWriter::write throws, of that batch.
+  void put(std::vector<Image> images);
+  void finish();
+
+ private:
+  StackWriter& writer_;
+  std::future<void> writing_;
+};
+
 /// out = work(in) for all images, in order, `batch` at a time; memory for at most five batches. work returns as many
 /// images as it got. The caller commits.
 void transform(StackReader& in, StackWriter& out, int batch,
