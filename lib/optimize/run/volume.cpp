@@ -237,14 +237,7 @@ class VolumeRun {
 
   void keep(Archive& to, Work& work) {
     begin_open(to);
-    ledger_.exchange(to);
-    to(even_.mean);
-    to(even_.largest);
-    to(max_intensity_);
-    exchange(to, front_);
-    work.search.exchange(to);
-    work.exchange(to);
-    to.seal();
+    exchange_open(to, work);
   }
 
   /// Finished passes are handed on as if they had just been computed; the open one is taken up.
@@ -254,15 +247,20 @@ class VolumeRun {
       if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, *images);
       finished_.take(std::move(*images));
     }
-    ledger_.exchange(from);
-    from(even_.mean);
-    from(even_.largest);
-    from(max_intensity_);
-    exchange(from, front_);
-    work.search.exchange(from);
-    work.method = task_.make(work.search.max_intensity);
-    work.exchange(from);
-    from.seal();
+    exchange_open(from, work);
+  }
+
+  /// The pass that is open, and what the ended ones left behind.
+  void exchange_open(Archive& archive, Work& work) {
+    ledger_.exchange(archive);
+    archive(even_.mean);
+    archive(even_.largest);
+    archive(max_intensity_);
+    exchange(archive, front_);
+    work.search.exchange(archive);
+    if (!work.method) work.method = task_.make(work.search.max_intensity);
+    work.exchange(archive);
+    archive.seal();
   }
 
   const VolumeTask& task_;
