@@ -112,19 +112,18 @@ void declare_camera(cli::App& app, Options& o) {
              "Image or stack without a print (dark, or of the vial before printing); its mean is subtracted.")
       .reads();
   app.option("--flat", "FILE", o.flat,
-             "Image or stack of a uniform scene; views are divided by it after dark subtraction. Default: camera.flat.")
-      .reads();
+             "Image or stack of a uniform scene; views are divided by it after dark subtraction.")
+      .reads()
+      .default_is("camera.flat");
   app.option("--binning", "N", o.binning, {1, 16},
              "Binning of the recorded views: the mean of N x N pixels, in addition to the camera's binning.");
-  app.option("--pixel", "MM", o.pixel_mm, cli::positive,
-             "Pixel pitch of the frames at the axis, before --binning. Default: as stated in the stack, else "
-             "camera.pixel_mm.");
-  app.option("--axis-column", "PX", o.axis_column, cli::any,
-             "Column of the rotation axis, before --binning. Default: camera.axis_column, else found in the views.")
+  app.option("--pixel", "MM", o.pixel_mm, cli::positive, "Pixel pitch of the frames at the axis, before --binning.")
+      .default_is("as stated in the stack, else camera.pixel_mm");
+  app.option("--axis-column", "PX", o.axis_column, cli::any, "Column of the rotation axis, before --binning.")
+      .default_is("camera.axis_column, else found in the views")
       .was("--axis");
-  app.option(
-      "--tilt", "DEG", o.tilt_deg, {-30, 30},
-      "Tilt of the axis, positive with its lower end to the right. Default: camera.tilt_deg, else found in the views.");
+  app.option("--tilt", "DEG", o.tilt_deg, {-30, 30}, "Tilt of the axis, positive with its lower end to the right.")
+      .default_is("camera.tilt_deg, else found in the views");
 }
 
 void declare_reconstruction(cli::App& app, Options& o) {
@@ -155,7 +154,8 @@ void declare_print(cli::App& app, Options& o) {
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin with the gelation threshold I_p.")
       .reads();
   app.option("--min-body", "MM3", o.pieces_mm3, cli::non_negative,
-             "Minimum volume of a body that belongs to the print. Default: 1 % of the largest body's volume.")
+             "Minimum volume of a body that belongs to the print.")
+      .default_is("1 % of the largest body's volume")
       .was("--pieces");
   app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (" + join(io::written_mesh_endings(), " or ") + ").")
       .writes(io::written_mesh_endings())

@@ -8,20 +8,20 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "model/dose_metrics.hpp"
 
 namespace vam::plot {
 
 namespace {
 
 constexpr int directions = 48;
-constexpr float opaque = 0.5F;  // as the light sees it
 
 /// One slice of the insert, x fastest.
 struct InsertSlice {
   int width;
   int height;
   const float* values;
-  [[nodiscard]] bool hides(int x, int y) const { return values[flat_index(y, width, x)] >= opaque; }
+  [[nodiscard]] bool hides(int x, int y) const { return model::half_covered(values[flat_index(y, width, x)]); }
 };
 
 bool is_hidden(const InsertSlice& slice, int x, int y, double angle) {
@@ -50,7 +50,7 @@ Image axial_shadow(const io::SparseVolume& insert, int k) {
   insert.read_slices(k, 1, values.data());
   const InsertSlice slice{grid.nx, grid.ny, values.data()};
   Image shadow(grid.nx, grid.ny);
-  if (std::none_of(values.begin(), values.end(), [](float value) { return value >= opaque; })) return shadow;
+  if (std::none_of(values.begin(), values.end(), model::half_covered)) return shadow;
   parallel_for(grid.ny, [&](int row) {
     for (int x = 0; x < grid.nx; ++x) shadow(x, row) = hidden_share(slice, x, grid.ny - 1 - row);
   });
@@ -64,7 +64,7 @@ Image upright_shadow(const io::SparseVolume& insert, Plane plane, int index) {
   parallel_for(grid.nz, [&](int row) {
     std::vector<float> values(grid.slice_size());
     insert.read_slices(grid.nz - 1 - row, 1, values.data());
-    if (std::none_of(values.begin(), values.end(), [](float value) { return value >= opaque; })) return;
+    if (std::none_of(values.begin(), values.end(), model::half_covered)) return;
     const InsertSlice slice{grid.nx, grid.ny, values.data()};
     for (int at = 0; at < shadow.width; ++at) {
       shadow(at, row) = coronal ? hidden_share(slice, at, index) : hidden_share(slice, index, at);

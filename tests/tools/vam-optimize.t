@@ -211,7 +211,7 @@ holds "more intensity has a wider window" "$(sed -n '$p' front.csv | cut -d, -f4
 quiet "of a resin that is not known" vam-optimize --angles 60 --tradeoff plain.csv coarse.vdb -o front.exr
 is "there are no seconds" "$(sed 1d plain.csv | cut -d, -f2,3 | sort -u)" ,
 vam-slice --shape cylinder:diameter=4,height=2 --voxel 0.8 -o tiny.vdb
-quiet "a front as a picture, with tolerances" vam-optimize --angles 12 --robust lamp=3% --yield-printers 0 $resin \
+quiet "a front as an image, with tolerances" vam-optimize --angles 12 --robust lamp=3% --yield-printers 0 $resin \
   --tradeoff front.png tiny.vdb -o front.exr
 is "it is an image" "$(head -c 8 front.png | od -An -c | tr -d ' ')" '211PNG\r\n032\n'
 fails 64 'front.txt' vam-optimize --tradeoff front.txt coarse.vdb -o out.exr

@@ -103,8 +103,8 @@ void declare_stopping(cli::App& app, Options& options) {
   app.option(
       "--patience", "N", options.limits.patience, {0, 1000000},
       "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it. Where no goal is met, "
-      "the result is that of the iteration with the largest IoU + PW (with --robust, and with apg while it "
-      "asks for the surface, that of the last one), with 0 that of the last one.");
+      "the result is that of the iteration with the largest IoU + PW (with --robust, and with apg while its "
+      "loss constrains the surface, that of the last one), with 0 that of the last one.");
   app.not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
   app.flag(

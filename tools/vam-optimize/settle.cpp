@@ -109,8 +109,9 @@ void refuse_beside_preview(const cli::App& app, const Options& options) {
                 "any machine; omit it"};
   }
   if (!options.preview) return;
-  for (const char* flag : {"--output", "--init", "--poses", "--helix", "--wobble-record", "--grey-target", "--robust",
-                           "--checkpoint", "--trace", "--tradeoff", "--certify", "--bits", "--budget"}) {
+  for (const char* flag :
+       {"--output", "--init", "--poses", "--helix", "--wobble-record", "--grey-target", "--robust", "--checkpoint",
+        "--trace", "--tradeoff", "--certify", "--bits", "--budget", "--half", "--compression"}) {
     if (app.given(flag)) throw Error{Fault::usage, std::string("--preview: does not apply to ") + flag + "; omit it"};
   }
 }

@@ -9,7 +9,7 @@ namespace vam::plan_tool {
 cli::Manual manual() {
   return {
       "vam-plan",
-      "say in seconds whether and how a part can be printed",
+      "estimate within seconds whether and how a part can be printed",
       {"vam-plan reads a mesh and answers, before anything is sliced: does the part fit into what the printer can "
        "write, and if not, at which scale; how many slices it has; how thick its thinnest walls are; how much an "
        "index-matching bath would help; whether it will print, how long that takes, and how wide the process window "

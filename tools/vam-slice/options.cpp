@@ -26,7 +26,7 @@ void declare_placement(cli::App& app, Options& options) {
   app.flag("--fit-writable", options.placement.fit_writable,
            "Scale the part to fill the writable cylinder, within which resin is lit from all stage angles.");
   app.flag("--no-centre", options.no_centre,
-           "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
+           "Keep the origin of the file, instead of moving the centre of the bounding box to x = y = z = 0.");
   app.was("--no-center");
   app.option("--place", "MM|auto", options.place,
              "Vertical offset of the part from the height of the lens (projector.axis_row), in mm of the print, "

@@ -19,7 +19,7 @@ cli::Manual manual() {
        "they overlap, no "
        "threshold separates the part from its surroundings. Voxels cut by the surface and voxels outside the writable "
        "circle are excluded.",
-       "--cure-map shows what prints at a threshold: cured as wanted (grey), missing (blue) and overcured (vermilion). "
+       "--cure-map shows what prints at a threshold: correctly cured (grey), missing (blue) and overcured (vermilion). "
        "--render shows the same in three dimensions, the print beside the target; without --target it shows the "
        "surface of any grid. With an output in .mp4 it is a movie: the print as it grows, from where the first resin "
        "gels to the end of the exposure, at a constant intensity. --compare shows two volumes beside each other in the "

@@ -11,7 +11,6 @@
 #include "base/stats/normal.hpp"
 #include "base/text.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
-#include "metrology/ost/ost.hpp"
 #include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"
 
