@@ -32,7 +32,7 @@ void declare_projections(cli::App& app, Options& options) {
       .form();
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pitch of the columns at the rotation axis.");
   app.default_is("projector.pixel_mm");
-  app.option("--slice-height", "MM", options.slice_height_mm, cli::positive, "Height of a slice.").was("--slice-pitch");
+  app.option("--slice-height", "MM", options.slice_height_mm, {1e-4, 5}, "Height of a slice.").was("--slice-pitch");
   app.default_is("that of the columns");
   app.option("--like", "FILE", options.like,
              "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer. vam-dose "

@@ -205,7 +205,7 @@ void declare(cli::App& app, ModelOptions& options) {
       .was("--part")
       .reads();
   add_part(app, options.part);
-  app.option("--slice-height", "UM", options.slice_um, cli::positive,
+  app.option("--slice-height", "UM", options.slice_um, {1, 10000},
              "Slice height of a folder of images without --target.")
       .was("--slice");
   app.group("Figure");

@@ -124,7 +124,7 @@ void declare(cli::App& app, SweepOptions& options) {
   app.option("--rung-heights", "SLICES,...", options.heights, 0,
              "Heights of the rungs of the ladder; each gap is as high as the next rung.")
       .was("--heights");
-  app.option("--slice-height", "UM", options.slice_um, cli::positive, "Slice height.").was("--slice");
+  app.option("--slice-height", "UM", options.slice_um, {1, 10000}, "Slice height.").was("--slice");
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
              "Gelation threshold D_c of the working curve.");
   app.default_is("resin.critical_dose_mj_cm3, else a fifth of the full-cure dose");

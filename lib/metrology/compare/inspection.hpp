@@ -31,7 +31,7 @@ struct SurfaceErrors {
 [[nodiscard]] double mean_edge_mm(const model::TriangleSoup& mesh);
 
 /// How a print was aligned, for what its errors do to the pose.
-struct Pose {
+struct AlignmentFacts {
   bool aligned = false;
   bool with_scale = false;
   double shrinkage_percent = 0;
@@ -43,7 +43,7 @@ struct Inspection {
   std::vector<solid::Foot> feet;  // nearest points of the design for distances.on_print, where there are regions
   std::vector<RegionPoints> regions;
   std::optional<double> tolerance_mm;
-  Pose pose;
+  AlignmentFacts pose;
 };
 [[nodiscard]] Inspection inspect(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
                                  const solid::Surface& design, int samples, const std::vector<Region>& regions);
