@@ -22,7 +22,8 @@ AngleSample RoundTrips::timed(const StageSample& sample, double speed_deg_s) {
   const double spread_s = ++seen_ <= enough ? taken_s : std::hypot(unknown * beyond_s_, unequal * shortest_s_);
   const double blur_deg = std::abs(speed_deg_s) * spread_s / std::sqrt(12.0);
   const double t_s = 0.5 * (sample.t0_s + sample.t1_s) + share_ * beyond_s_;
-  return {t_s, sample.angle_deg, std::hypot(blur_deg, encoder_sigma_deg)};
+  const double rounding_deg = std::max(sample.step_deg / std::sqrt(12.0), encoder_sigma_deg);
+  return {t_s, sample.angle_deg, std::hypot(blur_deg, rounding_deg)};
 }
 
 // The slope of the offsets in time, by least squares about their means, with the prior that every share is as likely.

@@ -14,7 +14,7 @@ namespace vam::device {
 /// shortest one is lost on either way, in a share that is learned: serial adapters and busy machines deliver answers
 /// late, and the angle is then older than the middle. The moment is uncertain by what is not known of that share, and
 /// by a third of the shortest, whose two ways may differ; of the first samples by the whole [physics §10]. Times the
-/// speed, and with the encoder's last digit, that is the uncertainty of the angle.
+/// speed, and with the step of the reported angle, that is the uncertainty of the angle.
 class RoundTrips {
  public:
   [[nodiscard]] AngleSample timed(const StageSample& sample, double speed_deg_s);

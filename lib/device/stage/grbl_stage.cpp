@@ -123,6 +123,9 @@ class GrblStage final : public Stage {
     const std::string report = status();
     now.t1_s = clock_.now_s();
     now.angle_deg = position(report) + offset_deg_;
+    if (const auto steps = settings_.find("$" + std::to_string(100 + axis_)); steps != settings_.end()) {
+      now.step_deg = steps->second > 0 ? 1 / steps->second : 0;
+    }
     return now;
   }
 

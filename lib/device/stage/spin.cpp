@@ -116,6 +116,15 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
   const double start_s = clock.now_s();
   const double looks = std::ceil(plan.period_s / heartbeat_s);  // for every sample that is reported
   const double period_s = plan.period_s / looks;
+  const auto explained = [&](const auto& require) {  // what the controller knows of it comes with it
+    try {
+      require();
+    } catch (const Error& error) {
+      const auto problem = stage.fault();
+      if (!problem) throw;
+      throw Error{error.fault, std::string(error.what()) + "; the controller reports: " + *problem};
+    }
+  };
   RoundTrips trips;
   AngleFit fit;
   bool judged = false;
@@ -129,9 +138,9 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
     now.ramp = now.angle_deg < course.cruise_deg;
     if (now.angle_deg >= -judged_s * plan.speed_deg_s && !std::exchange(judged, true)) require_speed(plan, fit);
     if (now.ramp) {
-      require_moving(course, now, clock.now_s() - start_s);
+      explained([&] { require_moving(course, now, clock.now_s() - start_s); });
     } else {
-      require_on_line(fit, now);
+      explained([&] { require_on_line(fit, now); });
       learn(trips, fit, now);
       fit.add(now);
     }

@@ -28,6 +28,7 @@ struct StageSample {
   double angle_deg = 0;
   double t0_s = 0;
   double t1_s = 0;
+  double step_deg = 0;  // multiples of which the controller reports; 0: far below any error
 };
 
 enum class Stop { smooth, abrupt };

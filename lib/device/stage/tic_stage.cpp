@@ -38,7 +38,8 @@ enum Offset {
   current_position = 0x22,
   current_velocity = 0x26
 };
-constexpr int state_normal = 10;  // the others are 0, 2, 4, 6 and 8
+constexpr int state_starting_up = 8;  // for up to 10 ms, until the current of the coils is steady
+constexpr int state_normal = 10;      // the others are 0, 2, 4 and 6
 constexpr int homing_active = 1 << 4;
 constexpr int position_uncertain = 1 << 1;
 constexpr int unused_flags = 0xE0;
@@ -99,8 +100,9 @@ class TicStage final : public Stage {
   }
 
   bool homed() override {
+    order(reset_command_timeout, 0);
     const auto [state, flags] = state_now();
-    if ((flags & homing_active) != 0 && state == state_normal) return false;
+    if ((flags & homing_active) != 0 && (state == state_normal || state == state_starting_up)) return false;
     if (const auto problem = fault()) throw Error{Fault::protocol, link_->name() + ": homing failed: " + *problem};
     if ((flags & position_uncertain) != 0)
       throw Error{Fault::protocol, link_->name() + ": homing ended without a limit switch"};
@@ -131,6 +133,7 @@ class TicStage final : public Stage {
     now.t0_s = clock_.now_s();
     now.angle_deg = variable(current_position) / steps_per_deg_;
     now.t1_s = clock_.now_s();
+    now.step_deg = 1 / std::abs(steps_per_deg_);
     order(reset_command_timeout, 0);
     return now;
   }

@@ -146,6 +146,7 @@ class ZaberStage final : public Stage {
     const double steps = number("get pos");
     now.t1_s = clock_.now_s();
     now.angle_deg = steps / settings_.steps_per_deg + offset_deg_;
+    now.step_deg = 1 / std::abs(settings_.steps_per_deg);
     return now;
   }
 

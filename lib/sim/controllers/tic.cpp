@@ -26,14 +26,16 @@ class SimTic final : public device::UsbLink {
     advance();
     refuse_if_spoilt();
     heard_s_ = clock_.now_s();
+    timed_out_ = false;
     const auto argument =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(index) << 16U | static_cast<std::uint32_t>(value));
     switch (request) {
       case 0x85:
+        if (!energized_) energized_s_ = clock_.now_s();
         energized_ = true;
         break;  // Energize
       case 0x83:
-        safe_start_ = false;
+        safe_start_ = violated_ = false;
         break;  // Exit safe start: motion is refused before
       case 0x8C:
         break;  // Reset command timeout, as every other command does, too
@@ -66,8 +68,7 @@ class SimTic final : public device::UsbLink {
   std::string control_in(int request, int, int index, int length) override {
     advance();
     if (request != 0xA1) throw Error{Fault::protocol, name_ + ": stalled request " + std::to_string(request)};
-    refuse_if_spoilt();
-    heard_s_ = clock_.now_s();
+    refuse_if_spoilt();  // "Get variable" is no command: the time-out goes on (section 5.4)
     std::string answer = packed(variable(index), length);
     if (spoils("garbage")) return std::string(answer.size(), '\x5A');
     if (spoils("truncated")) {  // as the link to a real one says
@@ -132,24 +133,32 @@ class SimTic final : public device::UsbLink {
   void advance() {
     const bool moved = motor_.moving();
     motor_.advance(std::min(clock_.now_s(), heard_s_ + settings_.command_timeout_s));
-    if (clock_.now_s() > heard_s_ + settings_.command_timeout_s) motor_.halt();
+    if (clock_.now_s() > heard_s_ + settings_.command_timeout_s && energized_) {
+      motor_.halt();
+      timed_out_ = safe_start_ = violated_ = true;  // a violation stays until "Exit safe start"
+      homing_ = false;                              // and the position stays uncertain
+    }
     motor_.advance(clock_.now_s());
     if (homing_ && !motor_.moving()) homing_ = uncertain_ = false;  // the limit switch
     if (moved && !motor_.moving()) note("standing");
   }
 
-  // Variable reference, by offset: operation state (2 de-energized, 4 soft error, 10 normal) and the flags after it,
-  // misc flags 1 (bits 0 energized, 1 position uncertain, 4 homing active), error status, planning mode, target
-  // position, max acceleration (microsteps per 100 s^2), current position, current velocity (microsteps per 10 000 s).
+  // For 10 ms after the motor is energized, until the current of its coils is steady (operation state 8).
+  [[nodiscard]] bool starts_up() const { return clock_.now_s() < energized_s_ + 0.01; }
+
+  // Variable reference, by offset: operation state (2 de-energized, 4 soft error, 8 starting up, 10 normal) and the
+  // flags after it, misc flags 1 (bits 0 energized, 1 position uncertain, 4 homing active), error status, planning
+  // mode, target position, max acceleration (microsteps per 100 s^2), current position, current velocity (microsteps
+  // per 10 000 s).
   std::int64_t variable(int offset) const {
     const auto steps = [&](double deg) { return std::llround(deg * settings_.steps_per_deg); };
     switch (offset) {
       case 0x00:
-        return (settings_.error_bits != 0 ? 4 : energized_ ? 10 : 2) | variable(0x01) << 8;
+        return (variable(0x02) != 0 ? 4 : !energized_ ? 2 : starts_up() ? 8 : 10) | variable(0x01) << 8;
       case 0x01:
         return (energized_ ? 1 : 0) | (uncertain_ ? 2 : 0) | (homing_ ? 16 : 0);
       case 0x02:
-        return settings_.error_bits;
+        return settings_.error_bits | (timed_out_ ? command_timeout_bit : 0) | (violated_ ? violation_bit : 0);
       case 0x09:
         return to_position_ ? 1 : 0;
       case 0x0A:
@@ -175,7 +184,9 @@ class SimTic final : public device::UsbLink {
   device::Clock& clock_;
   SimLog log_;
   SimMotor motor_;
-  double heard_s_ = 0;
+  static constexpr int command_timeout_bit = 1 << 6, violation_bit = 1 << 7;
+  double heard_s_ = 0, energized_s_ = -1;
+  bool timed_out_ = false, violated_ = false;
   int transfers_ = 0;
   bool energized_ = false;
   bool safe_start_ = true;

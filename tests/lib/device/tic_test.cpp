@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/tic_stage.hpp"
 #include "fault_of.hpp"
@@ -67,6 +69,48 @@ TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smoot
   lab.stage->start_move(90);
   halt(*lab.stage, lab.clock, Stop::abrupt);  // which may lose steps
   CHECK(fault_of(print) == Fault::data);
+}
+
+TEST_CASE("A Tic finds its switch, however long that takes") {
+  TicLab lab;
+  lab.stage->set_angle(240);  // 4 s at 60 deg/s, with a command time-out of 1 s
+  home(*lab.stage, lab.clock, 60);
+  CHECK(lab.stage->referenced());
+  CHECK(lab.stage->sample().angle_deg == 0);
+}
+
+TEST_CASE("A Tic that stops in a print says why") {
+  TicLab lab;
+  home(*lab.stage, lab.clock, 60);
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  bool late = false;
+  const auto hold_up = [&](const AngleSample& sample) {  // its command time-out
+    if (sample.angle_deg > 90 && !std::exchange(late, true)) lab.clock.sleep_until(lab.clock.now_s() + 4);
+  };
+  CHECK(message_of([&] {
+          spin(*lab.stage, lab.clock, plan, hold_up);
+        }).find("the controller reports: safe start violation") != std::string::npos);
+}
+
+TEST_CASE("A Tic's angles are known to a step") {
+  SimTicSettings sim;
+  sim.steps_per_deg = 8.889;
+  TicLab lab(sim, 8.889);
+  home(*lab.stage, lab.clock, 60);
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  RippleFilter fit;
+  std::vector<double> off_deg;
+  spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) {
+    if (sample.ramp) return;
+    if (fit.ready() && sample.angle_deg > 0)
+      off_deg.push_back(std::abs(fit.at(sample.t_s).angle_deg - sample.angle_deg));
+    fit.add(sample);
+  });
+  std::sort(off_deg.begin(), off_deg.end());
+  REQUIRE(off_deg.size() > 200);
+  CHECK(off_deg[off_deg.size() * 99 / 100] < 1 / 8.889);  // half a step, and the line's own error
 }
 
 TEST_CASE("Tic stops after its command time-out") {
