@@ -2,8 +2,8 @@
 // the screens eDP-1 (on, by CRTC 31), HDMI-A-1 (64 x 48 at 60 Hz, off) and HDMI-A-2 (nothing plugged in).
 // $FAKE_DRM is a folder: "log" receives a JSON line for every image with the vertical blank at which it is on, "memory"
 // is the card's. $FAKE_DRM_FAULT=KIND[:N] spoils something, at the N-th page flip (buffer for no-memory) and after it:
-// not-master, no-memory, no-mode, gamma (stays as it is), limited
-// (range of RGB stays as it is), no-properties (the connector has none), busy, lost (to another master), gone, silent (no event), late
+// not-master, no-memory, no-mode, gamma (stays as it is), interlaced (the first two modes, preferred), limited
+// (range of RGB stays as it is), limited-only (and has no other), taken (all CRTCs), no-properties (the connector has none), busy, lost (to another master), gone, silent (no event), late
 // (the event comes after 0.3 s), skip (every N-th flip is one blank late).
 #define _GNU_SOURCE
 #include <errno.h>
@@ -116,7 +116,12 @@ static struct drm_mode_modeinfo mode_of(uint16_t columns, uint16_t rows, uint32_
 static int connector(struct drm_mode_get_connector *about) {
   const uint32_t id = about->connector_id;
   const uint32_t encoder = ENCODER + id - EDP;
-  const struct drm_mode_modeinfo modes[2] = {mode_of(32, 24, 0), mode_of(COLUMNS, ROWS, DRM_MODE_TYPE_PREFERRED)};
+  struct drm_mode_modeinfo modes[2] = {mode_of(32, 24, 0), mode_of(COLUMNS, ROWS, DRM_MODE_TYPE_PREFERRED)};
+  if (fault("interlaced") != 0) {
+    modes[0] = mode_of(COLUMNS, ROWS, DRM_MODE_TYPE_PREFERRED);
+    modes[0].flags = DRM_MODE_FLAG_INTERLACE;
+    modes[1].type = 0;
+  }
   const uint32_t have = id == EMPTY ? 0 : 2;
   if (about->count_modes >= have && have > 0) memcpy((void *)(uintptr_t)about->modes_ptr, modes, sizeof modes);
   about->count_modes = have;
@@ -196,7 +201,8 @@ static int list_properties(struct drm_mode_obj_get_properties *all) {
 }
 
 static int describe_property(struct drm_mode_get_property *about) {
-  static const struct drm_mode_property_enum ranges[] = {{0, "Automatic"}, {1, "Full"}, {2, "Limited 16:235"}};
+  struct drm_mode_property_enum ranges[] = {{0, "Automatic"}, {1, "Full"}, {2, "Limited 16:235"}};
+  if (fault("limited-only") != 0) ranges[1] = ranges[2];
   static const uint64_t bits[] = {6, 12};
   const int broadcast = about->prop_id == BROADCAST;
   strcpy(about->name, broadcast ? "Broadcast RGB" : "max bpc");
@@ -250,7 +256,7 @@ static int answer(unsigned long request, void *argument) {
       struct drm_mode_get_encoder *encoder = argument;
       if (encoder->encoder_id < ENCODER) return refuse(ENOENT);
       encoder->crtc_id = encoder->encoder_id == ENCODER ? CRTC : 0;
-      encoder->possible_crtcs = 3;
+      encoder->possible_crtcs = fault("taken") != 0 ? 1 : 3;
       return 0;
     }
     case DRM_IOCTL_MODE_GETCRTC:
@@ -286,8 +292,9 @@ static int answer(unsigned long request, void *argument) {
       const struct drm_mode_crtc *crtc = argument;
       if (fault("no-mode") != 0) return refuse(EINVAL);
       if (spoils("lost", card->flips)) return refuse(EACCES);
-      note(now_s(), "\"event\":\"mode\",\"framebuffer\":%u,\"crtc\":%u,\"connector\":%u,\"columns\":%u,\"shade\":\"%s\"",
-           crtc->fb_id, crtc->crtc_id, *(const uint32_t *)(uintptr_t)crtc->set_connectors_ptr, crtc->mode.hdisplay, shade(crtc->fb_id));
+      note(now_s(), "\"event\":\"mode\",\"framebuffer\":%u,\"crtc\":%u,\"connector\":%u,\"columns\":%u,\"interlaced\":%d,\"shade\":\"%s\"",
+           crtc->fb_id, crtc->crtc_id, *(const uint32_t *)(uintptr_t)crtc->set_connectors_ptr, crtc->mode.hdisplay,
+           (crtc->mode.flags & DRM_MODE_FLAG_INTERLACE) != 0, shade(crtc->fb_id));
       return 0;
     }
     case DRM_IOCTL_MODE_PAGE_FLIP:

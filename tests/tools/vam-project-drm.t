@@ -27,6 +27,14 @@ ok 'a card that does not know ranges is used as it is' print --max-missed 1
 fails 64 'omit bpc' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HDMI-A-1?bpc=8'
 FAKE_DRM_FAULT=limited
 fails 76 'does not send full-range RGB' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1
+FAKE_DRM_FAULT=limited-only
+fails 76 'does not send full-range RGB' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1
+FAKE_DRM_FAULT=taken
+fails 75 'every display controller .CRTC. of the GPU drives another screen' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1
+FAKE_DRM_FAULT=interlaced
+fails 64 'no mode 64x48@50; the screen has: 64x48@60' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HDMI-A-1?mode=64x48@50'
+ok 'an interlaced mode is not taken, though preferred' print --max-missed 1
+is 'but the whole one' "$(grep -o '"interlaced":.' card/log | sort -u)" '"interlaced":0'
 unset FAKE_DRM_FAULT
 grey() { rm -f card/log; LD_PRELOAD=$card vam-project --pattern grey -o "drm:HDMI-A-1?$1" --hold 0.05 --max-missed 1; }
 ok 'bits per colour are set' grey bpc=8

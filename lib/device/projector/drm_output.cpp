@@ -5,8 +5,11 @@
 #include <xf86drm.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <utility>
@@ -54,12 +57,19 @@ std::uint32_t crtc_for(int card, const drmModeRes& resources, const drmModeConne
   return 0;
 }
 
-drmModeModeInfo preferred_mode(const drmModeConnector& connector) {
-  const auto* begin = connector.modes;
-  const auto* end = begin + connector.count_modes;
-  const auto* best =
-      std::find_if(begin, end, [](const drmModeModeInfo& m) { return (m.type & DRM_MODE_TYPE_PREFERRED) != 0; });
-  return best != end ? *best : *begin;
+// An interlaced image is shown in two halves, one after the other, and the lines of a doubled one twice: neither is the
+// frame of one angle.
+std::vector<drmModeModeInfo> whole_modes(const drmModeConnector& connector) {
+  std::vector<drmModeModeInfo> modes;
+  std::copy_if(connector.modes, connector.modes + connector.count_modes, std::back_inserter(modes),
+               [](const auto& m) { return (m.flags & (DRM_MODE_FLAG_INTERLACE | DRM_MODE_FLAG_DBLSCAN)) == 0; });
+  return modes;
+}
+
+drmModeModeInfo preferred_mode(const std::vector<drmModeModeInfo>& modes) {
+  const auto best = std::find_if(modes.begin(), modes.end(),
+                                 [](const drmModeModeInfo& m) { return (m.type & DRM_MODE_TYPE_PREFERRED) != 0; });
+  return best != modes.end() ? *best : modes.front();
 }
 
 double rate_hz(const drmModeModeInfo& mode) { return mode.clock * 1000.0 / (mode.htotal * mode.vtotal); }
@@ -70,15 +80,20 @@ std::string size_of(const drmModeModeInfo& mode) {
 
 // The first of that size, or the one nearest to that rate: 59.94 Hz are written 60, too.
 drmModeModeInfo mode_called(const drmModeConnector& connector, const std::string& wanted) {
-  if (wanted.empty()) return preferred_mode(connector);
+  const std::vector<drmModeModeInfo> modes = whole_modes(connector);
+  if (modes.empty()) {
+    throw Error{Fault::protocol, "drm:" + connector_name(connector) +
+                                     ": the screen has only interlaced modes, which do not show a frame at one time; "
+                                     "use another screen"};
+  }
+  if (wanted.empty()) return preferred_mode(modes);
   const std::size_t at = wanted.find('@');
   const bool any_rate = at == std::string::npos;
   const double hz = any_rate ? 0 : parse_number(wanted.substr(at + 1)).value_or(0);
   const drmModeModeInfo* best = nullptr;
   double best_off_hz = 0.5;
   std::set<std::string> known;
-  for (int i = 0; i < connector.count_modes; ++i) {
-    const drmModeModeInfo& mode = connector.modes[i];
+  for (const drmModeModeInfo& mode : modes) {
     known.insert(size_of(mode) + "@" + format_number(rate_hz(mode), 4));
     const double off_hz = any_rate ? 0 : std::abs(rate_hz(mode) - hz);
     if (size_of(mode) != wanted.substr(0, at) || off_hz >= best_off_hz) continue;
@@ -123,7 +138,10 @@ bool find_output(int card, const std::string& wanted, const std::string& mode, D
     seen.push_back(connector_name(*connector) + (connected ? "" : " (nothing connected)"));
     if (!connected || connector_name(*connector) != wanted) continue;
     output = {card, connector->connector_id, crtc_for(card, *resources, *connector), mode_called(*connector, mode)};
-    return output.crtc != 0;
+    if (output.crtc != 0) return true;
+    throw Error{Fault::busy, "drm:" + wanted +
+                                 ": every display controller (CRTC) of the GPU drives another screen; unplug one, or "
+                                 "switch it off"};
   }
   return false;
 }
@@ -146,7 +164,9 @@ std::vector<DrmScreen> drm_screens(int card) {
   for (int i = 0; resources && i < resources->count_connectors; ++i) {
     const Handle<drmModeConnector> connector(drmModeGetConnector(card, resources->connectors[i]));
     if (!connector || connector->connection != DRM_MODE_CONNECTED || connector->count_modes == 0) continue;
-    const drmModeModeInfo mode = preferred_mode(*connector);
+    const std::vector<drmModeModeInfo> modes = whole_modes(*connector);
+    if (modes.empty()) continue;
+    const drmModeModeInfo mode = preferred_mode(modes);
     screens.push_back({connector_name(*connector), mode.hdisplay, mode.vdisplay, static_cast<double>(mode.vrefresh)});
   }
   return screens;
@@ -154,27 +174,34 @@ std::vector<DrmScreen> drm_screens(int card) {
 
 DrmOutput open_drm_output(const std::string& connector, const std::string& mode) {
   std::vector<std::string> seen;
+  std::string closed;
   for (const auto& path : drm_cards()) {
     const int card = open(path.c_str(), O_RDWR | O_CLOEXEC);
-    if (card < 0) continue;
+    if (card < 0) {
+      closed = "; " + path + ": " + std::strerror(errno);
+      if (errno == EACCES) closed += "; add the user to the group that owns it (usually video)";
+      continue;
+    }
     DrmOutput output;
     if (find_output(card, connector, mode, output, seen)) return output;
     close(card);
   }
   throw Error{Fault::absent, "drm:" + connector + ": no such connected screen" +
-                                 (seen.empty() ? "; no GPU can be opened" : "; connectors: " + join(seen, ", "))};
+                                 (seen.empty() ? (closed.empty() ? "; there is no GPU (/dev/dri)" : closed)
+                                               : "; connectors: " + join(seen, ", "))};
 }
 
 void send_full_range(const DrmOutput& output, const std::string& name) {
   const std::string property = "Broadcast RGB";
   const Property range = property_of(output, property);
-  for (int i = 0; range.about && i < range.about->count_enums; ++i) {
+  if (!range.about) return;
+  for (int i = 0; i < range.about->count_enums; ++i) {
     if (std::string(range.about->enums[i].name) != "Full") continue;
     if (set_property(output, property, range.about->enums[i].value)) return;
-    throw Error{Fault::protocol, name +
-                                     ": the GPU does not send full-range RGB, so that grey is not linear; use another "
-                                     "connector"};
   }
+  throw Error{Fault::protocol, name +
+                                   ": the GPU does not send full-range RGB, so that grey is not linear; use another "
+                                   "connector"};
 }
 
 void limit_bits(const DrmOutput& output, const std::string& name, int bits) {
