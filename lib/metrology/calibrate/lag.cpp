@@ -51,8 +51,12 @@ stats::Measured camera_lag_ms(const CameraAxis& forwards, double forwards_deg_s,
   }
   for (const auto* turn : {&forwards, &backwards}) {
     if (turn->phase_deg.sigma <= needed_phase_sigma_deg) continue;
-    throw Error{Fault::data, "lag: no object turns with the stage: the phase of its circle is uncertain by " +
-                                 format_number(turn->phase_deg.sigma, 3) + " degrees; place a bead off the axis"};
+    const double sigma_deg = turn->phase_deg.sigma;
+    throw Error{Fault::data, "lag: no object turns with the stage: the phase of its circle " +
+                                 (std::isfinite(sigma_deg)
+                                      ? "has a standard deviation of " + format_number(sigma_deg, 3) + " degrees"
+                                      : std::string("cannot be determined")) +
+                                 "; place a bead off the axis"};
   }
   const double both_deg = std::remainder(forwards.phase_deg.value + backwards.phase_deg.value, 360.0);
   const double sigma_deg = std::hypot(forwards.phase_deg.sigma, backwards.phase_deg.sigma);
