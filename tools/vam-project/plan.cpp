@@ -28,10 +28,10 @@ void say(std::string name, const std::string& text) {
   device::print_line(name.append(column - name.size(), ' ') + text);
 }
 
-// The lit columns of the sinogram as floats, and each frame as a screen takes it, at most four bytes a pixel.
+// The lit columns of the sinogram as floats, each frame as grey, a byte a pixel, and two images as a screen takes them.
 double memory_mb(const model::StackInfo& info, const model::Projector& projector, int frames) {
   const double sinogram = 4.0 * info.width * info.height * info.count;
-  return 1e-6 * (sinogram + 4.0 * frames * projector.columns * projector.rows);
+  return 1e-6 * (sinogram + (frames + 2 * 4.0) * projector.columns * projector.rows);
 }
 
 std::optional<double> stated_threshold(const model::StackInfo& info) {
