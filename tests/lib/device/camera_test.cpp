@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -17,7 +18,6 @@
 #include "device/camera/private/grey_pixels.hpp"
 #include "device/camera/private/read_clock.hpp"
 #include "device/open/camera.hpp"
-#include "fake_v4l2.hpp"
 #include "fault_of.hpp"
 #include "sim/cameras/camera.hpp"
 
@@ -25,11 +25,6 @@ using namespace vam;
 using namespace vam::device;
 
 namespace {
-
-std::unique_ptr<Camera> v4l2(V4l2Script& script, VirtualClock& clock, const CameraSettings& settings = {}) {
-  return open_v4l2_camera(parse_address("v4l2:/dev/video9", {"v4l2"}), settings,
-                          std::make_unique<FakeV4l2>(script, clock), clock);
-}
 
 // A recording of that many frames, a tenth of a second and step_deg apart; those in `lost` are not in it.
 CameraBench recording(int count, double step_deg, std::set<long> lost, std::set<long> cut) {
@@ -184,19 +179,6 @@ TEST_CASE("The moment of a time stamp: as requested, as the maker documents it, 
   CHECK(to_middle_s(StampMoment::end, 0.02) == -0.01);
 }
 
-TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to the driver's") {
-  for (const auto& [stamp, middle_s] : {std::pair("auto", 10.49), std::pair("end", 10.49), std::pair("start", 10.51)}) {
-    VirtualClock clock;
-    V4l2Script script;
-    CameraSettings settings;
-    settings.exposure_us = 20000;
-    settings.stamp = stamp;
-    const auto camera = v4l2(script, clock, settings);
-    camera->start();
-    CHECK(camera->next()->time_s == doctest::Approx(middle_s));
-  }
-}
-
 TEST_CASE("A camera is waited for three periods and an exposure beyond a second, or as long as requested") {
   CameraSettings settings;
   CHECK(settings.patience_s(0.5) == doctest::Approx(2.5));
@@ -230,88 +212,6 @@ TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full
   const std::vector<std::uint8_t> quarter{0x00, 0x01};
   CHECK(to_grey(quarter, 1, 1, 0, PixelLayout::words, 10, image));
   CHECK(image.values == std::vector<std::uint16_t>{0x4010});
-}
-
-TEST_CASE("V4L2: automatics are switched off, gamma is linear, gain is set and read back") {
-  VirtualClock clock;
-  V4l2Script script;
-  CHECK(v4l2(script, clock)->mode().gain == 17);  // as the camera has it
-  CHECK(script.controls.at(V4L2_CID_AUTOGAIN) == 0);
-  CHECK(script.controls.at(V4L2_CID_GAMMA) == 100);
-  CameraSettings settings;
-  settings.gain = 40;
-  const auto camera = v4l2(script, clock, settings);
-  CHECK(camera->mode().gain == 40);
-  CHECK(camera->mode().gamma == 1.0);
-  CHECK_FALSE(camera->mode().black_level.has_value());
-  CHECK(camera->mode().automatic_off == std::vector<std::string>{"gain"});
-  script.controls[V4L2_CID_AUTOGAIN] = 1;
-  script.stuck = {V4L2_CID_AUTOGAIN};
-  error_of([&] { (void)v4l2(script, clock, settings); }, Fault::protocol);
-  settings.black_level = 3;
-  script.stuck.clear();
-  error_of([&] { (void)v4l2(script, clock, settings); }, Fault::usage);
-}
-
-TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error flag") {
-  VirtualClock clock;
-  V4l2Script script;
-  CameraSettings settings;
-  settings.exposure_us = 20000;
-  settings.fps = 25;
-  script.short_sequence = 14;
-  const auto camera = v4l2(script, clock, settings);
-  CHECK(camera->identify()["model"] == "fake");
-  CHECK(camera->mode().columns == 4);
-  CHECK(camera->mode().fps == doctest::Approx(25));
-  CHECK(script.exposure == 200);
-  camera->start();
-  std::vector<long> numbers;
-  std::vector<bool> complete;
-  for (int i = 0; i < 4; ++i) {
-    const auto frame = camera->next();
-    REQUIRE(frame.has_value());
-    numbers.push_back(frame->number);
-    complete.push_back(frame->complete);
-    if (i == 1) {
-      CHECK(frame->time_s == doctest::Approx(11.49));  // half an exposure before the stamp
-      CHECK(frame->levels.values == std::vector<std::uint16_t>{11, 12, 13, 14, 17, 18, 19, 20});
-    }
-  }
-  CHECK(numbers == std::vector<long>{0, 1, 4, 5});
-  CHECK(complete == std::vector<bool>{true, true, false, false});
-  const double before_s = clock.now_s();
-  CHECK(fault_of([&] { (void)camera->next(); }) == Fault::busy);
-  CHECK(clock.now_s() - before_s < 1.5);
-  script.gone = true;
-  CHECK(fault_of([&] { (void)camera->next(); }) == Fault::absent);
-}
-
-TEST_CASE("V4L2: an unsupported setting is named in the error") {
-  VirtualClock clock;
-  V4l2Script script;
-  const auto fault = [&](const CameraSettings& settings) {
-    return fault_of([&] { (void)v4l2(script, clock, settings); });
-  };
-  CameraSettings fast;
-  fast.fps = 60;
-  script.rate_limit = 30;
-  CHECK(fault(fast) == Fault::protocol);
-  CameraSettings binned;
-  binned.binning = 2;
-  CHECK(fault(binned) == Fault::usage);
-  CameraSettings deep;
-  deep.format = "Y16";
-  CHECK(fault(deep) == Fault::usage);
-  script.formats = {V4L2_PIX_FMT_MJPEG};
-  CHECK(message_of([&] { (void)v4l2(script, clock); }).find("no supported one") != std::string::npos);
-  script.formats = {V4L2_PIX_FMT_GREY};
-  script.streams = false;
-  CHECK(fault({}) == Fault::usage);
-  script.refuse_open = EBUSY;
-  CHECK(fault({}) == Fault::busy);
-  script.refuse_open = ENOENT;
-  CHECK(fault({}) == Fault::absent);
 }
 
 TEST_CASE("A series by count, by number and by angle; lost frames are counted") {

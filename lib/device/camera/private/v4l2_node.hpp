@@ -1,0 +1,29 @@
+// A video node by its path: what it is asked, and what a refusal means.
+#pragma once
+
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "base/error.hpp"
+#include "device/camera/v4l2_driver.hpp"
+
+namespace vam::device {
+
+template <class Struct>
+Struct cleared() {
+  Struct value;
+  std::memset(&value, 0, sizeof value);
+  return value;
+}
+
+struct V4l2Node {
+  std::string path;
+  std::unique_ptr<V4l2Driver> driver;
+
+  [[nodiscard]] Error gone() const;
+  /// Throws Fault::absent when the camera is gone, busy or protocol when it refuses: "PATH: `what` (errno)".
+  void ask(unsigned long request, void* argument, const std::string& what) const;
+};
+
+}  // namespace vam::device

@@ -1,0 +1,103 @@
+#include "device/camera/private/v4l2_controls.hpp"
+
+#include <linux/videodev2.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "device/camera/private/read_back.hpp"
+
+namespace vam::device {
+
+namespace {
+
+void check(const V4l2Node& node, const std::string& what, double wanted, double got, double grain) {
+  require_read_back(node.path + ": the " + what, wanted, got, grain);
+}
+
+// Empty: the camera has no such control.
+std::optional<int> level(const V4l2Node& node, std::uint32_t id, std::optional<double> wanted,
+                         const std::string& what) {
+  auto value = cleared<v4l2_control>();
+  value.id = id;
+  if (node.driver->control(VIDIOC_G_CTRL, &value) != 0) {
+    if (!wanted) return std::nullopt;
+    throw Error{Fault::usage, node.path + ": has no setting for " + what + "; omit it"};
+  }
+  if (!wanted) return value.value;
+  value.value = round_int(*wanted);
+  node.ask(VIDIOC_S_CTRL, &value, "rejects the " + what + " (VIDIOC_S_CTRL)");
+  node.ask(VIDIOC_G_CTRL, &value, "does not report the " + what + " (VIDIOC_G_CTRL)");
+  check(node, what, *wanted, value.value, 0.5);
+  return value.value;
+}
+
+struct Automatic {
+  std::uint32_t id;
+  const char* name;
+};
+constexpr std::array automatics{Automatic{V4L2_CID_AUTOGAIN, "gain"}, Automatic{V4L2_CID_AUTOBRIGHTNESS, "brightness"},
+                                Automatic{V4L2_CID_AUTO_WHITE_BALANCE, "white balance"},
+                                Automatic{V4L2_CID_EXPOSURE_AUTO_PRIORITY, "exposure priority"},
+                                Automatic{V4L2_CID_BACKLIGHT_COMPENSATION, "backlight compensation"}};
+
+void switch_off_automatics(const V4l2Node& node, CameraMode& mode) {
+  for (const auto& [id, name] : automatics) {
+    if (!level(node, id, std::nullopt, name)) continue;
+    level(node, id, 0, std::string("automatic ") + name);
+    mode.automatic_off.emplace_back(name);
+  }
+}
+
+void set_levels(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
+  constexpr double hundredths = 100;  // USB Video Class 1.5, 4.2.2.3.12: 100 is linear
+  const bool has_gamma = settings.gamma != 1 || level(node, V4L2_CID_GAMMA, std::nullopt, "gamma");
+  const auto gamma =
+      has_gamma ? level(node, V4L2_CID_GAMMA, hundredths * settings.gamma, "gamma in hundredths") : std::nullopt;
+  if (gamma) mode.gamma = *gamma / hundredths;
+  mode.gain = level(node, V4L2_CID_GAIN, settings.gain, "gain");
+  mode.black_level = level(node, V4L2_CID_BRIGHTNESS, settings.black_level, "black level (brightness)");
+}
+
+// Read back: a control that the camera rounds by more than a hundredth is not what was asked for.
+void set_exposure(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
+  auto value = cleared<v4l2_control>();
+  value.id = V4L2_CID_EXPOSURE_ABSOLUTE;  // 100 us
+  if (settings.exposure_us) {
+    auto manual = cleared<v4l2_control>();
+    manual.id = V4L2_CID_EXPOSURE_AUTO;
+    manual.value = V4L2_EXPOSURE_MANUAL;
+    node.driver->control(VIDIOC_S_CTRL, &manual);  // a camera without automatics does not have it
+    value.value = round_int(*settings.exposure_us / 100);
+    node.ask(VIDIOC_S_CTRL, &value, "rejects the exposure (VIDIOC_S_CTRL)");
+  }
+  if (node.driver->control(VIDIOC_G_CTRL, &value) == 0) mode.exposure_us = 100.0 * value.value;
+  if (settings.exposure_us) check(node, "exposure", *settings.exposure_us, mode.exposure_us, 100);
+}
+
+void set_rate(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
+  auto rate = cleared<v4l2_streamparm>();
+  rate.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  auto& period = rate.parm.capture.timeperframe;
+  if (settings.fps) {
+    period = {1000, static_cast<__u32>(std::lround(1000 * *settings.fps))};
+    node.ask(VIDIOC_S_PARM, &rate, "rejects the frame rate (VIDIOC_S_PARM)");
+  } else if (node.driver->control(VIDIOC_G_PARM, &rate) != 0) {
+    return;
+  }
+  if (period.numerator > 0) mode.fps = static_cast<double>(period.denominator) / period.numerator;
+  if (settings.fps) check(node, "frame rate", *settings.fps, mode.fps, 0);
+}
+
+}  // namespace
+
+// Automatics first: with one of them on a value holds until the next frame.
+void set_controls(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
+  switch_off_automatics(node, mode);
+  set_levels(node, settings, mode);
+  set_exposure(node, settings, mode);
+  set_rate(node, settings, mode);
+}
+
+}  // namespace vam::device

@@ -1,0 +1,71 @@
+#include "device/camera/private/v4l2_format.hpp"
+
+#include <linux/videodev2.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/text.hpp"
+
+namespace vam::device {
+
+namespace {
+
+struct Known {
+  std::uint32_t code;
+  const char* name;
+  PixelLayout layout;
+  int bits;
+};
+constexpr std::array formats{
+    Known{V4L2_PIX_FMT_GREY, "GREY", PixelLayout::bytes, 8}, Known{V4L2_PIX_FMT_Y16, "Y16", PixelLayout::words, 16},
+    Known{V4L2_PIX_FMT_Y12, "Y12", PixelLayout::words, 12}, Known{V4L2_PIX_FMT_Y10, "Y10", PixelLayout::words, 10},
+    Known{V4L2_PIX_FMT_YUYV, "YUYV", PixelLayout::even_bytes, 8}};
+
+std::vector<std::string> offered_formats(const V4l2Node& node) {
+  std::vector<std::string> offered;
+  for (std::uint32_t index = 0;; ++index) {
+    auto found = cleared<v4l2_fmtdesc>();
+    found.index = index;
+    found.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    if (node.driver->control(VIDIOC_ENUM_FMT, &found) != 0) return offered;
+    const auto* known =
+        std::find_if(formats.begin(), formats.end(), [&](const Known& f) { return f.code == found.pixelformat; });
+    if (known != formats.end()) offered.emplace_back(known->name);
+  }
+}
+
+const Known& chosen_format(const V4l2Node& node, const std::string& wanted) {
+  const auto offered = offered_formats(node);
+  const auto has = [&](const std::string& name) {
+    return std::find(offered.begin(), offered.end(), name) != offered.end();
+  };
+  const auto* chosen = std::find_if(formats.begin(), formats.end(), [&](const Known& f) {
+    return wanted.empty() ? has(f.name) : f.name == wanted && has(f.name);
+  });
+  if (chosen != formats.end()) return *chosen;
+  throw Error{Fault::usage, node.path + ": no pixel format " + (wanted.empty() ? "for grey" : wanted) + "; it has " +
+                                (offered.empty() ? "no supported one" : join(offered, ", "))};
+}
+
+}  // namespace
+
+V4l2Format choose_format(const V4l2Node& node, const std::string& wanted, CameraMode& mode) {
+  const Known& chosen = chosen_format(node, wanted);
+  auto size = cleared<v4l2_format>();
+  size.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  node.ask(VIDIOC_G_FMT, &size, "does not report its format (VIDIOC_G_FMT)");
+  const auto& pixels = size.fmt.pix;
+  size.fmt.pix.pixelformat = chosen.code;
+  node.ask(VIDIOC_S_FMT, &size, "rejects the format (VIDIOC_S_FMT)");
+  if (pixels.pixelformat != chosen.code) {
+    throw Error{Fault::protocol, node.path + ": pixel format set to another value than " + chosen.name};
+  }
+  mode.columns = static_cast<int>(pixels.width);
+  mode.rows = static_cast<int>(pixels.height);
+  mode.bits = chosen.bits;
+  return {chosen.layout, chosen.bits, pixels.bytesperline};
+}
+
+}  // namespace vam::device
