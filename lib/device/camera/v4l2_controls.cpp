@@ -3,7 +3,9 @@
 #include <linux/videodev2.h>
 
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 
 #include "base/index.hpp"
 #include "device/camera/private/read_back.hpp"
@@ -36,17 +38,46 @@ std::optional<int> level(const V4l2Node& node, std::uint32_t id, std::optional<d
 struct Automatic {
   std::uint32_t id;
   const char* name;
+  int off = 0;
 };
-constexpr std::array automatics{Automatic{V4L2_CID_AUTOGAIN, "gain"}, Automatic{V4L2_CID_AUTOBRIGHTNESS, "brightness"},
+constexpr std::array automatics{Automatic{V4L2_CID_AUTOGAIN, "gain"},
+                                Automatic{V4L2_CID_AUTOBRIGHTNESS, "brightness"},
                                 Automatic{V4L2_CID_AUTO_WHITE_BALANCE, "white balance"},
                                 Automatic{V4L2_CID_EXPOSURE_AUTO_PRIORITY, "exposure priority"},
-                                Automatic{V4L2_CID_BACKLIGHT_COMPENSATION, "backlight compensation"}};
+                                Automatic{V4L2_CID_BACKLIGHT_COMPENSATION, "backlight compensation"},
+                                Automatic{V4L2_CID_EXPOSURE_AUTO, "exposure", V4L2_EXPOSURE_MANUAL}};
+
+// Nothing: it has no such control.
+std::optional<int> automatic_now(const V4l2Node& node, const Automatic& automatic) {
+  auto value = cleared<v4l2_control>();
+  value.id = automatic.id;
+  if (node.driver->control(VIDIOC_G_CTRL, &value) == 0) return value.value;
+  if (errno == EINVAL || errno == ENOTTY) return std::nullopt;
+  if (errno == ENODEV) throw node.gone();
+  throw Error{Fault::protocol, node.path + ": does not report whether its automatic " + automatic.name + " is off (" +
+                                   std::strerror(errno) + "); use another camera"};
+}
+
+// A driver may reject the value, or accept and ignore it: what counts is what it reads back as.
+void switch_off(const V4l2Node& node, const Automatic& automatic) {
+  auto off = cleared<v4l2_control>();
+  off.id = automatic.id;
+  off.value = automatic.off;
+  const int reason = node.driver->control(VIDIOC_S_CTRL, &off) == 0 ? 0 : errno;
+  const auto now = automatic_now(node, automatic);
+  if (now == automatic.off) return;
+  throw Error{Fault::protocol, node.path + ": automatic " + automatic.name + " cannot be switched off (" +
+                                   (reason != 0 ? std::string(std::strerror(reason)) + ", " : "") + "reads back as " +
+                                   (now ? std::to_string(*now) : "nothing") + " instead of " +
+                                   std::to_string(automatic.off) +
+                                   "); switch it off by v4l2-ctl or use another camera"};
+}
 
 void switch_off_automatics(const V4l2Node& node, CameraMode& mode) {
-  for (const auto& [id, name] : automatics) {
-    if (!level(node, id, std::nullopt, name)) continue;
-    level(node, id, 0, std::string("automatic ") + name);
-    mode.automatic_off.emplace_back(name);
+  for (const auto& automatic : automatics) {
+    if (!automatic_now(node, automatic)) continue;
+    switch_off(node, automatic);
+    mode.automatic_off.emplace_back(automatic.name);
   }
 }
 
@@ -65,10 +96,6 @@ void set_exposure(const V4l2Node& node, const CameraSettings& settings, CameraMo
   auto value = cleared<v4l2_control>();
   value.id = V4L2_CID_EXPOSURE_ABSOLUTE;  // 100 us
   if (settings.exposure_us) {
-    auto manual = cleared<v4l2_control>();
-    manual.id = V4L2_CID_EXPOSURE_AUTO;
-    manual.value = V4L2_EXPOSURE_MANUAL;
-    node.driver->control(VIDIOC_S_CTRL, &manual);  // a camera without automatics does not have it
     value.value = round_int(*settings.exposure_us / 100);
     node.ask(VIDIOC_S_CTRL, &value, "rejects the exposure (VIDIOC_S_CTRL)");
   }

@@ -28,6 +28,7 @@ struct V4l2Script {
   std::map<__u32, int> controls{
       {V4L2_CID_AUTOGAIN, 1}, {V4L2_CID_GAIN, 17}, {V4L2_CID_GAMMA, 220}};  // besides, as it is
   std::set<__u32> stuck;                                                    // take no value
+  std::map<__u32, int> refused, unread;                                     // errno of setting, of reading
 };
 
 class FakeV4l2 final : public vam::device::V4l2Driver {
@@ -75,6 +76,8 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
       case VIDIOC_S_CTRL:
       case VIDIOC_G_CTRL: {
         auto& value = *static_cast<v4l2_control*>(argument);
+        const auto& refusals = request == VIDIOC_S_CTRL ? script_.refused : script_.unread;
+        if (const auto reason = refusals.find(value.id); reason != refusals.end()) return fail(reason->second);
         if (const auto known = script_.controls.find(value.id); known != script_.controls.end()) {
           if (request == VIDIOC_S_CTRL && !script_.stuck.contains(value.id)) known->second = value.value;
           value.value = known->second;

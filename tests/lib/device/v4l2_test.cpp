@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -54,6 +56,29 @@ TEST_CASE("V4L2: automatics are switched off, gamma is linear, gain is set and r
   settings.black_level = 3;
   script.stuck.clear();
   error_of([&] { (void)v4l2(script, clock, settings); }, Fault::usage);
+}
+
+TEST_CASE("V4L2: automatic exposure is switched off and read back") {
+  VirtualClock clock;
+  V4l2Script script;
+  script.controls[V4L2_CID_EXPOSURE_AUTO] = V4L2_EXPOSURE_APERTURE_PRIORITY;
+  CHECK(v4l2(script, clock)->mode().automatic_off == std::vector<std::string>{"gain", "exposure"});
+  CHECK(script.controls.at(V4L2_CID_EXPOSURE_AUTO) == V4L2_EXPOSURE_MANUAL);
+  script.refused[V4L2_CID_EXPOSURE_AUTO] = EACCES;  // but it is manual already
+  CHECK(v4l2(script, clock)->mode().automatic_off.size() == 2);
+  const auto refusal = [&] { return error_of([&] { (void)v4l2(script, clock); }, Fault::protocol); };
+  for (const int reason : {EINVAL, ERANGE, EACCES}) {
+    script.controls[V4L2_CID_EXPOSURE_AUTO] = V4L2_EXPOSURE_APERTURE_PRIORITY;
+    script.refused[V4L2_CID_EXPOSURE_AUTO] = reason;
+    CHECK(has(refusal(), std::string("automatic exposure cannot be switched off (") + std::strerror(reason)));
+  }
+  script.refused.clear();
+  script.stuck = {V4L2_CID_EXPOSURE_AUTO};
+  CHECK(has(refusal(), "automatic exposure cannot be switched off (reads back as 3 instead of 1)"));
+  script.unread[V4L2_CID_EXPOSURE_AUTO] = EACCES;
+  CHECK(has(refusal(), "does not report whether its automatic exposure is off"));
+  script.unread[V4L2_CID_EXPOSURE_AUTO] = ENODEV;
+  error_of([&] { (void)v4l2(script, clock); }, Fault::absent);
 }
 
 TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error flag") {
