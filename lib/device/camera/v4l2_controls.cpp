@@ -14,8 +14,9 @@ namespace vam::device {
 
 namespace {
 
-void check(const V4l2Node& node, const std::string& what, double wanted, double got, double grain) {
-  require_read_back(node.path + ": the " + what, wanted, got, grain);
+// A value that the camera rounds by more than a hundredth is not what was asked for.
+void check(const V4l2Node& node, const std::string& what, double wanted, double got) {
+  require_read_back(node.path + ": the " + what, wanted, got, 0);
 }
 
 // Empty: the camera has no such control.
@@ -31,7 +32,7 @@ std::optional<int> level(const V4l2Node& node, std::uint32_t id, std::optional<d
   value.value = round_int(*wanted);
   node.ask(VIDIOC_S_CTRL, &value, "rejects the " + what + " (VIDIOC_S_CTRL)");
   node.ask(VIDIOC_G_CTRL, &value, "does not report the " + what + " (VIDIOC_G_CTRL)");
-  check(node, what, *wanted, value.value, 0.5);
+  check(node, what, *wanted, value.value);
   return value.value;
 }
 
@@ -91,16 +92,16 @@ void set_levels(const V4l2Node& node, const CameraSettings& settings, CameraMode
   mode.black_level = level(node, V4L2_CID_BRIGHTNESS, settings.black_level, "black level (brightness)");
 }
 
-// Read back: a control that the camera rounds by more than a hundredth is not what was asked for.
 void set_exposure(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
+  constexpr double step_us = 100;
   auto value = cleared<v4l2_control>();
-  value.id = V4L2_CID_EXPOSURE_ABSOLUTE;  // 100 us
+  value.id = V4L2_CID_EXPOSURE_ABSOLUTE;
   if (settings.exposure_us) {
-    value.value = round_int(*settings.exposure_us / 100);
+    value.value = round_int(*settings.exposure_us / step_us);
     node.ask(VIDIOC_S_CTRL, &value, "rejects the exposure (VIDIOC_S_CTRL)");
   }
-  if (node.driver->control(VIDIOC_G_CTRL, &value) == 0) mode.exposure_us = 100.0 * value.value;
-  if (settings.exposure_us) check(node, "exposure", *settings.exposure_us, mode.exposure_us, 100);
+  if (node.driver->control(VIDIOC_G_CTRL, &value) == 0) mode.exposure_us = step_us * value.value;
+  if (settings.exposure_us) check(node, "exposure (us, in steps of 100)", *settings.exposure_us, mode.exposure_us);
 }
 
 void set_rate(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
@@ -114,7 +115,7 @@ void set_rate(const V4l2Node& node, const CameraSettings& settings, CameraMode& 
     return;
   }
   if (period.numerator > 0) mode.fps = static_cast<double>(period.denominator) / period.numerator;
-  if (settings.fps) check(node, "frame rate", *settings.fps, mode.fps, 0);
+  if (settings.fps) check(node, "frame rate", *settings.fps, mode.fps);
 }
 
 }  // namespace

@@ -81,6 +81,30 @@ TEST_CASE("V4L2: automatic exposure is switched off and read back") {
   error_of([&] { (void)v4l2(script, clock); }, Fault::absent);
 }
 
+TEST_CASE("V4L2: an exposure or a gain between the steps of the camera is refused with both values") {
+  VirtualClock clock;
+  V4l2Script script;
+  const auto refusal = [&](const CameraSettings& settings) {
+    return error_of([&] { (void)v4l2(script, clock, settings); }, Fault::protocol);
+  };
+  CameraSettings settings;
+  settings.exposure_us = 16667;
+  CHECK(v4l2(script, clock, settings)->mode().exposure_us == 16700);
+  for (const auto& [wanted_us, got] :
+       {std::pair(40.0, "0 instead of 40"), std::pair(50.0, "100 instead of 50"),
+        std::pair(149.0, "100 instead of 149"), std::pair(250.0, "300 instead of 250")}) {
+    settings.exposure_us = wanted_us;
+    CHECK(has(refusal(settings), std::string("the exposure (us, in steps of 100) reads back as ") + got));
+  }
+  settings.exposure_us.reset();
+  settings.gain = 1.5;
+  CHECK(has(refusal(settings), "the gain reads back as 2 instead of 1.5"));
+  settings.gain = 0.4;
+  CHECK(has(refusal(settings), "the gain reads back as 0 instead of 0.4"));
+  settings.gain = 100.4;
+  CHECK(v4l2(script, clock, settings)->mode().gain == 100);
+}
+
 TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error flag") {
   VirtualClock clock;
   V4l2Script script;
