@@ -138,6 +138,7 @@ class V4l2Camera final : public Camera {
     const auto used = std::min<std::size_t>(buffer.bytesused, mapping.size);
     const bool whole = to_grey({static_cast<const std::uint8_t*>(mapping.start), used}, mode_.columns, mode_.rows,
                                format_.stride, format_.layout, format_.bits, frame.levels);
+    if (format_.limited_range) widen_luma(frame.levels);
     frame.complete = frame.complete && whole;
     node_.ask(VIDIOC_QBUF, &buffer, "rejects a returned buffer (VIDIOC_QBUF)");
     return frame;

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace vam::device {
@@ -18,10 +19,23 @@ struct Known {
   PixelLayout layout;
   int bits;
 };
+// In the order of preference: a depth that is known shows saturation.
 constexpr std::array formats{
-    Known{V4L2_PIX_FMT_GREY, "GREY", PixelLayout::bytes, 8}, Known{V4L2_PIX_FMT_Y16, "Y16", PixelLayout::words, 16},
-    Known{V4L2_PIX_FMT_Y12, "Y12", PixelLayout::words, 12}, Known{V4L2_PIX_FMT_Y10, "Y10", PixelLayout::words, 10},
+    Known{V4L2_PIX_FMT_GREY, "GREY", PixelLayout::bytes, 8}, Known{V4L2_PIX_FMT_Y12, "Y12", PixelLayout::words, 12},
+    Known{V4L2_PIX_FMT_Y10, "Y10", PixelLayout::words, 10}, Known{V4L2_PIX_FMT_Y16, "Y16", PixelLayout::words, 16},
     Known{V4L2_PIX_FMT_YUYV, "YUYV", PixelLayout::even_bytes, 8}};
+
+bool is_luma(const Known& format) {
+  return format.layout == PixelLayout::even_bytes || format.layout == PixelLayout::odd_bytes;
+}
+
+// As the driver says, and by default as the kernel documents it: limited, but for JPEG's colours.
+bool has_limited_range(const v4l2_pix_format& pixels) {
+  const auto range = pixels.quantization != V4L2_QUANTIZATION_DEFAULT
+                         ? static_cast<v4l2_quantization>(pixels.quantization)
+                         : V4L2_MAP_QUANTIZATION_DEFAULT(false, pixels.colorspace, pixels.ycbcr_enc);
+  return range == V4L2_QUANTIZATION_LIM_RANGE;
+}
 
 std::vector<std::string> offered_formats(const V4l2Node& node) {
   std::vector<std::string> offered;
@@ -62,10 +76,14 @@ V4l2Format choose_format(const V4l2Node& node, const std::string& wanted, Camera
   if (pixels.pixelformat != chosen.code) {
     throw Error{Fault::protocol, node.path + ": pixel format set to another value than " + chosen.name};
   }
+  // The kernel's page of Y16: the sensor may have fewer bits than 16, in the low ones.
+  if (chosen.code == V4L2_PIX_FMT_Y16) {
+    warn(node.path + ": the depth of Y16 is not known, full scale is taken as 65535; do not rely on saturation");
+  }
   mode.columns = static_cast<int>(pixels.width);
   mode.rows = static_cast<int>(pixels.height);
   mode.bits = chosen.bits;
-  return {chosen.layout, chosen.bits, pixels.bytesperline};
+  return {chosen.layout, chosen.bits, pixels.bytesperline, is_luma(chosen) && has_limited_range(pixels)};
 }
 
 }  // namespace vam::device

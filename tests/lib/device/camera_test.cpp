@@ -201,6 +201,8 @@ TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full
   CHECK(image.values == std::vector<std::uint16_t>{1, 2, 3, 4});
   CHECK(to_grey(padded, 3, 1, 0, PixelLayout::even_bytes, 8, image));
   CHECK(image.values == std::vector<std::uint16_t>{1, 0, 4});
+  CHECK(to_grey(padded, 3, 1, 0, PixelLayout::odd_bytes, 8, image));
+  CHECK(image.values == std::vector<std::uint16_t>{2, 3, 0});
   const std::vector<std::uint8_t> deep{0xff, 0x0f, 0x00, 0x08};
   CHECK(to_grey(deep, 2, 1, 0, PixelLayout::words, 12, image));
   CHECK(image.values == std::vector<std::uint16_t>{0xffff, 0x8008});
@@ -212,6 +214,13 @@ TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full
   const std::vector<std::uint8_t> quarter{0x00, 0x01};
   CHECK(to_grey(quarter, 1, 1, 0, PixelLayout::words, 10, image));
   CHECK(image.values == std::vector<std::uint16_t>{0x4010});
+}
+
+TEST_CASE("Pixels: luma of limited range fills the levels from black to full") {
+  GreyImage image(7, 1, 8);
+  image.values = {0, 16, 17, 126, 234, 235, 255};
+  widen_luma(image);
+  CHECK(image.values == std::vector<std::uint16_t>{0, 0, 1, 128, 254, 255, 255});
 }
 
 TEST_CASE("A series by count, by number and by angle; lost frames are counted") {

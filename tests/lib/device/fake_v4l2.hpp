@@ -20,7 +20,8 @@ struct V4l2Script {
   std::vector<std::uint32_t> sequence{10, 11, 14, 15};  // of the frames to come
   std::uint32_t bad_sequence = 15;                      // arrives with the error flag
   std::uint32_t short_sequence = 99;                    // arrives with half its bytes
-  int refuse_open = 0;                                  // errno
+  __u32 quantization = V4L2_QUANTIZATION_DEFAULT, colorspace = V4L2_COLORSPACE_DEFAULT;
+  int refuse_open = 0;  // errno
   bool streams = true;
   int rate_limit = 1000;  // frames a second; faster is not taken
   bool gone = false;      // after the last frame: unplugged, else silent
@@ -70,6 +71,8 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
         pixels.width = 4;
         pixels.height = 2;
         deep_ = pixels.pixelformat != V4L2_PIX_FMT_GREY;
+        pixels.quantization = script_.quantization;
+        pixels.colorspace = script_.colorspace;
         pixels.bytesperline = deep_ ? 8 : 6;  // padded rows
         return 0;
       }

@@ -2,7 +2,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "device/camera/camera_backends.hpp"
 #include "fake_v4l2.hpp"
 #include "fault_of.hpp"
+#include "lib/io/scratch.hpp"
 
 using namespace vam;
 using namespace vam::device;
@@ -20,6 +23,16 @@ namespace {
 std::unique_ptr<Camera> v4l2(V4l2Script& script, VirtualClock& clock, const CameraSettings& settings = {}) {
   return open_v4l2_camera(parse_address("v4l2:/dev/video9", {"v4l2"}), settings,
                           std::make_unique<FakeV4l2>(script, clock), clock);
+}
+
+// What a call writes to standard error.
+std::string said_by(const std::function<void()>& call) {
+  const scratch::Folder folder;
+  {
+    const scratch::Redirect redirect(STDERR_FILENO, folder / "said");
+    call();
+  }
+  return scratch::slurp(folder / "said");
 }
 
 }  // namespace
@@ -103,6 +116,45 @@ TEST_CASE("V4L2: an exposure or a gain between the steps of the camera is refuse
   CHECK(has(refusal(settings), "the gain reads back as 0 instead of 0.4"));
   settings.gain = 100.4;
   CHECK(v4l2(script, clock, settings)->mode().gain == 100);
+}
+
+TEST_CASE("V4L2: luma is of limited range unless the driver says otherwise") {
+  struct Case {
+    __u32 quantization, colorspace;
+    bool limited;
+  };
+  for (const auto& [quantization, colorspace, limited] :
+       {Case{V4L2_QUANTIZATION_DEFAULT, V4L2_COLORSPACE_SRGB, true},
+        Case{V4L2_QUANTIZATION_DEFAULT, V4L2_COLORSPACE_JPEG, false},
+        Case{V4L2_QUANTIZATION_LIM_RANGE, V4L2_COLORSPACE_JPEG, true},
+        Case{V4L2_QUANTIZATION_FULL_RANGE, V4L2_COLORSPACE_SRGB, false}}) {
+    for (const auto format : {V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_GREY}) {
+      VirtualClock clock;
+      V4l2Script script;
+      script.formats = {format};
+      script.sequence = {229};  // and with it the first byte
+      script.quantization = quantization;
+      script.colorspace = colorspace;
+      const auto camera = v4l2(script, clock);
+      camera->start();
+      const auto values = camera->next()->levels.values;
+      const bool widened = limited && format == V4L2_PIX_FMT_YUYV;
+      CHECK(values[0] == (widened ? 248 : 229));
+      CHECK(values[3] == (format == V4L2_PIX_FMT_GREY ? 232 : widened ? 255 : 235));
+    }
+  }
+}
+
+TEST_CASE("V4L2: a known depth is preferred, and one that is not known is told") {
+  VirtualClock clock;
+  V4l2Script script;
+  const auto said = [&](int bits) { return said_by([&] { CHECK(v4l2(script, clock)->mode().bits == bits); }); };
+  script.formats = {V4L2_PIX_FMT_Y16, V4L2_PIX_FMT_Y10};
+  CHECK(said(10).empty());
+  script.formats = {V4L2_PIX_FMT_Y10, V4L2_PIX_FMT_Y12};
+  CHECK(said(12).empty());
+  script.formats = {V4L2_PIX_FMT_Y16};
+  CHECK(has(said(16), "/dev/video9: the depth of Y16 is not known, full scale is taken as 65535"));
 }
 
 TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error flag") {

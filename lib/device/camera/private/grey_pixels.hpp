@@ -12,6 +12,7 @@ namespace vam::device {
 enum class PixelLayout {
   bytes,       // 8 bits
   even_bytes,  // every second byte (YUYV: luma)
+  odd_bytes,   // likewise from the second on (UYVY)
   words,       // 16 bits little-endian, the value in the low `bits`
 };
 
@@ -19,5 +20,8 @@ enum class PixelLayout {
 /// v >> (bits - s). False when there are too few bytes; what is missing is 0.
 bool to_grey(std::span<const std::uint8_t> from, int columns, int rows, std::size_t stride, PixelLayout layout,
              int bits, GreyImage& to);
+
+/// Luma of limited range (ITU-R BT.601: black is 16, full 235) as levels from 0 to 255.
+void widen_luma(GreyImage& levels);
 
 }  // namespace vam::device
