@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/private/frame_count.hpp"
@@ -94,7 +95,6 @@ class V4l2Camera final : public Camera {
     }
     const auto text = [](const __u8* bytes) { return std::string(reinterpret_cast<const char*>(bytes)); };
     about_ = {{"maker", text(what.driver)}, {"model", text(what.card)}, {"serial", text(what.bus_info)}};
-    if (settings_.stamp != "auto") about_["stamp"] = settings_.stamp;  // else each frame tells
     about_["firmware"] = std::to_string(what.version >> 16 & 255) + "." + std::to_string(what.version >> 8 & 255);
   }
 
@@ -111,16 +111,41 @@ class V4l2Camera final : public Camera {
       void* start = node_.driver->map(buffer.length, buffer.m.offset);
       if (start == MAP_FAILED) throw Error{Fault::memory, node_.path + ": a buffer cannot be mapped"};
       mappings_.push_back({start, buffer.length});
+      if (i == 0) read_convention(buffer.flags);
       node_.ask(VIDIOC_QBUF, &buffer, "rejects a buffer (VIDIOC_QBUF)");
     }
     if (mappings_.empty()) throw Error{Fault::memory, node_.path + ": provides no buffers"};
   }
 
-  // As the driver says, unless the printer file knows better.
-  StampMoment moment_of(const v4l2_buffer& buffer) {
-    const bool at_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+  static bool is_monotonic(std::uint32_t flags) {
+    return (flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+  }
+
+  // What time stamps name, the same for all buffers: as the driver says, unless the printer file knows better.
+  void read_convention(std::uint32_t flags) {
+    const bool at_start = (flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
     const std::string driver = word_of(at_start ? StampMoment::start : StampMoment::end);
-    return stamp_moment(settings_.stamp == "auto" ? driver : settings_.stamp, "");
+    if (is_monotonic(flags)) moment_ = stamp_moment(settings_.stamp == "auto" ? driver : settings_.stamp, "");
+    about_["stamp"] = moment_ ? word_of(*moment_) : "arrival";
+  }
+
+  // The middle of the exposure. Stamps of another clock are as good as the shortest way of a frame, which begins at
+  // the end of the exposure; those that do not advance are none.
+  double middle_s(double stamp_s, std::uint32_t flags) {
+    const double exposure_s = 1e-6 * mode_.exposure_us;
+    if (moment_ && is_monotonic(flags)) return stamp_s + to_middle_s(*moment_, exposure_s);
+    if (moment_) tell_arrival();
+    const bool advances = stamp_s > last_stamp_s_;
+    last_stamp_s_ = stamp_s;
+    if (!advances) arrivals_ = StampClock();
+    const double arrived_s = clock_.now_s();
+    return (advances ? arrivals_.host_s(stamp_s, arrived_s) : arrived_s) + to_middle_s(StampMoment::end, exposure_s);
+  }
+
+  void tell_arrival() {
+    if (!std::exchange(told_arrival_, true)) {
+      warn(node_.path + ": its time stamps are not of the clock that the driver stated; frames are timed by arrival");
+    }
   }
 
   CapturedFrame take(v4l2_buffer& buffer) {
@@ -131,9 +156,7 @@ class V4l2Camera final : public Camera {
     frame.complete = (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0;
     const double stamp_s =
         static_cast<double>(buffer.timestamp.tv_sec) + 1e-6 * static_cast<double>(buffer.timestamp.tv_usec);
-    const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-    frame.time_s = monotonic ? stamp_s + to_middle_s(moment_of(buffer), 1e-6 * mode_.exposure_us)
-                             : clock_.now_s() - 0.5e-6 * mode_.exposure_us;
+    frame.time_s = middle_s(stamp_s, buffer.flags);
     frame.device_s = stamp_s;
     const auto used = std::min<std::size_t>(buffer.bytesused, mapping.size);
     const bool whole = to_grey({static_cast<const std::uint8_t*>(mapping.start), used}, mode_.columns, mode_.rows,
@@ -153,6 +176,10 @@ class V4l2Camera final : public Camera {
   std::vector<Mapping> mappings_;
   bool streaming_ = false;
   FrameCount count_;
+  std::optional<StampMoment> moment_;  // nothing: frames are timed by their arrival
+  StampClock arrivals_;
+  double last_stamp_s_ = 0;
+  bool told_arrival_ = false;
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -21,7 +22,10 @@ struct V4l2Script {
   std::uint32_t bad_sequence = 15;                      // arrives with the error flag
   std::uint32_t short_sequence = 99;                    // arrives with half its bytes
   __u32 quantization = V4L2_QUANTIZATION_DEFAULT, colorspace = V4L2_COLORSPACE_DEFAULT;
-  int refuse_open = 0;  // errno
+  __u32 flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;  // of time stamps
+  std::optional<__u32> stated_flags;                // before there are frames
+  std::vector<double> arrivals_s;                   // host times of the frames; empty: now
+  int refuse_open = 0;                              // errno
   bool streams = true;
   int rate_limit = 1000;  // frames a second; faster is not taken
   bool gone = false;      // after the last frame: unplugged, else silent
@@ -105,6 +109,7 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
         auto& buffer = *static_cast<v4l2_buffer*>(argument);
         buffer.length = static_cast<__u32>(memory_[0].size());
         buffer.m.offset = buffer.index;
+        buffer.flags = script_.stated_flags.value_or(script_.flags);
         return 0;
       }
       case VIDIOC_QBUF:
@@ -130,9 +135,11 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
     if (buffer.sequence == script_.short_sequence) buffer.bytesused /= 2;
     auto& bytes = memory_[buffer.index];
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(buffer.sequence + i);
-    buffer.flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+    buffer.flags = script_.flags;
     if (buffer.sequence == script_.bad_sequence) buffer.flags |= V4L2_BUF_FLAG_ERROR;
     buffer.timestamp = {static_cast<long>(buffer.sequence), 500000};
+    if (script_.flags == V4L2_BUF_FLAG_TIMESTAMP_COPY) buffer.timestamp = {};
+    if (!script_.arrivals_s.empty()) clock_.sleep_until(script_.arrivals_s[next_ - 1]);
     return 0;
   }
 

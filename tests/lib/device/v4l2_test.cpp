@@ -37,17 +37,71 @@ std::string said_by(const std::function<void()>& call) {
 
 }  // namespace
 
-TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to the driver's") {
-  for (const auto& [stamp, middle_s] : {std::pair("auto", 10.49), std::pair("end", 10.49), std::pair("start", 10.51)}) {
+TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to the driver's, which is recorded") {
+  struct Case {
+    const char* requested;
+    __u32 source;
+    const char* recorded;
+    double middle_s;
+  };
+  for (const auto& [requested, source, recorded, middle_s] :
+       {Case{"auto", V4L2_BUF_FLAG_TSTAMP_SRC_EOF, "end", 10.49},
+        Case{"auto", V4L2_BUF_FLAG_TSTAMP_SRC_SOE, "start", 10.51},
+        Case{"end", V4L2_BUF_FLAG_TSTAMP_SRC_SOE, "end", 10.49},
+        Case{"middle", V4L2_BUF_FLAG_TSTAMP_SRC_EOF, "middle", 10.5},
+        Case{"start", V4L2_BUF_FLAG_TSTAMP_SRC_EOF, "start", 10.51}}) {
     VirtualClock clock;
     V4l2Script script;
+    script.flags |= source;
     CameraSettings settings;
     settings.exposure_us = 20000;
-    settings.stamp = stamp;
+    settings.stamp = requested;
     const auto camera = v4l2(script, clock, settings);
+    CHECK(camera->identify()["stamp"] == recorded);
     camera->start();
     CHECK(camera->next()->time_s == doctest::Approx(middle_s));
   }
+}
+
+TEST_CASE("V4L2: frames without monotonic stamps are timed by arrival, by the shortest delay of 10 s") {
+  VirtualClock clock;
+  V4l2Script script;
+  script.flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+  script.arrivals_s = {1010.530, 1011.502, 1014.590, 1015.510};
+  CameraSettings settings;
+  settings.exposure_us = 20000;
+  settings.stamp = "start";
+  const auto taken = [&] {
+    const auto camera = v4l2(script, clock, settings);
+    CHECK(camera->identify()["stamp"] == "arrival");
+    camera->start();
+    std::vector<double> times_s;
+    for (int i = 0; i < 4; ++i) times_s.push_back(camera->next()->time_s);
+    return times_s;
+  };
+  const auto stamped_s = taken();
+  for (int i = 0; i < 4; ++i)
+    CHECK(stamped_s[i] == doctest::Approx(std::vector{1010.520, 1011.492, 1014.492, 1015.492}[i]).epsilon(1e-9));
+  script.flags = V4L2_BUF_FLAG_TIMESTAMP_COPY;  // of nothing: all are 0
+  script.arrivals_s = {1110.530, 1111.502, 1114.590, 1115.510};
+  const auto arrived_s = taken();
+  for (int i = 0; i < 4; ++i) CHECK(arrived_s[i] == doctest::Approx(script.arrivals_s[i] - 0.01).epsilon(1e-9));
+}
+
+TEST_CASE("V4L2: stamps of another clock than stated are not believed, and the user is told once") {
+  VirtualClock clock;
+  V4l2Script script;
+  script.flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN;
+  script.stated_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+  script.arrivals_s = {1010.5, 1011.6};
+  const auto camera = v4l2(script, clock);
+  camera->start();
+  const auto said = said_by([&] {
+    CHECK(camera->next()->time_s == doctest::Approx(1010.5).epsilon(1e-9));
+    CHECK(camera->next()->time_s == doctest::Approx(1011.5).epsilon(1e-9));
+  });
+  CHECK(said.find("frames are timed by arrival") == said.rfind("frames are timed by arrival"));
+  CHECK(has(said, "/dev/video9: its time stamps are not of the clock that the driver stated"));
 }
 
 TEST_CASE("V4L2: automatics are switched off, gamma is linear, gain is set and read back") {
