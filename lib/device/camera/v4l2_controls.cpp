@@ -5,9 +5,14 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <optional>
+#include <string>
 
 #include "base/index.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
 #include "device/camera/private/read_back.hpp"
 
 namespace vam::device {
@@ -92,30 +97,62 @@ void set_levels(const V4l2Node& node, const CameraSettings& settings, CameraMode
   mode.black_level = level(node, V4L2_CID_BRIGHTNESS, settings.black_level, "black level (brightness)");
 }
 
+// V4L2_CID_EXPOSURE is of no defined unit, so that the middle of such an exposure is not known.
+[[noreturn]] void lacks_exposure(const V4l2Node& node) {
+  const bool other = level(node, V4L2_CID_EXPOSURE, std::nullopt, "exposure").has_value();
+  throw Error{Fault::usage, node.path + ": has no exposure time (V4L2_CID_EXPOSURE_ABSOLUTE)" +
+                                (other ? ", only an exposure without unit (V4L2_CID_EXPOSURE)" : "") +
+                                "; use another camera"};
+}
+
 void set_exposure(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
   constexpr double step_us = 100;
+  const auto now = level(node, V4L2_CID_EXPOSURE_ABSOLUTE, std::nullopt, "exposure");
+  if (now) mode.exposure_us = step_us * *now;
+  if (!settings.exposure_us) return;
+  if (!now) lacks_exposure(node);
   auto value = cleared<v4l2_control>();
   value.id = V4L2_CID_EXPOSURE_ABSOLUTE;
-  if (settings.exposure_us) {
-    value.value = round_int(*settings.exposure_us / step_us);
-    node.ask(VIDIOC_S_CTRL, &value, "rejects the exposure (VIDIOC_S_CTRL)");
-  }
-  if (node.driver->control(VIDIOC_G_CTRL, &value) == 0) mode.exposure_us = step_us * value.value;
-  if (settings.exposure_us) check(node, "exposure (us, in steps of 100)", *settings.exposure_us, mode.exposure_us);
+  value.value = round_int(*settings.exposure_us / step_us);
+  node.ask(VIDIOC_S_CTRL, &value, "rejects the exposure (VIDIOC_S_CTRL)");
+  node.ask(VIDIOC_G_CTRL, &value, "does not report the exposure (VIDIOC_G_CTRL)");
+  mode.exposure_us = step_us * value.value;
+  check(node, "exposure (us, in steps of 100)", *settings.exposure_us, mode.exposure_us);
+}
+
+v4l2_streamparm stream_parameters() {
+  auto rate = cleared<v4l2_streamparm>();
+  rate.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  return rate;
+}
+
+// 0: the camera does not say.
+double rate_hz(const v4l2_streamparm& rate) {
+  const auto& period = rate.parm.capture.timeperframe;
+  return period.numerator > 0 ? static_cast<double>(period.denominator) / period.numerator : 0;
+}
+
+double rate_now_hz(const V4l2Node& node) {
+  auto rate = stream_parameters();
+  return node.driver->control(VIDIOC_G_PARM, &rate) == 0 ? rate_hz(rate) : 0;
+}
+
+// A camera whose rate cannot be set may have the requested one.
+double set_rate_hz(const V4l2Node& node, double wanted_hz) {
+  auto rate = stream_parameters();
+  rate.parm.capture.timeperframe = {1000, static_cast<__u32>(std::lround(1000 * wanted_hz))};
+  if (node.driver->control(VIDIOC_S_PARM, &rate) == 0) return rate_hz(rate);
+  if (errno != ENOTTY) throw node.refusal("rejects the frame rate (VIDIOC_S_PARM)");
+  return rate_now_hz(node);
 }
 
 void set_rate(const V4l2Node& node, const CameraSettings& settings, CameraMode& mode) {
-  auto rate = cleared<v4l2_streamparm>();
-  rate.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  auto& period = rate.parm.capture.timeperframe;
-  if (settings.fps) {
-    period = {1000, static_cast<__u32>(std::lround(1000 * *settings.fps))};
-    node.ask(VIDIOC_S_PARM, &rate, "rejects the frame rate (VIDIOC_S_PARM)");
-  } else if (node.driver->control(VIDIOC_G_PARM, &rate) != 0) {
-    return;
-  }
-  if (period.numerator > 0) mode.fps = static_cast<double>(period.denominator) / period.numerator;
-  if (settings.fps) check(node, "frame rate", *settings.fps, mode.fps);
+  mode.fps = settings.fps ? set_rate_hz(node, *settings.fps) : rate_now_hz(node);
+  if (!settings.fps) return;
+  if (mode.fps > 0) return check(node, "frame rate", *settings.fps, mode.fps);
+  warn(node.path +
+       ": its frame rate can be neither set nor read (VIDIOC_S_PARM); frames come at the camera's own rate, " +
+       "not necessarily at " + format_number(*settings.fps) + " Hz");
 }
 
 }  // namespace

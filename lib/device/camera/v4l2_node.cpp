@@ -8,11 +8,13 @@ Error V4l2Node::gone() const {
   return {Fault::absent, path + ": the camera is disconnected (" + std::strerror(errno) + ")"};
 }
 
+Error V4l2Node::refusal(const std::string& what) const {
+  if (errno == ENODEV) return gone();
+  return {errno == EBUSY ? Fault::busy : Fault::protocol, path + ": " + what + " (" + std::strerror(errno) + ")"};
+}
+
 void V4l2Node::ask(unsigned long request, void* argument, const std::string& what) const {
-  if (driver->control(request, argument) == 0) return;
-  if (errno == ENODEV) throw gone();
-  const Fault fault = errno == EBUSY ? Fault::busy : Fault::protocol;
-  throw Error{fault, path + ": " + what + " (" + std::strerror(errno) + ")"};
+  if (driver->control(request, argument) != 0) throw refusal(what);
 }
 
 }  // namespace vam::device

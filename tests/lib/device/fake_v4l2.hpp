@@ -27,9 +27,12 @@ struct V4l2Script {
   std::vector<double> arrivals_s;                   // host times of the frames; empty: now
   int refuse_open = 0;                              // errno
   bool streams = true;
-  int rate_limit = 1000;  // frames a second; faster is not taken
-  bool gone = false;      // after the last frame: unplugged, else silent
-  int exposure = 0;       // seen
+  int rate_limit = 1000;    // frames a second; faster is not taken
+  int rate_errno = 0;       // of setting the rate
+  bool hides_rate = false;  // and of reading it
+  bool gone = false;        // after the last frame: unplugged, else silent
+  int exposure = 0;         // seen
+  bool exposes = true;      // has an exposure time
   std::map<__u32, int> controls{
       {V4L2_CID_AUTOGAIN, 1}, {V4L2_CID_GAIN, 17}, {V4L2_CID_GAMMA, 220}};  // besides, as it is
   std::set<__u32> stuck;                                                    // take no value
@@ -90,13 +93,15 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
           value.value = known->second;
           return 0;
         }
-        if (value.id != V4L2_CID_EXPOSURE_ABSOLUTE) return fail(EINVAL);
+        if (value.id != V4L2_CID_EXPOSURE_ABSOLUTE || !script_.exposes) return fail(EINVAL);
         (request == VIDIOC_S_CTRL ? script_.exposure : value.value) =
             request == VIDIOC_S_CTRL ? value.value : script_.exposure;
         return 0;
       }
       case VIDIOC_S_PARM:
       case VIDIOC_G_PARM: {
+        if (script_.rate_errno != 0 && (request == VIDIOC_S_PARM || script_.hides_rate))
+          return fail(script_.rate_errno);
         auto& period = static_cast<v4l2_streamparm*>(argument)->parm.capture.timeperframe;
         const auto limit = static_cast<__u32>(script_.rate_limit);
         if (request == VIDIOC_G_PARM || period.denominator > limit * period.numerator) period = {1, limit};

@@ -172,6 +172,37 @@ TEST_CASE("V4L2: an exposure or a gain between the steps of the camera is refuse
   CHECK(v4l2(script, clock, settings)->mode().gain == 100);
 }
 
+TEST_CASE("V4L2: a camera without an exposure time is refused with what it has") {
+  VirtualClock clock;
+  V4l2Script script;
+  script.exposes = false;
+  CHECK(v4l2(script, clock)->mode().exposure_us == 0);
+  CameraSettings settings;
+  settings.exposure_us = 20000;
+  const auto refusal = [&] { return error_of([&] { (void)v4l2(script, clock, settings); }, Fault::usage); };
+  CHECK(has(refusal(), "has no exposure time (V4L2_CID_EXPOSURE_ABSOLUTE); use another camera"));
+  script.controls[V4L2_CID_EXPOSURE] = 7;
+  CHECK(has(refusal(), "only an exposure without unit (V4L2_CID_EXPOSURE); use another camera"));
+}
+
+TEST_CASE("V4L2: a rate that cannot be set is taken where it agrees, and told where it is not known") {
+  VirtualClock clock;
+  V4l2Script script;
+  script.rate_limit = 30;
+  script.rate_errno = ENOTTY;
+  CameraSettings settings;
+  settings.fps = 30;
+  CHECK(said_by([&] { CHECK(v4l2(script, clock, settings)->mode().fps == doctest::Approx(30)); }).empty());
+  settings.fps = 25;
+  const auto call = [&] { (void)v4l2(script, clock, settings); };
+  CHECK(has(error_of(call, Fault::protocol), "the frame rate reads back as 30 instead of 25"));
+  script.hides_rate = true;
+  CHECK(has(said_by([&] { CHECK(v4l2(script, clock, settings)->mode().fps == 0); }),
+            "frames come at the camera's own rate, not necessarily at 25 Hz"));
+  script.rate_errno = EINVAL;
+  CHECK(has(error_of(call, Fault::protocol), "rejects the frame rate (VIDIOC_S_PARM)"));
+}
+
 TEST_CASE("V4L2: luma is of limited range unless the driver says otherwise") {
   struct Case {
     __u32 quantization, colorspace;

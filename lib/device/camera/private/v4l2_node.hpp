@@ -22,7 +22,9 @@ struct V4l2Node {
   std::unique_ptr<V4l2Driver> driver;
 
   [[nodiscard]] Error gone() const;
-  /// Throws Fault::absent when the camera is gone, busy or protocol when it refuses: "PATH: `what` (errno)".
+  /// By errno: absent when the camera is gone, else busy or protocol, "PATH: `what` (errno)".
+  [[nodiscard]] Error refusal(const std::string& what) const;
+  /// Throws refusal().
   void ask(unsigned long request, void* argument, const std::string& what) const;
 };
 
