@@ -60,25 +60,31 @@ class V4l2Camera final : public Camera {
   }
 
   std::optional<CapturedFrame> next() override {
-    const double limit_s = clock_.now_s() + settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 1);
+    const double patience_s = settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 1);
+    const double limit_s = clock_.now_s() + patience_s;
     for (;;) {
       check_interrupted();
       const double left_s = limit_s - clock_.now_s();
-      if (left_s <= 0) {
-        throw Error{Fault::busy, node_.path + ": no frame within " +
-                                     format_number(settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 1), 3) +
-                                     " s; check the trigger and other streams"};
-      }
+      if (left_s <= 0) throw silent("no frame within " + format_number(patience_s, 3) + " s");
       const int ready = node_.driver->wait(std::min(left_s, 0.2));
-      if (ready < 0) throw node_.gone();
+      if (ready < 0) throw silent("the stream has ended (POLLERR)");
       if (ready == 0) continue;
       auto buffer = capture_buffer();
       if (node_.driver->control(VIDIOC_DQBUF, &buffer) == 0) return take(buffer);
-      if (errno != EAGAIN) throw node_.gone();
+      if (errno == ENODEV) throw node_.gone();
+      if (errno != EAGAIN) throw silent(std::string("no frame (VIDIOC_DQBUF: ") + std::strerror(errno) + ")");
     }
   }
 
  private:
+  // Silent, or gone? It tells its name or it does not.
+  [[nodiscard]] Error silent(const std::string& what) const {
+    auto about = cleared<v4l2_capability>();
+    if (node_.driver->control(VIDIOC_QUERYCAP, &about) != 0) return node_.gone();
+    return {Fault::busy,
+            node_.path + ": " + what + ", although the camera responds; check cable, trigger and other streams"};
+  }
+
   static v4l2_buffer capture_buffer() {
     auto buffer = cleared<v4l2_buffer>();
     buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;

@@ -14,7 +14,8 @@ class V4l2Driver {
   virtual int control(unsigned long request, void* argument) = 0;  // ioctl
   virtual void* map(std::size_t size, std::size_t offset) = 0;     // MAP_FAILED for none
   virtual void unmap(void* start, std::size_t size) = 0;
-  /// 1: something to read; 0: not within so long, or a signal asks the tool to end; -1: the device is gone.
+  /// 1: something to read; 0: not within so long, or a signal asks the tool to end; -1: the stream has ended, the
+  /// device may be gone; errno tells nothing.
   virtual int wait(double seconds) = 0;
   virtual void close() = 0;
 };

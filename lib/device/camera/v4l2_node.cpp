@@ -5,7 +5,7 @@
 namespace vam::device {
 
 Error V4l2Node::gone() const {
-  return {Fault::absent, path + ": the camera is disconnected (" + std::strerror(errno) + ")"};
+  return {Fault::absent, path + ": the camera is disconnected (" + std::strerror(errno) + "); check cable and power"};
 }
 
 Error V4l2Node::refusal(const std::string& what) const {

@@ -26,11 +26,14 @@ struct V4l2Script {
   std::optional<__u32> stated_flags;                // before there are frames
   std::vector<double> arrivals_s;                   // host times of the frames; empty: now
   int refuse_open = 0;                              // errno
+  int queries = 0;                                  // seen
   bool streams = true;
   int rate_limit = 1000;    // frames a second; faster is not taken
   int rate_errno = 0;       // of setting the rate
   bool hides_rate = false;  // and of reading it
   bool gone = false;        // after the last frame: unplugged, else silent
+  bool ended = false;       // likewise, but still there
+  int dequeue_errno = 0;    // of the frame after the last
   int exposure = 0;         // seen
   bool exposes = true;      // has an exposure time
   std::map<__u32, int> controls{
@@ -51,9 +54,9 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
   void unmap(void*, std::size_t) override {}
   void close() override {}
   int wait(double seconds) override {
-    if (next_ < script_.sequence.size()) return 1;
-    errno = ENODEV;
-    if (script_.gone) return -1;
+    errno = 0;
+    if (next_ < script_.sequence.size() || script_.dequeue_errno != 0) return 1;
+    if (script_.gone || script_.ended) return -1;
     clock_.sleep_until(clock_.now_s() + seconds);
     return 0;
   }
@@ -61,6 +64,8 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
   int control(unsigned long request, void* argument) override {
     switch (request) {
       case VIDIOC_QUERYCAP: {
+        ++script_.queries;
+        if (script_.gone && next_ >= script_.sequence.size()) return fail(ENODEV);
         auto& what = *static_cast<v4l2_capability*>(argument);
         std::strcpy(reinterpret_cast<char*>(what.card), "fake");
         what.capabilities = V4L2_CAP_VIDEO_CAPTURE | (script_.streams ? V4L2_CAP_STREAMING : 0U);
@@ -133,6 +138,7 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
     return -1;
   }
   int hand_out(v4l2_buffer& buffer) {
+    if (next_ >= script_.sequence.size()) return fail(script_.dequeue_errno);
     buffer.index = queued_.front();
     queued_.pop_front();
     buffer.sequence = script_.sequence[next_++];

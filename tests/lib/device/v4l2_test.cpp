@@ -276,6 +276,32 @@ TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error fla
   CHECK(fault_of([&] { (void)camera->next(); }) == Fault::absent);
 }
 
+TEST_CASE("V4L2: a camera that stops sending is queried once: busy if it answers, else disconnected") {
+  const auto failure = [](V4l2Script script, Fault fault) {
+    VirtualClock clock;
+    script.sequence = {10};
+    const auto camera = v4l2(script, clock);
+    camera->start();
+    CHECK(camera->next()->number == 0);
+    script.queries = 0;
+    const std::string line = error_of([&] { (void)camera->next(); }, fault);
+    CHECK(script.queries <= 1);
+    return line;
+  };
+  V4l2Script script;
+  CHECK(has(failure(script, Fault::busy), "/dev/video9: no frame within 1 s, although the camera responds; check"));
+  script.ended = true;
+  CHECK(has(failure(script, Fault::busy), "the stream has ended (POLLERR), although the camera responds"));
+  script.dequeue_errno = EIO;
+  CHECK(has(failure(script, Fault::busy), "(VIDIOC_DQBUF: Input/output error), although the camera responds"));
+  script.gone = true;
+  CHECK(has(failure(script, Fault::absent), "the camera is disconnected (No such device); check cable and power"));
+  script.dequeue_errno = ENODEV;
+  CHECK(has(failure(script, Fault::absent), "the camera is disconnected (No such device)"));
+  script.dequeue_errno = 0;
+  CHECK(has(failure(script, Fault::absent), "the camera is disconnected (No such device)"));
+}
+
 TEST_CASE("V4L2: an unsupported setting is named in the error") {
   VirtualClock clock;
   V4l2Script script;
