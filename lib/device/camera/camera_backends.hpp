@@ -10,7 +10,7 @@ namespace vam::device {
 [[nodiscard]] std::unique_ptr<Camera> open_aravis_camera(const Address& address, const CameraSettings& settings,
                                                          Clock& clock);
 
-/// Option buffers. Exposure, frame rate and the formats GREY, Y10, Y12, Y16 and YUYV (its luma).
+/// Option buffers. Exposure, frame rate and the formats GREY, Y10, Y12, Y16, YUYV and UYVY (their luma).
 [[nodiscard]] std::unique_ptr<Camera> open_v4l2_camera(const Address& address, const CameraSettings& settings,
                                                        std::unique_ptr<V4l2Driver> driver, Clock& clock);
 

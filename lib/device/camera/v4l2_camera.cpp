@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -194,6 +197,9 @@ std::unique_ptr<Camera> open_v4l2_camera(const Address& address, const CameraSet
                                          std::unique_ptr<V4l2Driver> driver, Clock& clock) {
   if (settings.binning.value_or(1) != 1 || settings.trigger != "free") {
     throw Error{Fault::usage, "device '" + address.text + "': V4L2 supports neither binning nor triggers"};
+  }
+  if (address.place.empty()) {
+    throw Error{Fault::usage, "device '" + address.text + "': names no camera; give v4l2:PATH, e.g. v4l2:/dev/video0"};
   }
   return std::make_unique<V4l2Camera>(address, settings, std::move(driver), clock);
 }

@@ -25,6 +25,7 @@ struct V4l2Script {
   __u32 flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;  // of time stamps
   std::optional<__u32> stated_flags;                // before there are frames
   std::vector<double> arrivals_s;                   // host times of the frames; empty: now
+  __u32 field = V4L2_FIELD_ANY;                     // any: as requested
   int refuse_open = 0;                              // errno
   int queries = 0;                                  // seen
   bool streams = true;
@@ -83,6 +84,7 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
         pixels.width = 4;
         pixels.height = 2;
         deep_ = pixels.pixelformat != V4L2_PIX_FMT_GREY;
+        if (script_.field != V4L2_FIELD_ANY) pixels.field = script_.field;
         pixels.quantization = script_.quantization;
         pixels.colorspace = script_.colorspace;
         pixels.bytesperline = deep_ ? 8 : 6;  // padded rows

@@ -230,6 +230,30 @@ TEST_CASE("V4L2: luma is of limited range unless the driver says otherwise") {
   }
 }
 
+TEST_CASE("V4L2: the luma of UYVY is every second byte from the second on") {
+  VirtualClock clock;
+  V4l2Script script;
+  script.formats = {V4L2_PIX_FMT_UYVY};
+  script.sequence = {49};
+  script.quantization = V4L2_QUANTIZATION_FULL_RANGE;
+  const auto camera = v4l2(script, clock);
+  camera->start();
+  CHECK(camera->next()->levels.values == std::vector<std::uint16_t>{50, 52, 54, 56, 58, 60, 62, 64});
+}
+
+TEST_CASE("V4L2: interlaced fields and an address without a path are refused") {
+  VirtualClock clock;
+  V4l2Script script;
+  for (const __u32 field : {V4L2_FIELD_ALTERNATE, V4L2_FIELD_INTERLACED, V4L2_FIELD_TOP}) {
+    script.field = field;
+    CHECK(has(error_of([&] { (void)v4l2(script, clock); }, Fault::usage), "sends interlaced fields (V4L2 field "));
+  }
+  const auto open = [&] {
+    (void)open_v4l2_camera(parse_address("v4l2:", {"v4l2"}), {}, std::make_unique<FakeV4l2>(script, clock), clock);
+  };
+  CHECK(has(error_of(open, Fault::usage), "device 'v4l2:': names no camera; give v4l2:PATH, e.g. v4l2:/dev/video0"));
+}
+
 TEST_CASE("V4L2: a known depth is preferred, and one that is not known is told") {
   VirtualClock clock;
   V4l2Script script;
@@ -318,8 +342,12 @@ TEST_CASE("V4L2: an unsupported setting is named in the error") {
   CameraSettings deep;
   deep.format = "Y16";
   CHECK(fault(deep) == Fault::usage);
-  script.formats = {V4L2_PIX_FMT_MJPEG};
-  CHECK(message_of([&] { (void)v4l2(script, clock); }).find("no supported one") != std::string::npos);
+  CHECK(has(message_of([&] { (void)v4l2(script, clock, deep); }), "no pixel format Y16; it has YUYV, GREY, supported"));
+  script.formats = {V4L2_PIX_FMT_MJPEG, V4L2_PIX_FMT_NV12, V4L2_PIX_FMT_Y16_BE};
+  CHECK(has(message_of([&] { (void)v4l2(script, clock); }),
+            "no pixel format for grey; it has MJPG, NV12, Y16-BE, supported are GREY, Y12, Y10, Y16, YUYV, UYVY; use"));
+  script.formats.clear();
+  CHECK(has(message_of([&] { (void)v4l2(script, clock); }), "no pixel format for grey; it has none, supported"));
   script.formats = {V4L2_PIX_FMT_GREY};
   script.streams = false;
   CHECK(fault({}) == Fault::usage);
