@@ -191,6 +191,8 @@ void Session::say_axis() const {
   if (run_out_.seen()) {
     note("run-out of the vial " + format_number(run_out_.size_mm(), 3) + " +- " +
          format_number(run_out_.size_sigma_mm(), 2) + " mm, removed");
+  } else if (!run_out_.determined && !options_.keep_run_out) {
+    note("run-out of the vial: not determined by these views, none removed");
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/stats/median.hpp"
 
 namespace vam::metrology {
 
@@ -68,6 +69,12 @@ double difference(const std::vector<Image>& sinograms, int k, int t, int a) {
   return static_cast<double>(s(t, a)) - static_cast<double>(s(s.width - 1 - t, (a + s.height / 2) % s.height));
 }
 
+/// All that a fit needs of the views after some motion.
+struct Lines {
+  std::vector<Image> now;
+  std::array<std::vector<Image>, unknowns> by;  // one unit of each unknown
+};
+
 struct Sums {
   Matrix normal{};
   Vector right{};
@@ -84,8 +91,8 @@ int other_height(int k, int count) {
 }
 
 // Adds the lines of one height.
-void add_height(const std::vector<Image>& now, const std::array<std::vector<Image>, unknowns>& by, int k, double bound,
-                Sums& sums) {
+void add_height(const Lines& lines, int k, double bound, Sums& sums) {
+  const auto& [now, by] = lines;
   const int other = other_height(k, count_of(now));
   const Image& s = now[k];
   const int half = s.width / 2;
@@ -165,6 +172,37 @@ Vector variances(const Sums& sums, const Matrix& inverse) {
   return out;
 }
 
+// What the lines on edges differ by between their ends, those that see a motion best.
+std::vector<double> edge_differences(const Lines& lines) {
+  std::vector<double> sights;
+  std::vector<double> differences;
+  double sum = 0;
+  for (int k = 0; k < count_of(lines.now); ++k) {
+    const Image& s = lines.now[k];
+    for (int a = 0; a < s.height; ++a) {
+      for (int t = 2; t < s.width / 2; ++t) {
+        double sight = 0;
+        for (const auto& by : lines.by) sight += std::pow(difference(by, k, t, a), 2);
+        sights.push_back(sight);
+        differences.push_back(std::abs(difference(lines.now, k, t, a)));
+        sum += sight;
+      }
+    }
+  }
+  std::vector<double> out;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    if (sights[i] * static_cast<double>(sights.size()) >= sum) out.push_back(differences[i]);
+  }
+  return out;
+}
+
+// Their mean, each counted up to a few times the usual one: what is in single lines hardly counts.
+double usual_difference(const std::vector<double>& differences, double most) {
+  double sum = 0;
+  for (const double d : differences) sum += std::min(d, most);
+  return sum / static_cast<double>(std::max<std::size_t>(1, differences.size()));
+}
+
 std::vector<ColumnMotion> motion_of(const Vector& p, const PairBasis& basis) {
   std::vector<ColumnMotion> motion(basis.motion[0].size());
   for (int i = 0; i < unknowns; ++i) {
@@ -182,18 +220,25 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
                        const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of) {
   std::vector<Image> blurred = level;
   blur_columns(blurred);
+  const auto lines_after = [&](const Vector& value) {
+    std::vector<Image> moved = blurred;
+    undo_motion(moved, motion_of(value, basis), basis.axis_column);
+    Lines lines{sinograms_of(moved), {}};
+    for (int i = 0; i < unknowns; ++i) {
+      lines.by[i] = sinograms_of(slopes(moved, basis.motion[i], basis.axis_column));
+    }
+    return lines;
+  };
   PairFit fit;
+  std::vector<double> before;
   double bound = 1e300;
   constexpr int steps = 12;
   constexpr double near_px = 1e-2;  // a last step below this leaves far less
   for (int step = 0; step < steps && !fit.converged; ++step) {
-    std::vector<Image> moved = blurred;
-    undo_motion(moved, motion_of(fit.value, basis), basis.axis_column);
-    const std::vector<Image> now = sinograms_of(moved);
-    std::array<std::vector<Image>, unknowns> by;
-    for (int i = 0; i < unknowns; ++i) by[i] = sinograms_of(slopes(moved, basis.motion[i], basis.axis_column));
+    const Lines lines = lines_after(fit.value);
+    if (step == 0) before = edge_differences(lines);
     Sums sums;
-    for (int k = 0; k < count_of(now); ++k) add_height(now, by, k, bound, sums);
+    for (int k = 0; k < count_of(lines.now); ++k) add_height(lines, k, bound, sums);
     Matrix inverse{};
     if (!inverted(sums.normal, inverse)) return {};
     const Vector move = times(inverse, sums.right);
@@ -206,6 +251,11 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
     }
     bound = 2.5 * std::sqrt(sums.square / sums.sight) + 1e-30;
     fit.converged = step > 0 && farthest < near_px;
+  }
+  if (!before.empty()) {
+    constexpr double few = 3;
+    const double most = few * stats::median(before);
+    fit.explains = usual_difference(edge_differences(lines_after(fit.value)), most) < usual_difference(before, most);
   }
   return fit;
 }

@@ -75,6 +75,7 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   found.sigma_mm = {sigma_mm, sigma_mm};
   found.column = s.axis.column + fit.value[0];
   found.column_sigma = fit.sigma[0];
+  if (found.seen() && !fit.explains) found.determined = false;
   return found;
 }
 
@@ -86,7 +87,10 @@ double RunOut::size_sigma_mm() const {
   return std::hypot(mm[0] * sigma_mm[0], mm[1] * sigma_mm[1]) / size;
 }
 
-bool RunOut::seen() const { return determined && size_mm() > 3 * size_sigma_mm(); }
+bool RunOut::seen() const {
+  constexpr double sigmas = 3.44;  // of two components: as rarely exceeded by chance as 3 by one
+  return determined && size_mm() > sigmas * size_sigma_mm();
+}
 
 Json to_json(const RunOut& found) {
   if (!found.determined) return nullptr;

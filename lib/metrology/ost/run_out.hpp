@@ -20,7 +20,7 @@ struct RunOut {
 
   [[nodiscard]] double size_mm() const;
   [[nodiscard]] double size_sigma_mm() const;  // along its direction, or of a part where the size is 0
-  /// More than three standard deviations from 0.
+  /// Farther from 0 than chance takes one of 370.
   [[nodiscard]] bool seen() const;
 };
 

@@ -25,11 +25,13 @@ struct PairFit {
   PairVector value{};
   PairVector sigma{};
   bool converged = false;
+  bool explains = false;  // most lines on edges look more alike from both ends than without motion
 };
 
 /// Fits the motion after which each line looks alike from both of its ends. `level` has a view each, columns x heights;
 /// `sinograms_of` takes views to virtual sinograms, linearly, the axis in their middle. Gauss-Newton on the
-/// differences, far ones weighted down [HUB64]; standard deviations from the scatter between ranges of angle and of
+/// differences, far ones weighted down [HUB64]; bubbles, which are in single lines, can still pull it away from most of
+/// them, which `explains` tells. Standard deviations from the scatter between ranges of angle and of
 /// offset, as the errors of neighbouring lines are not independent [physics §8].
 [[nodiscard]] PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
                                      const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of);
