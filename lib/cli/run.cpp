@@ -78,12 +78,25 @@ Declaration App::whole() const {
 
 // CLI11 reports only that a count is wrong: find the option that comes twice, or the one whose value is missing.
 void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
+  const auto repeatable = [](const Declaration& tool, const std::string& flag) {
+    for (const auto& group : tool.groups) {
+      for (const auto& option : group.options) {
+        if (option.repeatable && long_flag(option) == flag) return true;
+      }
+    }
+    return false;
+  };
+  const Declaration tool = whole();
+  const auto may_repeat = [&](const std::string& flag) {
+    return repeatable(tool, flag) || std::any_of(tool.subcommands.begin(), tool.subcommands.end(),
+                                                 [&](const Declaration& nested) { return repeatable(nested, flag); });
+  };
   std::set<std::string> seen;
   std::string last;
   for (auto word = reversed_words.rbegin(); word != reversed_words.rend(); ++word) {
     if (!is_option(*word)) continue;
     last = flag_of(*word);
-    if (!seen.insert(last).second) throw Error{Fault::usage, last + ": given twice"};
+    if (!seen.insert(last).second && !may_repeat(last)) throw Error{Fault::usage, last + ": given twice"};
   }
   throw Error{Fault::usage, last + ": needs a value"};
 }

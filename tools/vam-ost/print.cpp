@@ -53,6 +53,12 @@ void Print::keep(model::Volume& volume) {
          format_number(bodies_.inside, 3) + ", so that parts are missing; calibrate the isovalue again" +
          (absorbs_ ? "" : ", or set camera.absorption_per_mm"));
   }
+  cut_ = metrology::cut_sides(volume, *isovalue_);
+  if (!cut_.empty()) {
+    warn("the print reaches the " + join(cut_, " and the ") +
+         " of the reconstructed volume, where its surface is a cut; let the camera see all of it, or reconstruct a "
+         "larger --radius");
+  }
   if (bodies_.dropped > 0) {
     note("dropped " + std::to_string(bodies_.dropped) + " bodies of " + format_number(bodies_.dropped_mm3, 3) +
          " mm3, the largest " + format_number(bodies_.largest_dropped_mm3, 3) + " mm3; kept " +
@@ -66,6 +72,12 @@ void Print::require_in(const model::Volume& volume) const {
   if (static_cast<double>(most) >= *isovalue_) return;
   throw Error{Fault::data, "no print at this threshold: scattering is below " + format_number(*isovalue_) +
                                " everywhere; check --isovalue"};
+}
+
+void Print::require_kept() const {
+  if (!isovalue_ || options_.mesh.empty() || bodies_.kept > 0) return;
+  throw Error{Fault::data, "no body is kept: the largest has " + format_number(bodies_.largest_dropped_mm3, 4) +
+                               " mm3; check --min-body" + (target_ ? " and --target" : "")};
 }
 
 void Print::write(const model::Volume& volume, const metrology::VoxelUncertainty* sigma) const {
@@ -103,6 +115,7 @@ std::optional<metrology::BodyCount> Print::bodies() const { return isovalue_ ? s
 Json Print::figures(const model::Volume& volume) const {
   if (!isovalue_) return Json::object();
   Json json{{"isovalue", *isovalue_}, {"bodies", metrology::to_json(bodies_)}};
+  json["bodies"]["cut"] = cut_;
   if (const auto now = state(volume)) json["print"] = metrology::to_json(*now);
   return json;
 }

@@ -23,6 +23,8 @@ class Print {
   void require_in(const model::Volume& volume) const;
   /// With an isovalue: drops the bodies that are not the print, for all that follows. Says what was dropped.
   void keep(model::Volume& volume);
+  /// Throws Fault::data when --mesh is wanted and keep() has dropped every body.
+  void require_kept() const;
   /// --mesh, with the uncertainty of its vertices where that of the voxels is known, and --projections.
   void write(const model::Volume& volume, const metrology::VoxelUncertainty* sigma = nullptr) const;
   /// What the last call of keep() kept and dropped; nothing without an isovalue.
@@ -40,6 +42,7 @@ class Print {
   metrology::BodyRules rules_;
   std::optional<model::Volume> target_;
   metrology::BodyCount bodies_;
+  std::vector<std::string> cut_;  // metrology::cut_sides
 };
 
 }  // namespace vam::ost_tool

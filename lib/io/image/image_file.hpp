@@ -35,11 +35,14 @@ void write_tiff(const std::string& path, const GreyImage& image);
 /// The numbered images of a folder (.png, .tif, .tiff) in the order of their numbers, so that 2 comes before 10.
 class ImageFolder {
  public:
-  /// Throws Error: no_input (no such folder), data (no image in it, a number missing or twice).
-  explicit ImageFolder(const std::string& folder);
+  /// `gaps`: numbers may be missing. Throws Error: no_input (no such folder), data (no image in it, a number twice, or
+  /// missing where it must not).
+  explicit ImageFolder(const std::string& folder, bool gaps = false);
 
   [[nodiscard]] int count() const { return count_of(paths_); }
   [[nodiscard]] const std::string& path(int index) const { return paths_[index]; }
+  /// Where the image stands in the whole series, from 0: its number from the first one's, in steps of the numbers.
+  [[nodiscard]] long place(int index) const { return places_[index]; }
 
   /// Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a
   /// time.
@@ -47,6 +50,7 @@ class ImageFolder {
 
  private:
   std::vector<std::string> paths_;
+  std::vector<long> places_;
   int width_ = 0;
   int height_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <charconv>
 #include <filesystem>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "io/image/image_file.hpp"
@@ -40,25 +41,32 @@ struct Numbered {
   fs::path path;
 };
 
-// A missing layer would shorten the part unseen. The step between numbers may be other than 1, but must stay the same.
-void check_gaps(const std::vector<Numbered>& images) {
+long step_of(const std::vector<Numbered>& images) {
+  long step = 0;
   for (std::size_t i = 1; i < images.size(); ++i) {
-    const long step = images[i].number - images[i - 1].number;
-    if (step == 0) {
+    const long gap = images[i].number - images[i - 1].number;
+    if (gap == 0) {
       throw Error{Fault::data,
                   images[i].path.string() + ": has the same number as " + images[i - 1].path.filename().string()};
     }
-    if (step != images[1].number - images[0].number) {
-      throw Error{Fault::data, images[i].path.string() + ": follows number " + std::to_string(images[i - 1].number) +
-                                   ", but the previous images are " +
-                                   std::to_string(images[1].number - images[0].number) + " apart; one is missing"};
-    }
+    step = std::gcd(step, gap);
+  }
+  return std::max(1L, step);
+}
+
+// A missing layer would shorten the part unseen. The step between numbers may be other than 1, but must stay the same.
+void require_no_gaps(const std::vector<Numbered>& images) {
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    if (images[i].number - images[i - 1].number == images[1].number - images[0].number) continue;
+    throw Error{Fault::data, images[i].path.string() + ": follows number " + std::to_string(images[i - 1].number) +
+                                 ", but the previous images are " +
+                                 std::to_string(images[1].number - images[0].number) + " apart; one is missing"};
   }
 }
 
 }  // namespace
 
-ImageFolder::ImageFolder(const std::string& folder) {
+ImageFolder::ImageFolder(const std::string& folder, bool gaps) {
   std::error_code problem;
   std::vector<Numbered> images;
   for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
@@ -69,8 +77,12 @@ ImageFolder::ImageFolder(const std::string& folder) {
   std::sort(images.begin(), images.end(), [](const Numbered& a, const Numbered& b) {
     return a.number != b.number ? a.number < b.number : a.path < b.path;
   });
-  check_gaps(images);
-  for (const auto& image : images) paths_.push_back(image.path.string());
+  const long step = step_of(images);
+  if (!gaps) require_no_gaps(images);
+  for (const auto& image : images) {
+    paths_.push_back(image.path.string());
+    places_.push_back((image.number - images.front().number) / step);
+  }
 }
 
 GreyImage ImageFolder::read(int index) {

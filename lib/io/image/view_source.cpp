@@ -93,8 +93,14 @@ ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::m
     state_->capture = read_manifest(path);
     state_->recorded = state_->capture->frames.begin();
   } else if (path != "-" && std::filesystem::is_directory(path)) {
-    state_->folder = std::make_unique<ImageFolder>(path);
+    state_->folder = std::make_unique<ImageFolder>(path, true);
     (void)state_->needed_step();
+    const ImageFolder& folder = *state_->folder;
+    const long missing = folder.place(folder.count() - 1) + 1 - folder.count();
+    if (missing > 0) {
+      warn(path + ": " + std::to_string(missing) + (missing == 1 ? " number is" : " numbers are") +
+           " missing between the first and the last; the others keep their angles");
+    }
   } else if (is_video(path)) {
     state_->video = std::make_unique<VideoReader>(path);
     (void)state_->needed_step();
@@ -117,7 +123,7 @@ bool ViewSource::next(CameraFrame& frame) {
     if (s.index >= s.folder->count()) return false;
     frame.name = s.folder->path(s.index);
     frame.image = to_image(s.folder->read(s.index));
-    frame.angle_deg = s.index * s.step_deg;
+    frame.angle_deg = static_cast<double>(s.folder->place(s.index)) * s.step_deg;
   } else {
     GreyImage grey;
     if (!s.video->next(grey)) return false;

@@ -20,7 +20,8 @@ struct CameraFrame {
 
 class ViewSource {
  public:
-  /// A folder of images and a video know no angles: frame i is taken at i * step_deg; so is a stack without angles of
+  /// A folder of images and a video know no angles: frame i is taken at i * step_deg, where the images of a folder
+  /// count by their numbers from the first one (some may be missing, with a warning); so is a stack without angles of
   /// its own and without an angle step. Throws Error: no_input, data (not a frame stack of a camera), usage (angles are
   /// needed but step_deg is 0).
   ViewSource(const std::string& path, double step_deg);

@@ -204,4 +204,27 @@ Json to_json(const BodyCount& count) {
           {"median_inside", count.inside}};
 }
 
+std::vector<std::string> cut_sides(const model::Volume& volume, double level) {
+  const model::Grid& g = volume.grid;
+  const auto at_level = [&](float value) { return static_cast<double>(value) >= level; };
+  const auto reaches = [&](int k) { return std::any_of(volume.slice(k), volume.slice(k + 1), at_level); };
+  const auto side = [&] {  // the ring of the outermost voxels that are seen from all sides
+    const double radius = 0.5 * (std::min(g.nx, g.ny) - 1) - 1;
+    for (int k = 0; k < g.nz; ++k) {
+      for (int j = 0; j < g.ny; ++j) {
+        for (int i = 0; i < g.nx; ++i) {
+          if (!at_level(volume.slice(k)[flat_index(j, g.nx, i)])) continue;
+          if (std::hypot(i - 0.5 * (g.nx - 1), j - 0.5 * (g.ny - 1)) >= radius) return true;
+        }
+      }
+    }
+    return false;
+  };
+  std::vector<std::string> cut;
+  if (reaches(g.nz - 1)) cut.emplace_back("top");
+  if (reaches(0)) cut.emplace_back("bottom");
+  if (side()) cut.emplace_back("side");
+  return cut;
+}
+
 }  // namespace vam::metrology

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/json_fwd.hpp"
 #include "model/grid.hpp"
@@ -40,5 +42,9 @@ struct BodyCount {
 BodyCount keep_bodies(model::Volume& volume, double level, const BodyRules& rules);
 
 [[nodiscard]] Json to_json(const BodyCount& count);
+
+/// Where { volume >= level } reaches the end of what the camera saw, so that its surface there is a cut: any of "top",
+/// "bottom" and "side".
+[[nodiscard]] std::vector<std::string> cut_sides(const model::Volume& volume, double level);
 
 }  // namespace vam::metrology

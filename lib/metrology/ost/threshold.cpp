@@ -153,6 +153,15 @@ void require_whole(const Image& overhead, const FittedCircle& circle, double pix
                                " mm from the axis; reconstruct a larger --radius or place the standard at the axis"};
 }
 
+// Of a circle beside the edge the mean is that of the background, or of the inside.
+void require_size(double apparent_mm, double stated_mm) {
+  constexpr double allowed = 0.05;
+  if (std::abs(apparent_mm / stated_mm - 1) <= allowed) return;
+  throw Error{Fault::data, "standard: appears " + format_number(apparent_mm, 4) + " mm in diameter, " +
+                               format_number(stated_mm, 4) +
+                               " mm are stated; check --diameter, camera.pixel_mm and the distance of the camera"};
+}
+
 }  // namespace
 
 Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double diameter_mm) {
@@ -164,6 +173,7 @@ Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double
   result.circle.radius = 0.5 * diameter_mm / pixel_mm;
   require_whole(overhead_mean, seen, pixel_mm);
   require_whole(overhead_mean, result.circle, pixel_mm);
+  require_size(result.apparent_diameter_mm, diameter_mm);
   const int points = std::max(360, static_cast<int>(2 * std::numbers::pi * result.circle.radius * 2));
   double sum = 0;
   double square = 0;

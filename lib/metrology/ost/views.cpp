@@ -73,12 +73,7 @@ std::string exposure_problem(const Image& raw) {
          "; shorten the exposure";
 }
 
-void require_exposed(const Image& raw, const std::string& subject) {
-  const std::string problem = exposure_problem(raw);
-  if (!problem.empty()) throw Error{Fault::data, subject + ": " + problem};
-}
-
-void require_alike(std::span<const CameraView> views) {
+std::vector<std::string> contrast_problems(std::span<const CameraView> views) {
   std::vector<double> contrast;
   for (const CameraView& view : views) {
     double sum = 0;
@@ -90,15 +85,16 @@ void require_alike(std::span<const CameraView> views) {
     const auto n = static_cast<double>(view.image.size());
     contrast.push_back(std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n))));
   }
-  if (contrast.empty()) return;
+  std::vector<std::string> problems(views.size());
+  if (contrast.empty()) return problems;
   constexpr double least = 0.2;
   const double usual = stats::median(contrast);
   for (std::size_t i = 0; i < contrast.size(); ++i) {
     if (contrast[i] >= least * usual) continue;
-    throw Error{Fault::data, "views: the frame at " + format_number(views[i].angle_deg, 5) +
-                                 " deg is dark, its contrast is " + format_number(contrast[i], 3) +
-                                 " and the others' " + format_number(usual, 3) + "; remove it or record it again"};
+    problems[i] =
+        "dark, its contrast is " + format_number(contrast[i], 3) + " and the others' " + format_number(usual, 3);
   }
+  return problems;
 }
 
 Image mean_view(std::span<const CameraView> views) {

@@ -31,12 +31,9 @@ struct CameraFields {
 /// Why a frame cannot be measured: no contrast at all (dark), or more than 2 % of its pixels at one and the same
 /// highest value (saturated). Empty when it can.
 [[nodiscard]] std::string exposure_problem(const Image& raw);
-/// Throws Fault::data for it.
-void require_exposed(const Image& raw, const std::string& subject);
-
-/// Throws Fault::data when a view has less than a fifth of the contrast (standard deviation) of the median view: the
-/// light failed, and only noise is left.
-void require_alike(std::span<const CameraView> views);
+/// For each view that has less than a fifth of the contrast (standard deviation) of the median view, what is wrong with
+/// it: the light failed, and only noise is left. Empty for the others.
+[[nodiscard]] std::vector<std::string> contrast_problems(std::span<const CameraView> views);
 
 /// The mean over even angles of one turn: what find_axis wants. Throws Fault::data when the turn is incomplete.
 [[nodiscard]] Image mean_view(std::span<const CameraView> views);

@@ -206,6 +206,12 @@ TEST_CASE("a folder is read in numerical order; gaps and differing sizes are err
   CHECK(ImageFolder(folder.path.string()).count() == 3);
   write_png(folder / "41.png", GreyImage(4, 3, 8));
   CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "10 apart; one is missing"));
+  std::filesystem::rename(folder / "41.png", folder / "40.png");
+  const ImageFolder gappy(folder.path.string(), true);
+  CHECK(gappy.place(0) == 0);
+  CHECK(gappy.place(2) == 2);
+  CHECK(gappy.place(3) == 4);
+  std::filesystem::rename(folder / "40.png", folder / "41.png");
   std::filesystem::rename(folder / "41.png", folder / "30.png");
   write_png(folder / "30_99999999999999999999.png", GreyImage(4, 3, 8));
   CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "is too large"));

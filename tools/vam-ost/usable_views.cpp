@@ -1,0 +1,45 @@
+#include "vam-ost/usable_views.hpp"
+
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/log.hpp"
+
+namespace vam::ost_tool {
+
+std::vector<metrology::CameraView> usable_views(Session& session, io::ViewSource& source, const std::string& subject) {
+  std::vector<metrology::CameraView> views;
+  std::vector<std::string> names;
+  std::vector<std::string> left_out;
+  const auto leave_out = [&](const std::string& name, const std::string& problem) {
+    left_out.push_back(name + ": " + problem);
+  };
+  io::CameraFrame frame;
+  while (source.next(frame)) {
+    const std::string problem = metrology::exposure_problem(frame.image);
+    if (!problem.empty()) {
+      leave_out(frame.name, problem);
+      continue;
+    }
+    views.push_back(session.take(frame));
+    names.push_back(frame.name);
+  }
+  const std::vector<std::string> unlike = metrology::contrast_problems(views);
+  std::vector<metrology::CameraView> usable;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (unlike[i].empty()) {
+      usable.push_back(std::move(views[i]));
+    } else {
+      leave_out(names[i], unlike[i]);
+    }
+  }
+  constexpr std::size_t one_of = 10;
+  const std::size_t all = usable.size() + left_out.size();
+  if (one_of * left_out.size() > all) {
+    throw Error{Fault::data, subject + ": " + std::to_string(left_out.size()) + " of " + std::to_string(all) +
+                                 " views cannot be used; " + left_out.front()};
+  }
+  for (const std::string& reason : left_out) warn(reason + "; the view is left out");
+  return usable;
+}
+
+}  // namespace vam::ost_tool
