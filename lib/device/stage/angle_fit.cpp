@@ -8,7 +8,6 @@ namespace vam::device {
 namespace {
 constexpr double encoder_sigma_deg = 1e-4;
 constexpr double unequal = 1.0 / 3;    // of the shortest round trip
-constexpr long enough = 10;            // samples, after which the shortest is taken as known
 constexpr double slowest_deg_s = 0.5;  // below, offsets are noise
 constexpr double ripple_s = 3e-3;      // what else moves the angle off a line, in time
 }  // namespace
@@ -17,19 +16,26 @@ AngleSample RoundTrips::timed(const StageSample& sample, double speed_deg_s) {
   const double taken_s = sample.t1_s - sample.t0_s;
   shortest_s_ = std::min(shortest_s_, taken_s);
   beyond_s_ = taken_s - shortest_s_;
-  // Even over both ways where the share is 0, of one way alone where it is 0.5.
-  const double unknown = std::sqrt(1 - 4 * share_ * share_);
-  const double spread_s = ++seen_ <= enough ? taken_s : std::hypot(unknown * beyond_s_, unequal * shortest_s_);
-  const double blur_deg = std::abs(speed_deg_s) * spread_s / std::sqrt(12.0);
-  const double t_s = 0.5 * (sample.t0_s + sample.t1_s) + share_ * beyond_s_;
-  const double rounding_deg = std::max(sample.step_deg / std::sqrt(12.0), encoder_sigma_deg);
-  return {t_s, sample.angle_deg, std::hypot(blur_deg, rounding_deg)};
+  last_ = sample;
+  speed_deg_s_ = speed_deg_s;
+  return at_share(share_, ++seen_ <= enough);
+}
+
+AngleSample RoundTrips::at_share(double share, bool whole) const {
+  // Even over both ways where the share is 0. A share of 0.5 leaves nothing unknown of most round trips, but of some.
+  constexpr double least_unknown = 0.5;
+  const double unknown_s = std::max(least_unknown, std::sqrt(1 - 4 * share * share)) * beyond_s_;
+  const double spread_s = whole ? last_.t1_s - last_.t0_s : std::hypot(unknown_s, unequal * shortest_s_);
+  const double blur_deg = std::abs(speed_deg_s_) * spread_s / std::sqrt(12.0);
+  const double rounding_deg = std::max(last_.step_deg / std::sqrt(12.0), encoder_sigma_deg);
+  const double t_s = 0.5 * (last_.t0_s + last_.t1_s) + share * beyond_s_;
+  return {t_s, last_.angle_deg, std::hypot(blur_deg, rounding_deg)};
 }
 
 // The slope of the offsets in time, by least squares about their means, with the prior that every share is as likely.
 void RoundTrips::learn(double off_deg, double speed_deg_s) {
   if (seen_ <= enough || std::abs(speed_deg_s) < slowest_deg_s) return;
-  const double off_s = off_deg / speed_deg_s + share_ * beyond_s_;  // from the middle
+  const double off_s = off_deg / speed_deg_s;
   ++count_;
   sum_ += beyond_s_;
   sum_off_ += off_s;
@@ -101,8 +107,10 @@ double AngleFit::speed_sigma_deg_s() const {
   return std::sqrt(slope_variance_);
 }
 
-void learn(RoundTrips& trips, const AngleFit& fit, const AngleSample& now) {
-  if (fit.ready()) trips.learn(now.angle_deg - fit.at(now.t_s).angle_deg, fit.speed_deg_s());
+void learn(RoundTrips& trips, AngleFit& middles) {
+  const AngleSample now = trips.middle();
+  if (middles.ready()) trips.learn(now.angle_deg - middles.at(now.t_s).angle_deg, middles.speed_deg_s());
+  middles.add(now);
 }
 
 }  // namespace vam::device

@@ -18,12 +18,18 @@ namespace vam::device {
 class RoundTrips {
  public:
   [[nodiscard]] AngleSample timed(const StageSample& sample, double speed_deg_s);
-  /// The sample that was timed last differs by so much from the angle expected at that time.
+  /// The sample that was timed last at its middle, whatever has been learned: a line through these keeps its slope.
+  [[nodiscard]] AngleSample middle() const { return at_share(0, seen_ <= enough); }
+  /// That sample differs by so much from the angle expected at its middle.
   void learn(double off_deg, double speed_deg_s);
   /// Of the time beyond the shortest round trip: -0.5 where answers are late, 0.5 where questions are.
   [[nodiscard]] double share() const { return share_; }
 
  private:
+  static constexpr long enough = 10;  // samples, after which the shortest round trip is taken as known
+  [[nodiscard]] AngleSample at_share(double share, bool whole) const;
+  StageSample last_;
+  double speed_deg_s_ = 0;
   long seen_ = 0;
   double shortest_s_ = std::numeric_limits<double>::infinity();
   double beyond_s_ = 0, share_ = 0;
@@ -51,7 +57,7 @@ class AngleFit {
   mutable double mean_t_s_ = 0, mean_deg_ = 0, slope_ = 0, slope_variance_ = 0, mean_variance_ = 0;
 };
 
-/// The times from the line so far; `now` is the sample timed last.
-void learn(RoundTrips& trips, const AngleFit& fit, const AngleSample& now);
+/// From the line through the middles so far, to which that of the sample timed last is then added.
+void learn(RoundTrips& trips, AngleFit& middles);
 
 }  // namespace vam::device

@@ -140,9 +140,8 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
     if (now.ramp) {
       explained([&] { require_moving(course, now, clock.now_s() - start_s); });
     } else {
-      explained([&] { require_on_line(fit, now); });
-      learn(trips, fit, now);
-      fit.add(now);
+      explained([&] { require_on_line(fit, trips.middle()); });
+      learn(trips, fit);
     }
     const bool ended = now.angle_deg >= 360.0 * plan.turns;
     if (ended || look++ % std::lround(looks) == 0) report(now);

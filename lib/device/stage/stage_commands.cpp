@@ -93,8 +93,7 @@ void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> s
   for (long n = 0; !seconds || static_cast<double>(n) < samples; ++n) {
     clock.sleep_until(start_s + static_cast<double>(n) * period_s);
     const AngleSample now = trips.timed(stage.sample(), fit.ready() ? fit.speed_deg_s() : 0);
-    learn(trips, fit, now);
-    fit.add(now);
+    learn(trips, fit);
     report(now);
   }
 }

@@ -59,8 +59,7 @@ Errors print(double ripple, double jitter_s, int seed) {
     sample.t0_s = asked_s;
     sample.t1_s = answered_s;
     const AngleSample now = trips.timed(sample, 25);
-    learn(trips, line, now);
-    line.add(now);
+    learn(trips, line);
     fit.add(now);
     asked_s = std::max(answered_s, asked_s + 0.01);
   }
