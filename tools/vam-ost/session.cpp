@@ -119,7 +119,12 @@ void Session::say_dirt() const {
     note("views divided by their relative intensities, which vary by " + format_number(dirt_.flicker_percent, 2) +
          " % (RMS)");
   }
-  if (!words.empty()) note("rays replaced by their reverse, half a turn later: " + words);
+  constexpr double many_percent = 5;  // of rays through bubbles; so many are rather something systematic
+  const bool systematic = !dirt_.bubbles_exceed_limit && dirt_.bubble_percent > many_percent;
+  if (!words.empty()) {
+    note("rays replaced by their reverse, half a turn later: " + words +
+         (systematic ? "; without bubbles, the resin absorbs at this wavelength (camera.absorption_per_mm)" : ""));
+  }
   if (dirt_.bubbles_exceed_limit) {
     note("views are inconsistent in " + format_number(dirt_.bubble_percent, 2) +
          " % of the rays: the print changes or wobbles, the axis is wrong, or the resin absorbs at this wavelength "
