@@ -49,6 +49,22 @@ TEST_CASE("bodies of less than a hundredth of the largest are dropped, cavities 
   CHECK(above == 2000 + 1 - 64 + 50);
 }
 
+TEST_CASE("where a print reaches the end of the volume is named") {
+  const model::Grid grid = model::centred_grid(41, 41, 20, 0.5);
+  const auto cut = [&](const std::array<int, 3>& low, const std::array<int, 3>& size) {
+    model::Volume volume{grid, std::vector<float>(grid.size())};
+    put(volume, low, size, 1);
+    return cut_sides(volume, 0.5);
+  };
+  using Sides = std::vector<std::string>;
+  CHECK(cut({10, 10, 1}, {20, 20, 18}).empty());
+  CHECK(cut({10, 10, 1}, {20, 20, 19}) == Sides{"top"});
+  CHECK(cut({10, 10, 0}, {20, 20, 20}) == Sides{"top", "bottom"});
+  CHECK(cut({20, 20, 5}, {19, 1, 1}).empty());
+  CHECK(cut({20, 20, 5}, {20, 1, 1}) == Sides{"side"});
+  CHECK(cut({5, 5, 5}, {1, 1, 1}) == Sides{"side"});  // beyond the circle that is seen from all sides
+}
+
 TEST_CASE("the smallest body, and the neighbourhood of a reference, can be set") {
   model::Volume volume = scene();
   CHECK(keep_bodies(volume, 0.5, {.least_mm3 = 0, .inside = {}}).kept == 3);
