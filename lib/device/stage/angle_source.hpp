@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "device/os/angle_sample.hpp"
 #include "device/os/clock.hpp"
-#include "device/stage/angle_fit.hpp"
 
 namespace vam::device {
 

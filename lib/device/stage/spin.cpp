@@ -7,6 +7,8 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "device/stage/angle_fit.hpp"
+#include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/private/stop_on_exit.hpp"
 
 namespace vam::device {
@@ -126,7 +128,8 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
     }
   };
   RoundTrips trips;
-  AngleFit fit;
+  AngleFit line;
+  RippleFilter middles;
   bool judged = false;
   long look = 0;
   for (double next_s = start_s;; next_s += period_s) {
@@ -136,12 +139,13 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
     raw.angle_deg *= plan.direction;
     AngleSample now = trips.timed(raw, plan.speed_deg_s);
     now.ramp = now.angle_deg < course.cruise_deg;
-    if (now.angle_deg >= -judged_s * plan.speed_deg_s && !std::exchange(judged, true)) require_speed(plan, fit);
+    if (now.angle_deg >= -judged_s * plan.speed_deg_s && !std::exchange(judged, true)) require_speed(plan, line);
     if (now.ramp) {
       explained([&] { require_moving(course, now, clock.now_s() - start_s); });
     } else {
-      explained([&] { require_on_line(fit, trips.middle()); });
-      learn(trips, fit);
+      explained([&] { require_on_line(line, trips.middle()); });
+      line.add(trips.middle());
+      learn(trips, middles);
     }
     const bool ended = now.angle_deg >= 360.0 * plan.turns;
     if (ended || look++ % std::lround(looks) == 0) report(now);

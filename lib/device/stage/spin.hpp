@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "device/stage/angle_fit.hpp"
+#include "device/os/angle_sample.hpp"
 #include "device/stage/stage.hpp"
 
 namespace vam::device {

@@ -7,6 +7,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/os/identity.hpp"
+#include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/private/stop_on_exit.hpp"
 #include "device/stage/spin.hpp"
 
@@ -88,12 +89,12 @@ void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> s
             const std::function<void(const AngleSample&)>& report) {
   const double start_s = clock.now_s();
   RoundTrips trips;
-  AngleFit fit;
+  RippleFilter middles;
   const double samples = seconds ? std::ceil(*seconds / period_s - 1e-6) : 0;  // one at the start, none at the end
   for (long n = 0; !seconds || static_cast<double>(n) < samples; ++n) {
     clock.sleep_until(start_s + static_cast<double>(n) * period_s);
-    const AngleSample now = trips.timed(stage.sample(), fit.ready() ? fit.speed_deg_s() : 0);
-    learn(trips, fit);
+    const AngleSample now = trips.timed(stage.sample(), middles.ready() ? middles.speed_deg_s() : 0);
+    learn(trips, middles);
     report(now);
   }
 }

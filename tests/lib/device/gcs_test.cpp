@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "device/stage/round_trips.hpp"
 #include "device/stage/spin.hpp"
 #include "fault_of.hpp"
 #include "virtual_stage.hpp"

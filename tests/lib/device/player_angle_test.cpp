@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/projector/player.hpp"
+#include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
 #include "virtual_stage.hpp"
 
@@ -59,7 +60,7 @@ class Replay final : public AngleSource {
   const Run& run_;
   Clock& clock_;
   std::size_t next_ = 0;
-  AngleFit fit_;
+  RippleFilter fit_;
 };
 
 // By the clock from the true moment of angle 0: as well as elapsed time can be started.

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "device/stage/angle_fit.hpp"
 #include "fault_of.hpp"
 #include "virtual_stage.hpp"
 

@@ -4,13 +4,16 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
-#include "device/stage/angle_fit.hpp"
+#include "device/os/angle_sample.hpp"
+#include "device/stage/round_trips.hpp"
 
 namespace vam::device {
 
 /// A Kalman filter. The line's speed may wander by a thousandth of itself in a second; the harmonics stay as they are
-/// learned, the first turn being enough, so that the run-up teaches them. After a jump the line is found anew.
+/// learned, the first turn being enough, so that the run-up teaches them. Those that do not stand out of the noise are
+/// left out: a stage has few, and 24 of them would follow the noise. After a jump the line is found anew.
 class RippleFilter {
  public:
   void add(const AngleSample& sample);
@@ -18,22 +21,38 @@ class RippleFilter {
   [[nodiscard]] bool ready() const;
   /// Needs ready(). sigma_deg is the filter's own uncertainty at t_s.
   [[nodiscard]] AngleSample at(double t_s) const;
+  /// Of the line, without ripple. Needs ready().
+  [[nodiscard]] double speed_deg_s() const;
 
  private:
   static constexpr std::size_t harmonics = 24;  // of the turn: periods down to 15 degrees
   static constexpr std::size_t size = 2 + 2 * harmonics;
   using Vector = std::array<double, size>;
 
+  // What is known of the line's angle, its speed, then cosine and sine of each harmonic, in degrees.
+  struct Belief {
+    Vector mean{};
+    std::array<Vector, size> covariance{};
+
+    [[nodiscard]] Vector covariance_with(const Vector& seen) const;
+    [[nodiscard]] double expected(const Vector& seen) const;
+    [[nodiscard]] double variance(const Vector& seen) const;
+    void observe(const Vector& seen, double value, double noise);
+  };
+
   void begin(const AngleSample& sample);
   void advance(double to_s);
   [[nodiscard]] static Vector seen_at(double angle_deg);
-  [[nodiscard]] double ripple_deg(double angle_deg) const;
-  [[nodiscard]] Vector times(const Vector& vector) const;
+  [[nodiscard]] const Belief& without_noise() const;
 
   int count_ = 0;
   double first_s_ = 0, t_s_ = 0;
-  Vector state_{};                     // line's angle, its speed, then cosine and sine of each harmonic, in degrees
-  std::array<Vector, size> spread_{};  // covariance
+  Belief all_;                                   // with every harmonic that may be
+  mutable std::optional<Belief> without_noise_;  // with those that stand out; made when asked for
 };
+
+/// The share of late answers, from what the filter expects, whose samples all are middles; then adds that of the
+/// sample timed last.
+void learn(RoundTrips& trips, RippleFilter& middles);
 
 }  // namespace vam::device
