@@ -9,8 +9,6 @@ namespace vam::cli {
 
 namespace {
 
-const std::vector<std::string> about{"--help", "--version", "--man", "--completion"};
-
 std::vector<const Option*> own_options(const Declaration& tool) {
   std::vector<const Option*> options;
   for (const auto& group : tool.groups) {
@@ -37,7 +35,7 @@ std::string literal(const std::string& text) {
 
 std::string bash(const Declaration& tool) {
   std::string function = "_" + tool.manual.name;
-  std::string flags = join(about, " ");
+  std::string flags = join(about_flags(), " ");
   std::string cases;
   for (const Option* option : options_of(tool)) {
     flags += " " + long_flag(*option);
@@ -67,7 +65,7 @@ std::string zsh(const Declaration& tool) {
       spec += ":" + option->value_name + ":_files";
     out += "  " + literal(spec) + " \\\n";
   }
-  for (const auto& name : about) out += "  " + literal(name) + " \\\n";
+  for (const auto& name : about_flags()) out += "  " + literal(name) + " \\\n";
   const std::string commands =
       tool.subcommands.empty() ? "" : "  " + literal("1:command:(" + join(command_names(tool), " ") + ")") + " \\\n";
   return out + commands + "  " + literal("*:file:_files") + "\n";
@@ -85,7 +83,7 @@ std::string fish(const Declaration& tool) {
     out +=
         begin + " -n __fish_use_subcommand -a " + nested.manual.name + " -d " + literal(nested.manual.summary) + "\n";
   }
-  for (const auto& name : about) out += begin + " -l " + name.substr(2) + "\n";
+  for (const auto& name : about_flags()) out += begin + " -l " + name.substr(2) + "\n";
   return out;
 }
 

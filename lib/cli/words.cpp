@@ -42,7 +42,7 @@ const Declaration& form_of(const Declaration& tool, const std::vector<std::strin
 }
 
 std::vector<std::string> flags_of(const Declaration& form) {
-  std::vector<std::string> flags{"--help", "--version", "--man", "--completion"};
+  std::vector<std::string> flags = about_flags();
   for (const Option& option : options_of_all()) flags.push_back(long_flag(option));
   for (const auto& group : form.groups) {
     for (const auto& option : group.options) flags.push_back(long_flag(option));
@@ -104,18 +104,38 @@ void rename_values(const Declaration& form, std::vector<std::string>& words) {
   }
 }
 
-// Where the first word stands that is neither an option nor an option's value; -1 when there is none.
-int first_operand(const Declaration& tool, const std::vector<std::string>& words) {
+bool is_about(const std::string& flag) {
+  return flag == "-h" || std::find(about_flags().begin(), about_flags().end(), flag) != about_flags().end();
+}
+
+// Of the tool, its commands, or every tool.
+const Option* find_of_any(const Declaration& tool, const std::string& flag) {
+  const auto& of_all = options_of_all();
+  const auto common =
+      std::find_if(of_all.begin(), of_all.end(), [&](const auto& option) { return has_name(option, flag); });
+  return common != of_all.end() ? &*common : find_option(tool, flag);
+}
+
+// Where the first word stands that is neither an option of the tool nor an option's value: an operand, or an option
+// that is misspelt, as one cannot know whether it has a value; -1 when there is none.
+int first_other(const Declaration& tool, const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--") return -1;
-    if (!is_option(words[i])) return static_cast<int>(i);
-    const Option* option = find_option(tool, words[i]);
-    if (option != nullptr && !option->value_name.empty()) ++i;  // its value
+    const std::string flag = flag_of(words[i]);
+    const Option* option = find_of_any(tool, flag);
+    const bool joined_short = is_option(words[i]) && words[i][1] != '-' && words[i].size() > 2;
+    if (option == nullptr && !joined_short && !is_about(flag)) return static_cast<int>(i);
+    if (option != nullptr && !option->value_name.empty() && flag == words[i]) ++i;  // its value
   }
   return -1;
 }
 
 }  // namespace
+
+const std::vector<std::string>& about_flags() {
+  static const std::vector<std::string> all{"--help", "--version", "--man", "--completion"};
+  return all;
+}
 
 const Option* find_option(const Declaration& tool, const std::string& flag) {
   const Option* found = find_own(tool, flag);
@@ -136,7 +156,7 @@ std::vector<std::string> command_names(const Declaration& tool) {
 }
 
 int find_command(const Declaration& tool, const std::vector<std::string>& words) {
-  const int place = first_operand(tool, words);
+  const int place = first_other(tool, words);
   if (place < 0) return -1;
   const auto names = command_names(tool);
   return std::find(names.begin(), names.end(), words[place]) == names.end() ? -1 : place;
@@ -145,9 +165,10 @@ int find_command(const Declaration& tool, const std::vector<std::string>& words)
 void require_command(const Declaration& tool, const std::vector<std::string>& words) {
   if (has_plain_form(tool) || find_command(tool, words) >= 0) return;
   const auto names = command_names(tool);
-  const int place = first_operand(tool, words);
+  const int place = first_other(tool, words);
   if (place < 0) throw Error{Fault::usage, "no command; give one of " + join(names, ", ")};
   const std::string& word = words[place];
+  if (is_option(word)) throw Error{Fault::usage, unknown_word(tool, words, word)};
   throw Error{Fault::usage,
               word + ": unknown command" + did_you_mean(word, names) + " (" + tool.manual.name + " --help lists all)"};
 }

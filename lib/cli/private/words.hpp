@@ -15,6 +15,9 @@ namespace vam::cli {
 /// The flag of "--flag=value".
 [[nodiscard]] std::string flag_of(const std::string& word);
 
+/// --help and the others that print and end.
+[[nodiscard]] const std::vector<std::string>& about_flags();
+
 [[nodiscard]] std::vector<std::string> command_names(const Declaration& tool);
 
 /// Where the command stands: the first word that is neither an option nor its value, when that is one. Else -1.

@@ -139,6 +139,9 @@ TEST_CASE("the error for a wrong option of a command names the command it belong
         "vam-demo: --sped: unknown option; did you mean --speed? (vam-demo spin --help lists all)\n");
   CHECK(said({"spinn"}, false) == "vam-demo: spinn: unknown command; did you mean spin? (vam-demo --help lists all)\n");
   CHECK(said({"--device", "spin"}, false) == "vam-demo: no command; give one of spin, move\n");
+  for (const auto& unknown : {std::vector<std::string>{"--foo", "3", "spin"}, {"--device", "x", "--foo=3", "spin"}}) {
+    CHECK(said(unknown, false) == "vam-demo: --foo: unknown option (vam-demo --help lists all)\n");
+  }
 }
 
 TEST_CASE("a tool with operands of its own runs without a command") {
