@@ -4,7 +4,7 @@
 // is the card's. $FAKE_DRM_FAULT=KIND[:N] spoils something, at the N-th page flip (buffer for no-memory) and after it:
 // not-master, no-memory, no-mode, gamma (stays as it is), interlaced (the first two modes, preferred), limited
 // (range of RGB stays as it is), limited-only (and has no other), taken (all CRTCs), no-properties (the connector has none), busy, lost (to another master), gone, silent (no event), late
-// (the event comes after 0.3 s), skip (every N-th flip is one blank late).
+// (the event comes after 0.3 s), skip (every N-th flip is one blank late), unplugged (of the cable alone: flips succeed).
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
@@ -149,11 +149,18 @@ static void *deliver(void *argument) {
   return NULL;
 }
 
+static void set_status(const char *text) {  // what sysfs says of HDMI-A-1
+  const int status = in_folder("status", O_WRONLY | O_CREAT | O_TRUNC);
+  if (write(status, text, strlen(text)) < 0) abort();
+  close(status);
+}
+
 static int flip(const struct drm_mode_crtc_page_flip *wish) {
   const double asked_s = now_s();
   if (spoils("busy", card->flips + 1) || asked_s < card->flip_due_s) return refuse(EBUSY);
   ++card->flips;
   if (spoils("lost", card->flips)) return refuse(EACCES);
+  if (spoils("unplugged", card->flips)) set_status("disconnected\n");
   if (wish->crtc_id != CRTC + 1) return refuse(ENOENT);
   unsigned blank = (unsigned)((asked_s - card->origin_s) / period_s) + 1;
   if (fault("skip") != 0 && card->flips % fault("skip") == 0) ++blank;
@@ -292,6 +299,7 @@ static int answer(unsigned long request, void *argument) {
       const struct drm_mode_crtc *crtc = argument;
       if (fault("no-mode") != 0) return refuse(EINVAL);
       if (spoils("lost", card->flips)) return refuse(EACCES);
+  if (spoils("unplugged", card->flips)) set_status("disconnected\n");
       note(now_s(), "\"event\":\"mode\",\"framebuffer\":%u,\"crtc\":%u,\"connector\":%u,\"columns\":%u,\"interlaced\":%d,\"shade\":\"%s\"",
            crtc->fb_id, crtc->crtc_id, *(const uint32_t *)(uintptr_t)crtc->set_connectors_ptr, crtc->mode.hdisplay,
            (crtc->mode.flags & DRM_MODE_FLAG_INTERLACE) != 0, shade(crtc->fb_id));
@@ -339,7 +347,9 @@ int open(const char *path, int flags, ...) {
   va_start(arguments, flags);
   const int mode = (flags & O_CREAT) != 0 ? va_arg(arguments, int) : 0;
   va_end(arguments);
+  if (card != NULL && strcmp(path, "/sys/class/drm/card0-HDMI-A-1/status") == 0) return in_folder("status", flags);
   if (card == NULL || strcmp(path, "/dev/dri/card0") != 0) return (int)syscall(SYS_openat, AT_FDCWD, path, flags, mode);
+  set_status("connected\n");
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return -1;
   struct stat about;

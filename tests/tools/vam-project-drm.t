@@ -103,6 +103,7 @@ spoilt 76 'gamma table' black gamma
 spoilt 75 'rejected a page flip' black busy:20
 spoilt 75 'rejected a page flip' '' lost:20
 spoilt 69 'rejected a page flip' '' gone:20
+spoilt 69 'the screen was disconnected or switched off; check its cable' black unplugged:20
 spoilt 75 'no flip within 0.25 s' black silent:20
 spoilt 75 'no flip within 0.25 s' black late:20
 spoilt 75 'missed 1 vertical blanks' black skip:20 0.001

@@ -23,6 +23,7 @@ namespace vam::device {
 namespace {
 
 constexpr double flip_timeout_s = 0.25;  // less than the guardian's patience
+constexpr double unplugged_s = 0.2;      // so often the cable is looked at
 
 std::string reason() { return std::string(" (") + std::strerror(errno) + ")"; }
 
@@ -86,6 +87,7 @@ class DrmDisplay final : public Display {
       throw Error{fault_of_card(), name_ + ": the GPU rejected a page flip" + reason()};
     }
     wait_for_flip();
+    require_connected();
     if (index < 0) unwatch();
     if (!again) prepare(index + 1);
     return flip_;
@@ -143,6 +145,14 @@ class DrmDisplay final : public Display {
     check_interrupted();
   }
 
+  void require_connected() {
+    const double now_s = clock_.now_s();
+    if (now_s - connected_s_ < unplugged_s) return;
+    connected_s_ = now_s;
+    if (is_connected(output_)) return;
+    throw Error{Fault::absent, name_ + ": the screen was disconnected or switched off; check its cable and power"};
+  }
+
   // The guardian shares the opened card, so that the images outlive the tool until black is on.
   void watch(bool lit) {
     if (guardian_ == nullptr) return;
@@ -172,6 +182,7 @@ class DrmDisplay final : public Display {
   std::vector<std::vector<std::uint8_t>> frames_;     // grey, at a byte a pixel
   std::uint64_t asked_ = 0;                           // flips so far
   Flip flip_;
+  double connected_s_ = 0;  // when it was looked at last
   int action_ = 0;
 };
 

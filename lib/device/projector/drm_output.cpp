@@ -5,6 +5,7 @@
 #include <xf86drm.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -137,7 +138,7 @@ bool find_output(int card, const std::string& wanted, const std::string& mode, D
     const bool connected = connector->connection == DRM_MODE_CONNECTED && connector->count_modes > 0;
     seen.push_back(connector_name(*connector) + (connected ? "" : " (nothing connected)"));
     if (!connected || connector_name(*connector) != wanted) continue;
-    output = {card, connector->connector_id, crtc_for(card, *resources, *connector), mode_called(*connector, mode)};
+    output = {card, connector->connector_id, crtc_for(card, *resources, *connector), mode_called(*connector, mode), {}};
     if (output.crtc != 0) return true;
     throw Error{Fault::busy, "drm:" + wanted +
                                  ": every display controller (CRTC) of the GPU drives another screen; unplug one, or "
@@ -183,12 +184,25 @@ DrmOutput open_drm_output(const std::string& connector, const std::string& mode)
       continue;
     }
     DrmOutput output;
-    if (find_output(card, connector, mode, output, seen)) return output;
+    if (find_output(card, connector, mode, output, seen)) {
+      output.status_file =
+          "/sys/class/drm/" + std::filesystem::path(path).filename().string() + "-" + connector + "/status";
+      return output;
+    }
     close(card);
   }
   throw Error{Fault::absent, "drm:" + connector + ": no such connected screen" +
                                  (seen.empty() ? (closed.empty() ? "; there is no GPU (/dev/dri)" : closed)
                                                : "; connectors: " + join(seen, ", "))};
+}
+
+bool is_connected(const DrmOutput& output) {
+  const int file = open(output.status_file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return true;  // not known
+  std::array<char, 32> text{};
+  const ssize_t size = read(file, text.data(), text.size());
+  close(file);
+  return std::string(text.data(), std::max<ssize_t>(size, 0)).rfind("disconnected", 0) != 0;
 }
 
 void send_full_range(const DrmOutput& output, const std::string& name) {

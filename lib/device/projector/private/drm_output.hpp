@@ -14,6 +14,7 @@ struct DrmOutput {
   std::uint32_t connector = 0;
   std::uint32_t crtc = 0;
   drmModeModeInfo mode{};
+  std::string status_file;  // where the kernel says whether a screen is connected
 };
 
 /// The nodes of the graphics cards, in order.
@@ -32,6 +33,10 @@ struct DrmScreen {
 /// one that drives it already, else one that no other screen has. mode: "1920x1080" or "1920x1080@60", empty: the one
 /// that the screen prefers. Throws Fault::absent naming the connectors there are, Fault::usage naming the modes.
 [[nodiscard]] DrmOutput open_drm_output(const std::string& connector, const std::string& mode);
+
+/// False when the screen has been unplugged, which flips do not notice. It is read from sysfs, which waits for no lock
+/// of the card, as asking the card might (Linux, drm_sysfs.c: status_show).
+[[nodiscard]] bool is_connected(const DrmOutput& output);
 
 /// Grey from 0 to 255 on the wire: a card left to itself sends 16 to 235 to a screen that it takes for a television
 /// (property "Broadcast RGB"; Linux, drm-kms: standard connector properties). Read back; nothing to do where the card
