@@ -5,7 +5,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size > fuzz::Pipe::room) return -1;
   const fuzz::FUZZ_SOURCE source(fuzz::text_of(bytes, size));
-  return fuzz::attempt([&] {
+  return fuzz::attempt_in_child([&] {
     vam::io::exr::StackParser parser(source.path);
     vam::Image image;
     vam::model::ImageInfo about;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <new>
 #include <string>
 
 #include "base/error.hpp"
@@ -71,6 +72,16 @@ int attempt(const Work& work) {
     if (error.fault == vam::Fault::bug) abort();
   }
   return 0;
+}
+
+/// The same in the child that parses a file, whose bounds of memory may be what ends it.
+template <class Work>
+int attempt_in_child(const Work& work) {
+  try {
+    return attempt(work);
+  } catch (const std::bad_alloc&) {
+    return 0;
+  }
 }
 
 inline std::string text_of(const std::uint8_t* bytes, std::size_t size) {
