@@ -65,8 +65,13 @@ model::Volume distance_band(const Surface& surface, const model::Grid& grid, dou
     for (int k = z.first; k < z.last; ++k) {
       for (int j = y.first; j < y.last; ++j) {
         float* row = volume.slice(k) + std::ptrdiff_t{j} * grid.nx;
+        double distance = middle;
+        int beyond = far ? edge : 0;  // voxels of the row that are farther than the band, as the one before tells
         for (int i = x.first; i < x.last; ++i) {
-          const double distance = far ? middle : at({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)});
+          if (beyond-- <= 0) {
+            distance = at({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)});
+            beyond = static_cast<int>(std::max(0.0, (std::abs(distance) - band_mm) / grid.voxel_mm));
+          }
           row[i] = static_cast<float>(std::clamp(distance, -band_mm, band_mm));
         }
       }
