@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <functional>
 #include <random>
 #include <string>
@@ -19,6 +18,7 @@
 #include "lib/io/box_mesh.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "lib/io/zip_writer.hpp"
+#include "trials.hpp"
 
 using namespace vam;
 using namespace vam::io;
@@ -150,8 +150,7 @@ std::string corrupted(std::string bytes, std::mt19937& random) {
 
 TEST_CASE("damage sweep: every cut and many corruptions of every format end with 0 or 65, soon and in little memory") {
   const scratch::Folder folder;
-  const char* given = std::getenv("VAM_TRIALS");
-  const int trials = given != nullptr ? std::atoi(given) : 200;
+  const int trials = trials_or(200);
   for (const Sample& sample : all_samples(folder)) {
     CAPTURE(sample.format);
     std::mt19937 random(7);

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <functional>
 #include <map>
 #include <random>
@@ -18,6 +17,7 @@
 #include "base/printable.hpp"
 #include "lib/io/exr_stacks.hpp"
 #include "lib/io/vdb_volumes.hpp"
+#include "trials.hpp"
 
 using namespace vam;
 using namespace vam::io;
@@ -81,8 +81,7 @@ std::string seen_volumes(const std::string& path) {
 // VAM_TRIALS bits of the file are flipped, one at a time. A flip that is not refused must leave everything as it was.
 void no_flip_unseen(const std::string& path, const std::string& whole,
                     const std::function<std::string(const std::string& path)>& read) {
-  const char* given = std::getenv("VAM_TRIALS");
-  const int trials = given != nullptr ? std::atoi(given) : 200;
+  const int trials = trials_or(200);
   spill(path, whole);
   const std::string wanted = read(path);
   std::mt19937 random(11);

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "io/image/private/ffv1.hpp"
 #include "lib/io/scratch.hpp"
+#include "trials.hpp"
 
 using vam::GreyImage;
 using namespace vam::io;
@@ -223,8 +224,7 @@ TEST_CASE("damage sweep: every flipped bit of a lossless video is detected, and 
     return seen;
   };
   const std::string wanted = frames_of(whole);
-  const char* given = std::getenv("VAM_TRIALS");
-  const int trials = given != nullptr ? std::atoi(given) : 200;
+  const int trials = trials_or(200);
   unsigned state = 3;
   int refused = 0;
   for (int trial = 0; trial < trials; ++trial) {

@@ -14,6 +14,7 @@
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/simplex.hpp"
+#include "trials.hpp"
 
 using namespace vam;
 using namespace vam::optimize;
@@ -168,8 +169,7 @@ TEST_CASE("rounding on rays that meet no void does not spoil the bound") {
 // VAM_TRIALS random parts, 6 by default; ctest --preset long has 1000.
 TEST_CASE("no method's light is better than the bound") {
   std::mt19937 random(13);
-  const char* given = std::getenv("VAM_TRIALS");
-  const int parts = given != nullptr ? std::atoi(given) : 6;
+  const int parts = trials_or(6);
   for (int part = 0; part < parts; ++part) {
     CAPTURE(part);
     const Case it{32, 24, random_part(32, random)};
