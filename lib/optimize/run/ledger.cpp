@@ -47,8 +47,7 @@ void Ledger::exchange(Archive& archive) {
   archive(dark_part_voxels_);
 }
 
-VolumeOutcome Ledger::outcome(bool grey, std::span<const int> job_of_slice) const {
-  VolumeOutcome outcome;
+void Ledger::complete(VolumeOutcome& outcome, bool grey, std::span<const int> job_of_slice) const {
   SliceFigures ended;  // passes that stopped earlier count with their last state
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     SliceFigures all = rows_[i];
@@ -69,7 +68,6 @@ VolumeOutcome Ledger::outcome(bool grey, std::span<const int> job_of_slice) cons
   outcome.iterations = iterations_;
   outcome.stop = stop_;
   outcome.dark_part_voxels = dark_part_voxels_;
-  return outcome;
 }
 
 }  // namespace vam::optimize

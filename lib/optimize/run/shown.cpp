@@ -50,7 +50,7 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
   std::iota(each_its_own.begin(), each_its_own.end(), 0);
   const std::vector<int> once(slices, 1);
   Ledger ledger;
-  std::vector<std::int64_t> wrong;
+  VolumeOutcome outcome;
   for (int first = 0; first < slices;) {
     const Pass pass = division.from(first, slices);
     PassInput input = read_pass(
@@ -63,11 +63,10 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
     shown.blurred().adjoint(sinograms, dose);
     input.problem.demands.window = {threshold, threshold};
     tally(dose, input.problem, pass, {task.part, each_its_own, once}, ledger);
-    if (light.couples_slices() && !task.demands.grey) wrong = wrong_voxels(dose, input.problem);
+    if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(dose, input.problem);
     first = pass.last;
   }
-  VolumeOutcome outcome = ledger.outcome(task.demands.grey, each_its_own);
-  outcome.wrong = std::move(wrong);
+  ledger.complete(outcome, task.demands.grey, each_its_own);
   return outcome;
 }
 

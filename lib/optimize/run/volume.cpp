@@ -69,22 +69,15 @@ class VolumeRun {
       if (!run_pass(division_.from(finished_.jobs(), jobs()), work)) return interrupted();
       work = {};
     }
-    VolumeOutcome outcome = ledger_.outcome(task_.demands.grey, schedule_.job_of_slice);
-    for (std::size_t k = 0; k < outcome.asked.size(); ++k) {
-      outcome.asked[k].peak = static_cast<double>(finished_.peaks()[k]);
+    ledger_.complete(outcome_, task_.demands.grey, schedule_.job_of_slice);
+    for (std::size_t k = 0; k < outcome_.asked.size(); ++k) {
+      outcome_.asked[k].peak = static_cast<double>(finished_.peaks()[k]);
     }
-    outcome.front = std::move(front_);
-    outcome.certificate = std::move(certificate_);
-    outcome.wrong = std::move(wrong_);
-    outcome.jobs = jobs();
-    outcome.efficiency = finished_.efficiency();
-    outcome.peak_intensity = finished_.peak();
-    outcome.max_intensity = max_intensity_;
-    outcome.even = even_;
-    if (even_.mean > 0) outcome.even_intensity = task_.demands.window.threshold() / even_.mean;
-    outcome.eigenvalue = eigenvalue_;
-    outcome.surface = surface_;
-    return outcome;
+    outcome_.jobs = jobs();
+    outcome_.efficiency = finished_.efficiency();
+    outcome_.peak_intensity = finished_.peak();
+    if (outcome_.even.mean > 0) outcome_.even_intensity = task_.demands.window.threshold() / outcome_.even.mean;
+    return std::move(outcome_);
   }
 
  private:
@@ -100,16 +93,17 @@ class VolumeRun {
   void fix_max_intensity() {
     const IntensityLimit& limit = task_.limit;
     if (limit.most <= 0 && limit.of_even <= 0) return;
-    even_ = task_.even.mean > 0 ? task_.even
-                                : even_dose(light_, task_.circle, division_.whole ? task_.source.slices : lanes);
-    if (!(even_.mean > 0)) return;  // dark: nothing to limit
+    outcome_.even = task_.even.mean > 0
+                        ? task_.even
+                        : even_dose(light_, task_.circle, division_.whole ? task_.source.slices : lanes);
+    if (!(outcome_.even.mean > 0)) return;  // dark: nothing to limit
     const double threshold = task_.demands.window.threshold();
-    max_intensity_ = limit.most > 0 ? limit.most : limit.of_even * threshold / even_.mean;
-    const double least = threshold / even_.largest;
-    if (task_.raising.factor > 0) max_intensity_ = std::max(max_intensity_, least);
-    const double reached = max_intensity_ * even_.largest;
-    if (task_.demands.grey || max_intensity_ >= least) return;
-    throw Error{Fault::usage, "a maximum intensity of " + format_number(max_intensity_, 3) +
+    outcome_.max_intensity = limit.most > 0 ? limit.most : limit.of_even * threshold / outcome_.even.mean;
+    const double least = threshold / outcome_.even.largest;
+    if (task_.raising.factor > 0) outcome_.max_intensity = std::max(outcome_.max_intensity, least);
+    const double reached = outcome_.max_intensity * outcome_.even.largest;
+    if (task_.demands.grey || outcome_.max_intensity >= least) return;
+    throw Error{Fault::usage, "a maximum intensity of " + format_number(outcome_.max_intensity, 3) +
                                   " gives a dose of at most " + format_number(reached, 3) +
                                   " if every pixel is lit at every angle, and the threshold is " +
                                   format_number(threshold) + "; more than " + format_number(least, 3) + " is needed"};
@@ -134,7 +128,7 @@ class VolumeRun {
     AtLimit at_limit;
     if (task_.front) {
       at_limit = [&](double most) {
-        front_.push_back(front_point(input.problem, light.blurred(), most, work.state, faced, task_.front));
+        outcome_.front.push_back(front_point(input.problem, light.blurred(), most, work.state, faced, task_.front));
       };
     }
     Limits limits = limits_of(pass);
@@ -151,9 +145,9 @@ class VolumeRun {
     }
     work.search.standing.best_light = {};
     ledger_.end(outcome);
-    eigenvalue_ = work.method->eigenvalue();
-    max_intensity_ = std::max(max_intensity_, most);  // the brightest pass sets the duration
-    if (task_.certify > 0) certificate_ = certify(input.problem, light.blurred(), work.state.g, task_.certify);
+    outcome_.eigenvalue = work.method->eigenvalue();
+    outcome_.max_intensity = std::max(outcome_.max_intensity, most);  // the brightest pass sets the duration
+    if (task_.certify > 0) outcome_.certificate = certify(input.problem, light.blurred(), work.state.g, task_.certify);
     finish(input.problem, work, pass, light.sharp(), faced);
     return true;
   }
@@ -169,8 +163,8 @@ class VolumeRun {
   }
 
   void begin(Work& work, const Pass& pass, const light::Operator& light) {
-    work.search.max_intensity = max_intensity_;
-    work.method = task_.make(max_intensity_);
+    work.search.max_intensity = outcome_.max_intensity;
+    work.method = task_.make(outcome_.max_intensity);
     if (!task_.initial) return;
     work.state.g = collapse_images(
         pass, [&](int job) { return task_.initial(slice(job)); }, light);
@@ -215,11 +209,12 @@ class VolumeRun {
     Iterate& state = work.state;
     const bool whole = division_.whole;
     if (division_.halo == 0) {  // slices that share dose with other passes are to scale already
-      bring_to_threshold(problem, light, whole ? Together::pass : Together::slice, max_intensity_, scenarios, state);
+      bring_to_threshold(problem, light, whole ? Together::pass : Together::slice, outcome_.max_intensity, scenarios,
+                         state);
     }
-    if (whole) surface_ = work.method->surface_miss(state.dose);
+    if (whole) outcome_.surface = work.method->surface_miss(state.dose);
     tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, times_}, ledger_);
-    if (light_.couples_slices() && !task_.demands.grey) wrong_ = wrong_voxels(state.dose, problem);  // one pass
+    if (light_.couples_slices() && !task_.demands.grey) outcome_.wrong = wrong_voxels(state.dose, problem);  // one pass
     hand_out(state, pass, light);
   }
 
@@ -253,10 +248,10 @@ class VolumeRun {
   /// The pass that is open, and what the ended ones left behind.
   void exchange_open(Archive& archive, Work& work) {
     ledger_.exchange(archive);
-    archive(even_.mean);
-    archive(even_.largest);
-    archive(max_intensity_);
-    exchange(archive, front_);
+    archive(outcome_.even.mean);
+    archive(outcome_.even.largest);
+    archive(outcome_.max_intensity);
+    exchange(archive, outcome_.front);
     work.search.exchange(archive);
     if (!work.method) work.method = task_.make(work.search.max_intensity);
     work.exchange(archive);
@@ -267,16 +262,11 @@ class VolumeRun {
   const light::Operator& light_;
   SliceReader reader_;
   Division division_;
-  double max_intensity_ = 0, eigenvalue_ = 0;
-  EvenDose even_;
-  std::optional<SurfaceMiss> surface_;
   RunMark mark_;
   Schedule schedule_;
   std::vector<int> times_;  // slices that a job stands for
   Ledger ledger_;
-  std::vector<FrontPoint> front_;
-  std::optional<Certificate> certificate_;
-  std::vector<std::int64_t> wrong_;
+  VolumeOutcome outcome_;  // filled in pass by pass; the ledger has what is of all of them
   Finished finished_{schedule_, task_.write};
   Progress progress_{task_.title, 0};
 };

@@ -25,8 +25,8 @@ class Ledger {
   /// What a slice leaves outside the part's box.
   void add_outside(const model::Outside& slice) { outside_.merge(slice); }
   void exchange(Archive& archive);
-  /// Everything but what the projections say. job_of_slice: as in Schedule.
-  [[nodiscard]] VolumeOutcome outcome(bool grey, std::span<const int> job_of_slice) const;
+  /// Fills in what all passes together say of the dose. job_of_slice: as in Schedule.
+  void complete(VolumeOutcome& outcome, bool grey, std::span<const int> job_of_slice) const;
 
  private:
   std::vector<SliceFigures> rows_, ends_;  // per iteration: of passes that got there, of passes that ended there
