@@ -14,6 +14,7 @@
 #include "io/settings/resin_record.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/compare/inspection.hpp"
+#include "metrology/compare/uncertainty.hpp"
 #include "model/conditions.hpp"
 #include "plot/deviation_histogram.hpp"
 #include "plot/save.hpp"

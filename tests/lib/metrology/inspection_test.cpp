@@ -13,6 +13,7 @@
 #include "lib/meshes.hpp"
 #include "metrology/compare/datum.hpp"
 #include "metrology/compare/trend.hpp"
+#include "metrology/compare/uncertainty.hpp"
 #include "solid/mesh/align.hpp"
 
 using namespace vam;

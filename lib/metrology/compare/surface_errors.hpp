@@ -1,0 +1,28 @@
+// What is known of the errors of a print's surface.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/mesh.hpp"
+#include "solid/mesh/surface.hpp"
+
+namespace vam::metrology {
+
+/// Standard uncertainties along the normal.
+struct SurfaceErrors {
+  std::string source;            // "volume", "mesh" or "roughness"
+  std::vector<float> vertex_mm;  // of each vertex of the print, independent from cell to cell
+  double cell_mm = 0;
+  double common_mm = 0;  // of the whole surface at once: that of the isovalue
+  double scale = 0;      // relative: that of the camera's pixel pitch
+};
+
+/// From the mesh alone: how the distances of neighbouring vertices differ, 1.4826 times the median magnitude over
+/// sqrt(2), for edges shorter than 2 % of the design. What neighbours have in common is not seen.
+[[nodiscard]] SurfaceErrors roughness(const model::TriangleSoup& print, const solid::Surface& design,
+                                      double largest_dimension_mm);
+/// Mean edge of a mesh: the cells of its errors.
+[[nodiscard]] double mean_edge_mm(const model::TriangleSoup& mesh);
+
+}  // namespace vam::metrology

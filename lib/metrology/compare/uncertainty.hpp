@@ -1,0 +1,20 @@
+// The expanded uncertainty of all figures of a print [GUM08; physics §8].
+#pragma once
+
+#include "base/json_fwd.hpp"
+#include "metrology/compare/inspection.hpp"
+#include "metrology/compare/surface_errors.hpp"
+
+namespace vam::metrology {
+
+/// Of each figure of figures_json() the expanded uncertainty (k = 2), under the same keys, by Monte Carlo [JCGM08]: 20
+/// trials disturb the distances by drawn errors, take out what the alignment would, and measure a quarter of the
+/// points; twice the standard deviation and mean departure combined. The mean departure of an extreme counts 1 /
+/// (sqrt(2) - 1) times, as it has the noise of the print already.
+[[nodiscard]] Json expanded_uncertainty(const Inspection& inspection, const model::TriangleSoup& print,
+                                        const SurfaceErrors& errors);
+
+/// RMS of the vertices, cell, and the common parts, for a report.
+[[nodiscard]] Json to_json(const SurfaceErrors& errors);
+
+}  // namespace vam::metrology
