@@ -48,8 +48,9 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
 void wait_until_standing(Stage& stage, Clock& clock, double period_s, double timeout_s,
                          const std::function<void(const AngleSample&)>& report = {});
 
-/// Turns to an absolute angle, or by an angle, and waits until the stage stands. Throws Fault::data when an
-/// absolute angle is commanded of a stage that is not referenced.
+/// Turns to an absolute angle, or by an angle, and waits until the stage stands there. Throws Fault::data when an
+/// absolute angle is commanded of a stage that is not referenced, or one beyond its travel; Fault::protocol when it
+/// stands elsewhere.
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s);
 
 /// Stops the stage and waits until it stands.

@@ -102,11 +102,21 @@ TEST_CASE("The controller's refusals are errors with their meaning") {
   CHECK(message_of([&] { lab.stage->set_speed(1000); }).find("faster than") != std::string::npos);
   CHECK(error_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }, Fault::data).find("maximum of") !=
         std::string::npos);
-  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }) == Fault::protocol);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }) == Fault::data);
+  CHECK(fault_of([&] { lab.stage->start_move(101); }) == Fault::protocol);
   CHECK_FALSE(lab.truly_moves());
   // A refusal is cleared by being read: the next order is judged for itself.
   move(*lab.stage, lab.clock, 50, false, 10, 10);
   CHECK(lab.stage->sample().angle_deg == 50);
+}
+
+TEST_CASE("A stage that stands elsewhere than at its target has not arrived") {
+  SimGcsSettings sim;
+  sim.referenced = true;
+  sim.faults.push_back({"block", "#5", 6});
+  VirtualStage lab(sim);
+  const auto told = error_of([&] { move(*lab.stage, lab.clock, 90, false, 30, 60); }, Fault::protocol);
+  CHECK(told.find("deg, not at 90; it is blocked, or its drive is off") != std::string::npos);
 }
 
 TEST_CASE("A slow motion times out and is stopped") {
