@@ -16,6 +16,7 @@ fails 64 '.--display: required' vam-calibrate-all
 fails 64 'not one of lag, latency' vam-calibrate-all --display null: --scans edge
 vam-calibrate --scans edge 2>moved.err
 is 'the former name still works, with a warning' "$? $(head -n 1 moved.err)" '64 vam-calibrate: warning: vam-calibrate --scans is now vam-calibrate-all --scans'
+fails 73 '/nowhere/log: cannot be written' vam-calibrate-all --display null: --log /nowhere/log
 fails 64 '.--scans: empty' vam-calibrate-all --display null: --scans ' '
 
 # A bench out of adjustment, its camera's stamps 40 ms late, its projector's light 30 ms. The projector's log tells the
@@ -29,6 +30,15 @@ calibrate() { vam-calibrate-all --display sdl:0 --light sim: --keep keep --log e
 
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'six scans in one run' calibrate 'edges axis beam latency lag response'
+# A signal ends what moves and what is lit at once.
+turning() { [ -s keep/angles.jsonl ]; }
+rm -f keep/angles.jsonl
+(exec env --default-signal=INT vam-calibrate-all --display sdl:0 --light sim: --keep keep --log aborted --scans lag 2>aborted.err) & scans=$!
+await turning
+sent=$(date +%s%N); kill -TERM $scans; wait $scans
+is 'TERM: status' $? 143
+holds 'TERM: within 2 s, where the scan turns for a minute' "$(date +%s%N) - $sent < 2000000000"
+is 'TERM: no tool is left' "$(pgrep -f 'vam-stage spin|vam-capture .*--view-step' | wc -l)" 0
 camera_down
 is 'every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' events)" 0
 is 'in the order of dependence' "$(grep -o '"event":"end","scan":"[a-z]*"' events | cut -d'"' -f8 | tr '\n' ' ')" 'lag latency response axis beam edges '
@@ -100,6 +110,8 @@ bench --serial another
 vam-print part.exr --display null: --need 'latency response axis' --view-step 90 --run foreign 2>foreign.err
 is 'a foreign camera is refused' "$? $(grep -c 'was measured with the camera VAM1, but the one in use is another; run vam-calibrate' foreign.err)" '65 1'
 is 'before any motion, and no folder is left' "$(ls -d foreign 2>/dev/null)" ''
+vam-print part.exr --display null: --need 'latency response axis' --view-step 90 --plan >plan.txt 2>foreign.err
+is 'the plan says so, too' "$? $(grep -c 'but the one in use is another' foreign.err) $(grep -c '^devices  *failed' plan.txt)" '65 1 1'
 camera_down
 echo '{"stage": {"serial": "another"}}' >other.json
 fails 65 'was measured with the stage .*, but the one in use is another; run vam-calibrate' vam-calibrate check --devices other.json
