@@ -91,9 +91,14 @@ ResponseCurve measure_response(const ResponseScan& scan) {
   for (const auto& readings : scan.light) means.push_back(mean_of(readings));
   const std::vector<stats::Measured> risen = monotone(means);
   const stats::Measured full = risen.back();
-  if (!(full.value > 3 * full.sigma) || full.value <= risen.front().value) {
-    throw Error{Fault::data, "response: full grey reads " + format_number(full.value) + " and black " +
-                                 format_number(risen.front().value) + "; no light reaches the camera"};
+  const stats::Measured black = risen.front();
+  constexpr double least_rise = 0.05;  // of full: a dim room leaves a projector more contrast
+  const double rise = full.value - black.value;
+  if (!(rise > 5 * std::hypot(full.sigma, black.sigma)) || rise < least_rise * full.value) {
+    throw Error{Fault::data,
+                "response: full grey reads " + format_number(full.value) + " and black " + format_number(black.value) +
+                    "; no light of the projector reaches the camera: check the lamp and its aperture, keep "
+                    "other light out, and give --dark"};
   }
   require_rising_end(scan.grey, means);
   ResponseCurve curve;
