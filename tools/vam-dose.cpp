@@ -10,6 +10,7 @@
 #include "vam-dose/expose.hpp"
 #include "vam-dose/options.hpp"
 #include "vam-dose/place.hpp"
+#include "vam-dose/shown.hpp"
 #include "vam-dose/unit.hpp"
 
 namespace {
@@ -19,7 +20,7 @@ using dose_tool::Options;
 
 /// Options -> light and voxels -> doses of a turn, slice by slice -> one unit for all -> volume and report.
 void run(const cli::App& app, Options& options) {
-  const model::Printer printer = tool::load_printer(options.printer);
+  const model::Printer printer = tool::load_printer(printer_of(options));
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
 

@@ -13,6 +13,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "device/os/interrupt.hpp"
+#include "io/settings/flip_log.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-status/light_view.hpp"
 #include "vam-status/page.hpp"
@@ -79,6 +80,7 @@ void declare(cli::App& app, Options& o) {
 std::optional<status_tool::LightView> light_of(const Options& o, const status_tool::RunFolder& run) {
   const std::string file = o.sinogram.empty() ? run.file("sinogram.exr") : o.sinogram;
   try {
+    io::require_sinogram_of(o.run, file);
     return status_tool::LightView(file, run.printer());
   } catch (const Error& error) {
     if (!o.sinogram.empty()) throw;

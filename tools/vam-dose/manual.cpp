@@ -33,8 +33,10 @@ std::vector<std::string> description() {
       "of the report is the --full-scale for vam-project.",
       "With --shown the dose is that delivered by a print according to its log: each image for the time and at the "
       "stage angles at which it was displayed, including missed vertical blanks, an abort and a stop by --until. "
-      "stage.speed_deg_s and the other settings must be those of the run: give its printer.toml as --printer. The "
-      "report then contains dose_shown instead of dose_per_turn, and shown_turns, the mean number of turns over the "
+      "Without --printer the settings are those of the run, its printer.toml; others are rejected where they change "
+      "the "
+      "light. The report then contains dose_shown instead of dose_per_turn, and shown_turns, the mean number of turns "
+      "over the "
       "stage angles.",
       "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print (resin.diffusion_mm2_s) "
       "blur the volume; the dose beyond its faces is assumed to be 0."};
@@ -68,7 +70,7 @@ std::vector<std::pair<std::string, std::string>> examples() {
        "vam-sinogram --filter ram-lak --negative clip --angles 90 part.vdb | vam-resample -o short.exr\n"
        "timeout 15 vam-print short.exr --display null: --uncalibrated --set stage.device=sim: --set "
        "stage.speed_deg_s=85 --max-missed 0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended "
-       "--printer ended/printer.toml --like part.vdb --report given.json -o given.vdb"}};
+       "--like part.vdb --report given.json -o given.vdb"}};
 }
 
 std::vector<std::string> notes() {

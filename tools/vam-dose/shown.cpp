@@ -10,6 +10,8 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/settings/flip_log.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/settings/printer_match.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::dose_tool {
@@ -55,7 +57,35 @@ void require_unchanged(const std::string& run) {
                                "; it was cut or changed; restore it, or delete it to use the logs unverified"};
 }
 
+// The settings that a run froze; empty: it is a log alone.
+std::string settings_of(const std::string& run) {
+  const fs::path file = fs::path(run) / "printer.toml";
+  return fs::is_regular_file(file) ? file.string() : "";
+}
+
+void require_settings_of(const std::string& run, const model::Printer& now) {
+  const std::string file = settings_of(run);
+  if (file.empty()) return;
+  const model::Printer then = io::load_printer(file, {});
+  std::vector<std::string> differences = io::light_differences(then, now);
+  const auto compare = [&](const char* key, double was, double is) {
+    if (was != is) differences.push_back(std::string(key) + " " + format_number(was) + ", now " + format_number(is));
+  };
+  compare("stage.speed_deg_s", then.stage.speed_deg_s, now.stage.speed_deg_s);
+  compare("projector.max_intensity_mw_cm2", then.projector.max_intensity_mw_cm2, now.projector.max_intensity_mw_cm2);
+  compare("projector.min_intensity_mw_cm2", then.projector.min_intensity_mw_cm2, now.projector.min_intensity_mw_cm2);
+  if (differences.empty()) return;
+  throw Error{Fault::data, run + ": was printed with other settings: " + join(differences, "; ") +
+                               "; omit --printer and --set, or give --printer " + file};
+}
+
 }  // namespace
+
+cli::PrinterOptions printer_of(const Options& options) {
+  cli::PrinterOptions printer = options.printer;
+  if (printer.file.empty() && !options.shown.empty()) printer.file = settings_of(options.shown.front());
+  return printer;
+}
 
 std::vector<double> shown_turns(const Options& options, const model::StackInfo& info, const model::Printer& printer) {
   if (options.shown.empty()) return {};
@@ -69,14 +99,10 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
                                  " degrees of stage angles; --shown requires one turn"};
   }
   std::vector<double> turns(info.height);
-  const std::string sinogram = options.input == "-" ? "" : io::sha256_of(options.input);
   for (const std::string& run : options.shown) {
     require_unchanged(run);
-    const std::string armed = io::armed_sinogram(run);
-    if (!armed.empty() && !sinogram.empty() && armed != sinogram) {
-      throw Error{Fault::data, options.input + ": is not the sinogram of " + run + ", whose SHA-256 begins " +
-                                   armed.substr(0, 8) + "; give the one that was shown"};
-    }
+    io::require_sinogram_of(run, options.input);
+    require_settings_of(run, printer);
     const auto of_run = io::turns_shown(io::read_shown(run), rows, printer.stage.speed_deg_s);
     std::transform(turns.begin(), turns.end(), of_run.begin(), turns.begin(), std::plus<>{});
   }

@@ -5,14 +5,19 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "cli/common.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
 #include "vam-dose/options.hpp"
 
 namespace vam::dose_tool {
 
+/// The printer that the options name; where none is named, that of the run: what it froze.
+[[nodiscard]] cli::PrinterOptions printer_of(const Options& options);
+
 /// Turns for which each row of the sinogram was shown, summed over the runs of --shown; empty without. Throws
-/// Fault::data where nothing was shown at all, or the stack is none of a projector.
+/// Fault::data where nothing was shown at all, the stack is none of a projector, or a run used another stack or other
+/// settings of the light.
 [[nodiscard]] std::vector<double> shown_turns(const Options& options, const model::StackInfo& info,
                                               const model::Printer& printer);
 

@@ -10,12 +10,25 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
 namespace {
 
 constexpr double last_run_up_deg = -360;  // from this angle on missed blanks are judged
+
+// SHA-256 of the sinogram of a run folder; empty where it is not known.
+std::string armed_sinogram(const std::string& run) {
+  if (!std::filesystem::is_directory(run)) return "";
+  std::ifstream events((std::filesystem::path(run) / "events.jsonl").string());
+  for (std::string text; std::getline(events, text);) {
+    const Json event = parse_json(text);
+    if (!event.is_object() || !event.contains("sinogram_sha256")) continue;
+    if (event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -68,15 +81,11 @@ std::vector<ShownImage> read_shown(const std::string& path) {
   return log.shown();
 }
 
-std::string armed_sinogram(const std::string& run) {
-  if (!std::filesystem::is_directory(run)) return "";
-  std::ifstream events((std::filesystem::path(run) / "events.jsonl").string());
-  for (std::string text; std::getline(events, text);) {
-    const Json event = parse_json(text);
-    if (!event.is_object() || !event.contains("sinogram_sha256")) continue;
-    if (event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
-  }
-  return "";
+void require_sinogram_of(const std::string& run, const std::string& sinogram) {
+  const std::string armed = armed_sinogram(run);
+  if (armed.empty() || sinogram == "-" || armed == sha256_of(sinogram)) return;
+  throw Error{Fault::data, sinogram + ": is not the sinogram of " + run + ", whose SHA-256 begins " +
+                               armed.substr(0, 8) + "; give the one that was shown"};
 }
 
 std::vector<double> turns_shown(const std::vector<ShownImage>& shown, const StageRows& rows, double speed_deg_s) {

@@ -47,9 +47,9 @@ class FlipLog {
 /// left out. Throws Fault::no_input, Fault::data for another kind of file.
 [[nodiscard]] std::vector<ShownImage> read_shown(const std::string& path);
 
-/// SHA-256 of the sinogram file that a run folder's print was armed with; empty where it is not known, as for a log
-/// alone.
-[[nodiscard]] std::string armed_sinogram(const std::string& run);
+/// Throws Fault::data when a sinogram is not that of a run folder, by the hash in its events.jsonl. A log alone, and a
+/// sinogram that comes through a pipe ("-"), are taken on trust.
+void require_sinogram_of(const std::string& run, const std::string& sinogram);
 
 /// Stage angles of a sinogram's rows, which are spread evenly over one turn, in either sense.
 struct StageRows {
