@@ -17,6 +17,14 @@ is 'progress at the end' "$(json accepted/summary.json reached.turns | cut -c1-3
 
 fails 64 'vam-print: stage.device: no device is set; .*--set stage.device=DEVICE' print --set stage.device= --run none
 
+# Every device is asked before anything moves; the folder of a print that cannot begin is not left.
+refused_by() { status=$1 regex=$2; shift 2; fails "$status" "$regex" print --run refused "$@"; is 'no folder is left' "$(ls -d refused 2>/dev/null)" ''; }
+refused_by 69 'nowhere: not a serial port' --set stage.device=gcs:/nowhere
+refused_by 69 'nowhere: cannot open' --view-step 90 --set camera.device=v4l2:/nowhere
+refused_by 69 'no such device; check power and cable' --light dlpc350:
+refused_by 76 'above the limit of 10 %' --set projector.max_led_current_percent=10
+refused_by 65 'exceeds the stage.s maximum' --set stage.speed_deg_s=1000
+
 # The plan: the figures, every problem, and no file left.
 plan() { print --plan "$@"; }
 sed 's/sim:?/sim:?log=moved\&/' printer.toml >watched.toml
@@ -192,6 +200,8 @@ fails 66 'edited/events.jsonl: cannot open' vam-dose frames.exr --printer whole/
 mv kept edited/events.jsonl
 fails 65 'home=here, whose zero ended with the print' print --resume again --set 'stage.device=grbl:/dev/ttyACM0?home=here' --run none
 is 'another device is not a different setting' "$(print --resume again --plan --set 'stage.device=sim:' --set resin.name=new 2>&1 | grep -c 'other settings')" 0
+fails 65 'whole: was printed with other settings: stage.speed_deg_s 90, now 60; omit --printer and --set' vam-dose frames.exr --shown whole --set stage.speed_deg_s=60 -o none.vdb
+ok 'the settings of a run are its own' env VAM_PRINTER=nowhere vam-dose frames.exr --shown whole -o own.vdb
 dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o "$1.vdb" $2; }
 ok 'the dose of a run' dose whole.dose '--shown whole'
 ok 'that of a killed one' dose killed.dose '--shown killed'
@@ -210,6 +220,21 @@ fails 65 'other.exr: not the sinogram of killed' vam-print other.exr --display n
 fails 65 'none: no light was shown|no light was shown' sh -c ': >empty; vam-dose frames.exr --shown empty -o x.vdb; status=$?; rm -f empty; exit $status'
 fails 64 './killed/flips.jsonl is given twice' vam-dose frames.exr --shown killed --shown ./killed/flips.jsonl -o x.vdb
 fails 66 'nowhere' vam-dose frames.exr --shown nowhere -o x.vdb
+fails 65 'other.exr: is not the sinogram of whole' vam-status whole --page page.html --sinogram other.exr
+
+# A projector that hangs is ended; how long its last image stayed on is logged.
+print --turns 9 --run hang 2>hang.err & printing=$!
+lit() { grep -q '"frame":[0-9]' hang/flips.jsonl 2>/dev/null; }
+await lit
+kill -STOP "$(pgrep -f 'vam-project .*--printer hang/printer.toml' | head -n 1)"
+wait $printing
+is 'a hanging projector ends the print' "$? $(grep -c 'project was stopped by a signal and is ended' hang.err)" '137 1'
+is 'how long its image stayed on is said' "$(grep -Ec 'warning: the last image stayed on for [0-9.]+ s, while the stage turned by [0-9]+ deg' hang.err)" 1
+on=$(tail -n 2 hang/flips.jsonl | grep -o '"t_monotonic_s":[0-9.]*' | cut -d: -f2 | awk 'NR == 1 { on = $1 } NR == 2 { printf "%.3f", $1 - on }')
+holds 'and logged' "$on > 0.3 && $on < 3"
+is 'as black' "$(tail -n 1 hang/flips.jsonl | grep -o '"frame":-1.*"by":"vam-print"' | wc -l)" 1
+fails 74 'standard output: cannot be written' sh -c 'vam-print frames.exr --display null: --uncalibrated --plan >/dev/full'
+
 fails 64 'omit --exposure-plan' vam-dose frames.exr --shown whole --exposure-plan --like part.vdb --set resin.absorption_per_mm=0.1 --set resin.critical_dose_mj_cm3=5 -o x.vdb
 
 # A disk that fills during the print.
