@@ -66,7 +66,7 @@ cli::Manual manual() {
 
 void declare(cli::App& app, Options& o) {
   app.positional("RUN", o.run, "Run folder of vam-print.");
-  app.flag("--watch", o.watch, "Repeat until the print has ended.").was("--follow");
+  app.flag("--watch", o.watch, "Repeat until the print has ended, or vam-print was killed.").was("--follow");
   app.option("--interval", "S", o.period_s, {0.2, 3600}, "Time between two lines or updates of the page.")
       .was("--every");
   app.option("--page", "FILE", o.page, "Write a page that refreshes itself (HTML).").writes_as({".html"});
@@ -97,7 +97,7 @@ void run(const Options& o) {
   const bool in_place = o.watch && isatty(STDOUT_FILENO) == 1;
   for (bool more = true; more;) {
     run.read();
-    more = o.watch && !run.progress().outcome;
+    more = o.watch && !run.progress().outcome && !run.progress().abandoned;
     if (!o.page.empty()) io::write_text(o.page, status_tool::page(name, run, light ? &*light : nullptr, o.period_s));
     if (o.page.empty() || o.watch) {
       const std::string line = status_tool::status_line(run.progress(), run.printer().stage.speed_deg_s);

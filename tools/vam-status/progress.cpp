@@ -1,5 +1,9 @@
 #include "vam-status/progress.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -49,6 +53,15 @@ double number(const Json& line, const char* key, double otherwise) {
 }
 std::string word(const Json& line, const char* key) {
   return line.contains(key) && line[key].is_string() ? line[key].get<std::string>() : "";
+}
+
+// vam-print keeps a lock on its events until the last tool has ended.
+bool is_locked(const std::string& file) {
+  const int handle = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (handle < 0) return true;  // not armed yet
+  const bool locked = flock(handle, LOCK_SH | LOCK_NB) != 0;
+  close(handle);
+  return locked;
 }
 
 // vam-print writes these before it is armed; a printer file with more beside it is a user's own.
@@ -110,6 +123,7 @@ void RunFolder::read_events() {
       progress_.status = static_cast<int>(number(line, "status", 0));
     }
   });
+  progress_.abandoned = !progress_.outcome && progress_.silent_s > silence_s && !is_locked(file("events.jsonl"));
   progress_.simulated.clear();
   const auto look = [&](const char* log, const char* event, const char* what) {
     bool simulated = false;

@@ -28,7 +28,8 @@ struct PrintProgress {
   std::optional<double> missing_percent;  // of the part, by live metrology
   std::optional<std::string> outcome;     // when it has ended
   int status = 0;
-  double silent_s = 0;  // since the last entry of a log
+  double silent_s = 0;     // since the last entry of a log
+  bool abandoned = false;  // it is silent, and nobody writes: vam-print was killed
   std::vector<std::string> simulated;
   std::vector<RecordAge> records;
 };

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "device/camera/private/kept_sigpipe.hpp"
 #include "device/camera/v4l2_driver.hpp"
 
 namespace vam::device {
@@ -16,6 +17,7 @@ namespace {
 std::string text(const char* value) { return value != nullptr ? value : ""; }
 
 void add_genicam(std::vector<Found>& found) {
+  const KeptSigpipe kept;
   arv_update_device_list();
   for (unsigned i = 0; i < arv_get_n_devices(); ++i) {
     const std::string protocol = text(arv_get_device_protocol(i));

@@ -36,8 +36,12 @@ class V4l2Camera final : public Camera {
   V4l2Camera(const Address& address, const CameraSettings& settings, std::unique_ptr<V4l2Driver> driver, Clock& clock)
       : node_{address.place, std::move(driver)}, settings_(settings), clock_(clock) {
     if (node_.driver->open(node_.path.c_str()) < 0) {
-      const bool busy = errno == EBUSY;
-      throw Error{busy ? Fault::busy : Fault::absent, node_.path + ": cannot open: " + std::strerror(errno)};
+      const int reason = errno;
+      const char* remedy = reason == EACCES  ? "; add the user to the group that owns it (usually video)"
+                           : reason == EBUSY ? "; end the program that uses it"
+                                             : "; vam-devices lists the cameras";
+      throw Error{reason == EBUSY ? Fault::busy : Fault::absent,
+                  node_.path + ": cannot open: " + std::strerror(reason) + remedy};
     }
     check_capture();
     format_ = choose_format(node_, settings_.format, mode_);

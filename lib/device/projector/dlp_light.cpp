@@ -54,9 +54,11 @@ class DlpLight final : public LightEngine {
   DlpLight(std::unique_ptr<UsbLink> usb, const LightSettings& settings, Clock& clock, Guardian* guardian)
       : link_(std::move(usb), clock, guardian), settings_(settings), guardian_(guardian) {
     if (settings.current_percent.value_or(0) > settings.max_current_percent) {
-      throw Error{Fault::usage, link_.name() + ": current of " + in_percent(*settings.current_percent) +
-                                    " is above the limit of " + in_percent(settings.max_current_percent) +
-                                    "; raise projector.max_led_current_percent only within the rating of the LEDs"};
+      throw Error{Fault::usage,
+                  link_.name() + ": current of " + in_percent(*settings.current_percent) + " is above the limit of " +
+                      in_percent(settings.max_current_percent) +
+                      "; lower current_percent, or raise the limit (projector.max_led_current_percent, and "
+                      "max_current_percent of the device) within the rating of the LEDs"};
     }
     if (settings.leds.empty()) throw Error{Fault::usage, link_.name() + ": leds= names no LED; give any of r, g and b"};
     for (const char led : settings.leds) {

@@ -111,7 +111,7 @@ class GrblStage final : public Stage {
   void start_move(double angle_deg) override {
     watch();
     std::array<char, 80> text{};
-    std::snprintf(text.data(), text.size(), "$J=G53 G90 %s%.4f F%.3f", letter().c_str(), angle_deg - offset_deg_,
+    std::snprintf(text.data(), text.size(), "$J=G21 G53 G90 %s%.4f F%.3f", letter().c_str(), angle_deg - offset_deg_,
                   60 * speed_deg_s_);
     order(text.data());
   }
@@ -206,13 +206,16 @@ class GrblStage final : public Stage {
     send("$$");
     for (;;) {
       const std::string line = link_.need_line(timeout_s);
-      if (line == "ok") return;
+      if (line == "ok") break;
       const std::size_t equals = line.find('=');
       const auto value =
           equals == std::string::npos ? std::nullopt : parse_number(split(line.substr(equals + 1), ' ').front());
       if (line.front() != '$' || !value) throw link_.malformed("$$", line);
       settings_[line.substr(0, equals)] = *value;
     }
+    if (settings_["$13"] == 0) return;
+    throw Error{Fault::protocol,
+                port_.name() + ": the board reports inches ($13=1), which are no degrees; send it $13=0"};
   }
 
   void send(const std::string& line) {

@@ -80,7 +80,7 @@ class SimGrbl final : public SimController {
     const char* state = alarm_ ? "Alarm" : homing_ ? "Home" : motor_.moving() ? "Jog" : "Idle";
     std::array<char, 120> text{};
     std::snprintf(text.data(), text.size(), "<%s|MPos:%.3f,0.000,0.000|FS:%.0f,0>\r\n", state,
-                  motor_.angle_deg() - unknown_deg_, 60 * motor_.speed_deg_s());
+                  (motor_.angle_deg() - unknown_deg_) / (settings_.inches ? 25.4 : 1), 60 * motor_.speed_deg_s());
     return text.data();
   }
 
@@ -88,9 +88,9 @@ class SimGrbl final : public SimController {
   std::string settings_text() const {
     std::array<char, 240> text{};
     std::snprintf(text.data(), text.size(),
-                  "$10=1\r\n$20=%d\r\n$22=%d\r\n$110=%.3f\r\n$120=%.3f\r\n$130=%.3f\r\nok\r\n", 0,
-                  settings_.no_switches ? 0 : 1, 60 * settings_.max_speed_deg_s, settings_.motor.acceleration_deg_s2,
-                  settings_.max_deg);
+                  "$10=1\r\n$13=%d\r\n$20=%d\r\n$22=%d\r\n$110=%.3f\r\n$120=%.3f\r\n$130=%.3f\r\nok\r\n",
+                  settings_.inches ? 1 : 0, 0, settings_.no_switches ? 0 : 1, 60 * settings_.max_speed_deg_s,
+                  settings_.motor.acceleration_deg_s2, settings_.max_deg);
     return text.data();
   }
 

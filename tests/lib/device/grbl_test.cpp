@@ -42,6 +42,16 @@ TEST_CASE("GRBL: refuses motion before homing") {
   print();
 }
 
+TEST_CASE("GRBL: a board that reports inches is refused, as its angles are none") {
+  SimGcsSettings sim;
+  sim.inches = true;
+  GrblLab lab(sim);
+  lab.open();
+  const auto told = error_of([&] { move(*lab.stage, lab.clock, 10, true, 30, 60); }, Fault::protocol);
+  CHECK(told.find("reports inches ($13=1), which are no degrees; send it $13=0") != std::string::npos);
+  CHECK_FALSE(lab.truly_moves());
+}
+
 TEST_CASE("GRBL: each process homes, with or without a start-up message; only homing unlocks the board") {
   for (const bool resets : {true, false}) {
     CAPTURE(resets);
