@@ -199,7 +199,11 @@ std::string unknown_word(const Declaration& tool, const std::vector<std::string>
   const std::string flag = flag_of(unknown);
   const std::string others = takers(tool, flag);
   if (!others.empty()) return flag + ": not an option of " + name + "; it belongs to " + others;
-  return flag + ": unknown option" + did_you_mean(flag, flags_of(form)) + where;
+  std::vector<std::string> known = flags_of(form);
+  for (const auto& nested : form.subcommands) {
+    for (const auto& name : flags_of(nested)) known.push_back(name);
+  }
+  return flag + ": unknown option" + did_you_mean(flag, known) + where;
 }
 
 }  // namespace vam::cli

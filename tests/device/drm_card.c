@@ -299,7 +299,6 @@ static int answer(unsigned long request, void *argument) {
       const struct drm_mode_crtc *crtc = argument;
       if (fault("no-mode") != 0) return refuse(EINVAL);
       if (spoils("lost", card->flips)) return refuse(EACCES);
-  if (spoils("unplugged", card->flips)) set_status("disconnected\n");
       note(now_s(), "\"event\":\"mode\",\"framebuffer\":%u,\"crtc\":%u,\"connector\":%u,\"columns\":%u,\"interlaced\":%d,\"shade\":\"%s\"",
            crtc->fb_id, crtc->crtc_id, *(const uint32_t *)(uintptr_t)crtc->set_connectors_ptr, crtc->mode.hdisplay,
            (crtc->mode.flags & DRM_MODE_FLAG_INTERLACE) != 0, shade(crtc->fb_id));

@@ -38,7 +38,7 @@ await turning
 sent=$(date +%s%N); kill -TERM $scans; wait $scans
 is 'TERM: status' $? 143
 holds 'TERM: within 2 s, where the scan turns for a minute' "$(date +%s%N) - $sent < 2000000000"
-is 'TERM: no tool is left' "$(pgrep -f 'vam-stage spin|vam-capture .*--view-step' | wc -l)" 0
+is 'TERM: no tool is left' "$(pgrep -f 'vam-capture .* keep/(lag|reverse).exr' | wc -l)" 0
 camera_down
 is 'every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' events)" 0
 is 'in the order of dependence' "$(grep -o '"event":"end","scan":"[a-z]*"' events | cut -d'"' -f8 | tr '\n' ' ')" 'lag latency response axis beam edges '

@@ -74,9 +74,11 @@ mkdir taken
 fails 73 'taken: exists; give another --run' vam-print frames.exr --display null: --run taken
 fails 73 'missing/run: cannot create the folder' vam-print frames.exr --display null: --run missing/run
 is 'a print needs its calibration' "$(vam-print frames.exr --display null: --run no 2>&1 | grep -c 'has no record of edges; run vam-calibrate')" 1
-[ ! -e no ]; report $? 'and leaves no folder when it is refused before a device is opened'
-for print in 1 2 3; do vam-print frames.exr --display null: --light sim: --uncalibrated --set stage.device=grbl:/nowhere 2>>errors & done; wait
-is 'prints that begin in one second have a folder each' "$(cat print-*/summary.json | grep -c '"outcome": "stage failed"')" 3
+[ ! -e no ]; report $? 'and leaves no folder when it is refused'
+for print in 1 2 3; do
+  timeout 10 vam-print frames.exr --display null: --uncalibrated --home --set 'stage.device=sim:?acceleration=9000' 2>>errors &
+done; wait
+is 'prints that begin in one second have a folder each' "$(cat print-*/summary.json | grep -c '"outcome": "aborted"')" 3
 rm -r print-*
 
 screen_up 64 48

@@ -33,11 +33,10 @@ std::vector<std::string> description() {
       "of the report is the --full-scale for vam-project.",
       "With --shown the dose is that delivered by a print according to its log: each image for the time and at the "
       "stage angles at which it was displayed, including missed vertical blanks, an abort and a stop by --until. "
-      "Without --printer the settings are those of the run, its printer.toml; others are rejected where they change "
-      "the "
-      "light. The report then contains dose_shown instead of dose_per_turn, and shown_turns, the mean number of turns "
-      "over the "
-      "stage angles.",
+      "Without --printer the settings are those of the run, its printer.toml; others are rejected where they "
+      "change the way of the light; those of a resumption are converted to its intensity. An image on which the "
+      "projector hung counts at the angle where it began. The report then contains dose_shown instead of "
+      "dose_per_turn, and shown_turns, the mean number of turns over the stage angles.",
       "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print (resin.diffusion_mm2_s) "
       "blur the volume; the dose beyond its faces is assumed to be 0."};
 }

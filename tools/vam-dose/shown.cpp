@@ -63,18 +63,20 @@ std::string settings_of(const std::string& run) {
   return fs::is_regular_file(file) ? file.string() : "";
 }
 
-void require_settings_of(const std::string& run, const model::Printer& now) {
+// The full intensity of a run over that of the printer in use: a resumption may have had another. Its light must go the
+// same way; the first run has the speed that turns are counted at.
+double intensity_of(const std::string& run, bool first, const model::Printer& now) {
   const std::string file = settings_of(run);
-  if (file.empty()) return;
-  const model::Printer then = io::load_printer(file, {});
+  if (file.empty()) return 1;
+  const model::Printer then = io::load_printer(file, {}, io::Records::ignore);
   std::vector<std::string> differences = io::light_differences(then, now);
-  const auto compare = [&](const char* key, double was, double is) {
-    if (was != is) differences.push_back(std::string(key) + " " + format_number(was) + ", now " + format_number(is));
-  };
-  compare("stage.speed_deg_s", then.stage.speed_deg_s, now.stage.speed_deg_s);
-  compare("projector.max_intensity_mw_cm2", then.projector.max_intensity_mw_cm2, now.projector.max_intensity_mw_cm2);
-  compare("projector.min_intensity_mw_cm2", then.projector.min_intensity_mw_cm2, now.projector.min_intensity_mw_cm2);
-  if (differences.empty()) return;
+  const double was = then.stage.speed_deg_s;
+  const double is = now.stage.speed_deg_s;
+  constexpr double same = 1e-6;
+  if (first && std::abs(was - is) > same * was) {
+    differences.push_back("stage.speed_deg_s " + format_number(was) + ", now " + format_number(is));
+  }
+  if (differences.empty()) return then.projector.max_intensity_mw_cm2 / now.projector.max_intensity_mw_cm2;
   throw Error{Fault::data, run + ": was printed with other settings: " + join(differences, "; ") +
                                "; omit --printer and --set, or give --printer " + file};
 }
@@ -102,9 +104,10 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
   for (const std::string& run : options.shown) {
     require_unchanged(run);
     io::require_sinogram_of(run, options.input);
-    require_settings_of(run, printer);
+    const double intensity = intensity_of(run, run == options.shown.front(), printer);
     const auto of_run = io::turns_shown(io::read_shown(run), rows, printer.stage.speed_deg_s);
-    std::transform(turns.begin(), turns.end(), of_run.begin(), turns.begin(), std::plus<>{});
+    std::transform(turns.begin(), turns.end(), of_run.begin(), turns.begin(),
+                   [&](double sum, double one) { return sum + intensity * one; });
   }
   if (std::all_of(turns.begin(), turns.end(), [](double t) { return t == 0; })) {
     throw Error{Fault::data, options.shown.front() + ": no light was shown in this run"};

@@ -146,7 +146,7 @@ std::optional<CameraImage> newest_image(const RunFolder& run) {
 
 std::string page(const std::string& name, const RunFolder& run, const LightView* light, double period_s) {
   const PrintProgress& progress = run.progress();
-  const bool live = !progress.outcome.has_value();
+  const bool live = !progress.outcome && !progress.abandoned;
   const bool lit = live && progress.blanks > 0 && progress.angle_deg >= progress.from_deg &&
                    progress.angle_deg < 360 * progress.turns;
   const std::time_t now = std::time(nullptr);

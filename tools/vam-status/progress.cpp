@@ -178,7 +178,7 @@ void RunFolder::read_records() {
 
 std::string state_of(const PrintProgress& progress) {
   if (progress.outcome) return "ended: " + printable(*progress.outcome);
-  if (progress.silent_s > (progress.blanks > 0 ? silence_s : loading_s)) {
+  if (progress.abandoned || progress.silent_s > (progress.blanks > 0 ? silence_s : loading_s)) {
     return "no log entry for " + std::to_string(std::lround(progress.silent_s)) + " s; end not logged";
   }
   if (progress.blanks == 0) return "preparing";

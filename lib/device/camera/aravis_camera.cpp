@@ -22,7 +22,6 @@
 #include "device/camera/private/aravis_problem.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
-#include "device/camera/private/kept_sigpipe.hpp"
 #include "device/camera/private/read_back.hpp"
 #include "device/os/identity.hpp"
 #include "device/os/interrupt.hpp"
@@ -83,7 +82,6 @@ class AravisCamera final : public Camera {
  public:
   AravisCamera(const Address& address, const CameraSettings& settings, Clock& clock)
       : name_(address.text), settings_(settings), clock_(clock) {
-    const KeptSigpipe kept;
     AravisProblem problem;
     camera_.reset(arv_camera_new(address.place.empty() ? nullptr : address.place.c_str(), problem));
     if (!camera_) throw Error{Fault::absent, name_ + ": no such camera (" + problem.text() + ")"};

@@ -117,6 +117,7 @@ class GrblStage final : public Stage {
   }
 
   StageSample sample() override {
+    if (settings_.empty()) read_settings();  // whether it reports degrees
     StageSample now;
     link_.drain();
     now.t0_s = clock_.now_s();

@@ -49,7 +49,15 @@ void RippleFilter::Belief::observe(const Vector& seen, double value, double nois
   const Vector common = covariance_with(seen);
   double total = noise;
   for (std::size_t i = 0; i < size; ++i) total += seen[i] * common[i];
-  const double off = value - expected(seen);
+  correct(common, total, value - expected(seen));
+}
+
+void RippleFilter::Belief::observe_zero(std::size_t place, double noise) {
+  const Vector common = covariance[place];
+  correct(common, common[place] + noise, -mean[place]);
+}
+
+void RippleFilter::Belief::correct(const Vector& common, double total, double off) {
   for (std::size_t i = 0; i < size; ++i) {
     const double gain = common[i] / total;
     mean[i] += gain * off;
@@ -67,6 +75,7 @@ void RippleFilter::begin(const AngleSample& sample) {
     for (const std::size_t place : {2 * k, 2 * k + 1}) all_.covariance[place][place] = sigma_deg * sigma_deg;
   }
   first_s_ = t_s_ = sample.t_s;
+  first_deg_ = sample.angle_deg;
 }
 
 RippleFilter::Vector RippleFilter::seen_at(double angle_deg) {
@@ -104,6 +113,7 @@ void RippleFilter::add(const AngleSample& sample) {
     all_.covariance[1][1] += unknown_speed_deg_s * unknown_speed_deg_s;
   }
   all_.observe(seen, sample.angle_deg, noise);
+  farthest_deg_ = std::max(farthest_deg_, std::abs(sample.angle_deg - first_deg_));
 }
 
 bool RippleFilter::ready() const { return count_ >= 3 && t_s_ - first_s_ >= least_span_s; }
@@ -113,6 +123,7 @@ bool RippleFilter::ready() const { return count_ >= 3 && t_s_ - first_s_ >= leas
 const RippleFilter::Belief& RippleFilter::without_noise() const {
   if (without_noise_) return *without_noise_;
   Belief& kept = without_noise_.emplace(all_);
+  if (farthest_deg_ < 360) return kept;  // before, line and harmonics are not distinguished
   for (std::size_t k = 1; k <= harmonics; ++k) {
     double power = 0;
     double noise = 0;
@@ -122,11 +133,7 @@ const RippleFilter::Belief& RippleFilter::without_noise() const {
     }
     if (power > power_beyond_doubt * noise) continue;
     const double likely = std::max(unseen_ripple_deg * unseen_ripple_deg, power - power_of_noise * noise);
-    for (const std::size_t place : {2 * k, 2 * k + 1}) {
-      Vector alone{};
-      alone[place] = 1;
-      kept.observe(alone, 0, likely);
-    }
+    for (const std::size_t place : {2 * k, 2 * k + 1}) kept.observe_zero(place, likely);
   }
   return kept;
 }

@@ -68,21 +68,35 @@ void home(Stage& stage, Clock& clock, double timeout_s) {
 
 namespace {
 
-void require_in_travel(Stage& stage, double target_deg) {
-  const StageCaps caps = stage.caps();
-  if (target_deg >= caps.min_deg && target_deg <= caps.max_deg) return;
-  throw Error{Fault::data, "stage: " + format_number(target_deg, 7) + " deg is beyond its limits of travel, " +
-                               format_number(caps.min_deg) + " to " + format_number(caps.max_deg) +
-                               " deg; give another --angle"};
+// The controller decides; its limits explain why it refuses.
+void start_move(Stage& stage, double target_deg) {
+  try {
+    stage.start_move(target_deg);
+  } catch (const Error& error) {
+    if (error.fault != Fault::protocol) throw;
+    const StageCaps caps = stage.caps();
+    if (target_deg >= caps.min_deg && target_deg <= caps.max_deg) throw;
+    throw Error{Fault::data, "stage: " + format_number(target_deg, 7) + " deg is beyond its limits of travel, " +
+                                 format_number(caps.min_deg) + " to " + format_number(caps.max_deg) +
+                                 " deg; give another --angle"};
+  }
 }
 
-// A drive that is off or blocked may report that it stands, as if it had arrived.
-void require_arrived(Stage& stage, double target_deg) {
+// A drive that is off or blocked may report that it stands, as if it had arrived; one that has arrived may still
+// settle.
+void require_arrived(Stage& stage, Clock& clock, double target_deg) {
   constexpr double settled_deg = 0.1;  // what controllers take for arrived is far below
-  const StageSample now = stage.sample();
-  if (std::abs(now.angle_deg - target_deg) <= settled_deg + 2 * now.step_deg) return;
-  throw Error{Fault::protocol, "stage: stands at " + format_number(now.angle_deg, 7) + " deg, not at " +
-                                   format_number(target_deg, 7) + "; it is blocked, or its drive is off"};
+  constexpr double settling_s = 1;
+  const double deadline_s = clock.now_s() + settling_s;
+  for (;;) {
+    const StageSample now = stage.sample();
+    if (std::abs(now.angle_deg - target_deg) <= settled_deg + 2 * now.step_deg) return;
+    if (clock.now_s() > deadline_s) {
+      throw Error{Fault::protocol, "stage: stands at " + format_number(now.angle_deg, 7) + " deg, not at " +
+                                       format_number(target_deg, 7) + "; it is blocked, or its drive is off"};
+    }
+    clock.sleep_until(clock.now_s() + 0.02);
+  }
 }
 
 }  // namespace
@@ -96,11 +110,10 @@ void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double sp
   stage.enable();
   stage.set_speed(speed_deg_s);
   const double target_deg = relative ? stage.sample().angle_deg + angle_deg : angle_deg;
-  require_in_travel(stage, target_deg);
-  stage.start_move(target_deg);
+  start_move(stage, target_deg);
   wait_until_standing(stage, clock, 0.02, timeout_s);
   if (const auto problem = stage.fault()) throw Error{Fault::protocol, "stage: stopped with error " + *problem};
-  require_arrived(stage, target_deg);
+  require_arrived(stage, clock, target_deg);
   stopper.disarm();
 }
 

@@ -94,7 +94,8 @@ ResponseCurve measure_response(const ResponseScan& scan) {
   const stats::Measured black = risen.front();
   constexpr double least_rise = 0.05;  // of full: a dim room leaves a projector more contrast
   const double rise = full.value - black.value;
-  if (!(rise > 5 * std::hypot(full.sigma, black.sigma)) || rise < least_rise * full.value) {
+  if (!(full.value > 3 * full.sigma) || !(rise > 5 * std::hypot(full.sigma, black.sigma)) ||
+      rise < least_rise * full.value) {
     throw Error{Fault::data,
                 "response: full grey reads " + format_number(full.value) + " and black " + format_number(black.value) +
                     "; no light of the projector reaches the camera: check the lamp and its aperture, keep "

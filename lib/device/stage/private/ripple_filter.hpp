@@ -13,7 +13,7 @@ namespace vam::device {
 
 /// A Kalman filter. The line's speed may wander by a thousandth of itself in a second; the harmonics stay as they are
 /// learned, the first turn being enough, so that the run-up teaches them. Those that do not stand out of the noise are
-/// left out: a stage has few, and 24 of them would follow the noise. After a jump the line is found anew.
+/// left out after a turn: a stage has few, and 24 of them would follow the noise. After a jump the line is found anew.
 class RippleFilter {
  public:
   void add(const AngleSample& sample);
@@ -38,6 +38,11 @@ class RippleFilter {
     [[nodiscard]] double expected(const Vector& seen) const;
     [[nodiscard]] double variance(const Vector& seen) const;
     void observe(const Vector& seen, double value, double noise);
+    /// The part at a place is 0 but for so much.
+    void observe_zero(std::size_t place, double noise);
+
+   private:
+    void correct(const Vector& common, double total, double off);
   };
 
   void begin(const AngleSample& sample);
@@ -47,6 +52,7 @@ class RippleFilter {
 
   int count_ = 0;
   double first_s_ = 0, t_s_ = 0;
+  double first_deg_ = 0, farthest_deg_ = 0;      // of which the harmonics have been seen
   Belief all_;                                   // with every harmonic that may be
   mutable std::optional<Belief> without_noise_;  // with those that stand out; made when asked for
 };
