@@ -201,7 +201,7 @@ std::string unknown_word(const Declaration& tool, const std::vector<std::string>
   if (!others.empty()) return flag + ": not an option of " + name + "; it belongs to " + others;
   std::vector<std::string> known = flags_of(form);
   for (const auto& nested : form.subcommands) {
-    for (const auto& name : flags_of(nested)) known.push_back(name);
+    for (const auto& other : flags_of(nested)) known.push_back(other);
   }
   return flag + ": unknown option" + did_you_mean(flag, known) + where;
 }
