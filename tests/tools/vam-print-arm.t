@@ -201,6 +201,7 @@ mv kept edited/events.jsonl
 fails 65 'home=here, whose zero ended with the print' print --resume again --set 'stage.device=grbl:/dev/ttyACM0?home=here' --run none
 is 'another device is not a different setting' "$(print --resume again --plan --set 'stage.device=sim:' --set resin.name=new 2>&1 | grep -c 'other settings')" 0
 fails 65 'whole: was printed with other settings: stage.speed_deg_s 90, now 60; omit --printer and --set' vam-dose frames.exr --shown whole --set stage.speed_deg_s=60 -o none.vdb
+fails 65 'whole: was printed with other settings: projector.max_intensity_mw_cm2 3.8, now 10; omit' vam-dose frames.exr --shown whole --set projector.max_intensity_mw_cm2=10 -o none.vdb
 ok 'the settings of a run are its own' env VAM_PRINTER=nowhere vam-dose frames.exr --shown whole -o own.vdb
 dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o "$1.vdb" $2; }
 ok 'the dose of a run' dose whole.dose '--shown whole'
@@ -209,6 +210,10 @@ ok 'and of both parts' dose both.dose '--shown killed --shown rest/flips.jsonl'
 holds 'a whole print delivered its turns' "($(json whole.dose.json shown_turns) - 2) ^ 2 < 0.02 ^ 2"
 holds 'a killed one fewer' "$(json killed.dose.json shown_turns) > 1.2 && $(json killed.dose.json shown_turns) < 1.9"
 # One image of 480 at each end of either part; a blank of a busy machine is an image more or less.
+mkdir dimmer; cp rest/flips.jsonl dimmer/
+sed 's/^max_intensity_mw_cm2 = 3.8/max_intensity_mw_cm2 = 1.9/; /^# sealed/d' rest/printer.toml >dimmer/printer.toml
+ok 'and of a dimmer rest' dose dimmer.dose '--shown killed --shown dimmer'
+holds 'which counts half' "($(json dimmer.dose.json shown_turns) - ($(json both.dose.json shown_turns) + $(json killed.dose.json shown_turns)) / 2) ^ 2 < 0.02 ^ 2"
 holds 'both parts together the whole' "($(json both.dose.json shown_turns) - $(json whole.dose.json shown_turns)) ^ 2 < 0.02 ^ 2"
 holds 'and its dose, everywhere' "($(json both.dose.json dose_shown_max_relative) / $(json whole.dose.json dose_shown_max_relative) - 1) ^ 2 < 0.03 ^ 2"
 fails 65 'rest: complete, all 1 turns; nothing is left to print' print --resume rest --run none

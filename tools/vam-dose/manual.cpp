@@ -34,7 +34,7 @@ std::vector<std::string> description() {
       "With --shown the dose is that delivered by a print according to its log: each image for the time and at the "
       "stage angles at which it was displayed, including missed vertical blanks, an abort and a stop by --until. "
       "Without --printer the settings are those of the run, its printer.toml; others are rejected where they "
-      "change the way of the light; those of a resumption are converted to its intensity. An image on which the "
+      "change the light. A resumption may have had another intensity, which is converted. An image on which the "
       "projector hung counts at the angle where it began. The report then contains dose_shown instead of "
       "dose_per_turn, and shown_turns, the mean number of turns over the stage angles.",
       "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print (resin.diffusion_mm2_s) "

@@ -63,20 +63,22 @@ std::string settings_of(const std::string& run) {
   return fs::is_regular_file(file) ? file.string() : "";
 }
 
-// The full intensity of a run over that of the printer in use: a resumption may have had another. Its light must go the
-// same way; the first run has the speed that turns are counted at.
+// The full intensity of a run over that of the printer in use, in whose turns all is counted: those of the first run; a
+// resumption may have had another intensity and speed. The light of all must go the same way.
 double intensity_of(const std::string& run, bool first, const model::Printer& now) {
   const std::string file = settings_of(run);
   if (file.empty()) return 1;
   const model::Printer then = io::load_printer(file, {}, io::Records::ignore);
   std::vector<std::string> differences = io::light_differences(then, now);
-  const double was = then.stage.speed_deg_s;
-  const double is = now.stage.speed_deg_s;
-  constexpr double same = 1e-6;
-  if (first && std::abs(was - is) > same * was) {
-    differences.push_back("stage.speed_deg_s " + format_number(was) + ", now " + format_number(is));
-  }
-  if (differences.empty()) return then.projector.max_intensity_mw_cm2 / now.projector.max_intensity_mw_cm2;
+  const auto compare = [&](const char* key, double was, double is) {
+    constexpr double same = 1e-6;
+    if (std::abs(was - is) <= same * was) return;
+    differences.push_back(std::string(key) + " " + format_number(was) + ", now " + format_number(is));
+  };
+  const double full_mw_cm2 = then.projector.max_intensity_mw_cm2;
+  if (first) compare("stage.speed_deg_s", then.stage.speed_deg_s, now.stage.speed_deg_s);
+  if (first) compare("projector.max_intensity_mw_cm2", full_mw_cm2, now.projector.max_intensity_mw_cm2);
+  if (differences.empty()) return full_mw_cm2 / now.projector.max_intensity_mw_cm2;
   throw Error{Fault::data, run + ": was printed with other settings: " + join(differences, "; ") +
                                "; omit --printer and --set, or give --printer " + file};
 }

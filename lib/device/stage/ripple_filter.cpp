@@ -107,7 +107,7 @@ void RippleFilter::add(const AngleSample& sample) {
   const Vector seen = seen_at(sample.angle_deg);
   const double noise = std::max(sample.sigma_deg * sample.sigma_deg, least_variance);
   const double off_deg = sample.angle_deg - all_.expected(seen);
-  const double sigma_deg = std::sqrt(all_.variance(seen) + noise);
+  const double sigma_deg = std::sqrt(std::max(0.0, all_.variance(seen)) + noise);
   if (std::abs(off_deg) > jump_sigmas * sigma_deg) {  // it started, stopped or slipped
     all_.covariance[0][0] += off_deg * off_deg;
     all_.covariance[1][1] += unknown_speed_deg_s * unknown_speed_deg_s;
