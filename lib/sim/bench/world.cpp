@@ -5,7 +5,6 @@
 
 #include "base/index.hpp"
 #include "base/json.hpp"
-#include "base/json_text.hpp"
 
 namespace vam::sim {
 
@@ -14,22 +13,6 @@ constexpr double kept_s = 5;  // of the logs, for a camera that looks back
 constexpr double finest_turn_deg = 0.5;
 constexpr int most_parts = 8;
 }  // namespace
-
-std::vector<Json> LogTail::fresh() {
-  std::vector<Json> lines;
-  if (path_.empty()) return lines;
-  if (!file_.is_open()) file_.open(path_);
-  if (!file_.is_open()) return lines;
-  file_.clear();  // past the end of the file that there was
-  for (std::string line; std::getline(file_, line);) {
-    rest_ += line;
-    if (file_.eof()) break;  // no line end yet
-    Json event = parse_json(rest_);
-    if (event.is_object()) lines.push_back(std::move(event));
-    rest_.clear();
-  }
-  return lines;
-}
 
 SimWorld::SimWorld(SimSources sources, double start_s)
     : sources_(std::move(sources)), start_s_(start_s), angles_(sources_.angles), shown_(sources_.shown) {}

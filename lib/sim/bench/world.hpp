@@ -2,28 +2,16 @@
 #pragma once
 
 #include <deque>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/json_fwd.hpp"
+#include "sim/bench/log_tail.hpp"
 #include "sim/bench/scene.hpp"
 
 namespace vam::sim {
-
-/// The lines that have come to a log since the last look; a log that does not exist yet has none.
-class LogTail {
- public:
-  explicit LogTail(std::string path) : path_(std::move(path)) {}
-  std::vector<Json> fresh();
-
- private:
-  std::string path_;
-  std::ifstream file_;
-  std::string rest_;
-};
 
 struct SimSources {
   double speed_deg_s = 0;         // of the stage when there is no log of its angles; 0 deg at the start

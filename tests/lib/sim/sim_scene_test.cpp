@@ -195,6 +195,29 @@ TEST_CASE("The simulated bench shows the test pattern that the projector's log n
   std::filesystem::remove(shown);
 }
 
+TEST_CASE("The simulated bench follows a log by its name: the old file to its end, then the new one") {
+  const std::string shown = std::filesystem::temp_directory_path() / ("vam-world-again-" + std::to_string(getpid()));
+  SimSources sources;
+  sources.shown = shown;
+  sources.images.resize(2, GreyImage(2, 2, 8));
+  SimWorld world(sources, 100);
+  const auto flip = [](double t_s, int frame) {
+    return R"({"t_monotonic_s":)" + std::to_string(t_s) + R"(,"event":"flip","frame":)" + std::to_string(frame) + "}\n";
+  };
+  std::ofstream flips(shown);
+  flips << flip(100, 0) << std::flush;
+  CHECK(world.at(100.5).image != nullptr);
+  flips << flip(101, -1) << R"({"t_monotonic_s":101.2,"ev)" << std::flush;  // as a program leaves it that is killed
+  std::filesystem::remove(shown);
+  CHECK(world.at(101.5).image == nullptr);  // by the old file, as there is no other
+  std::ofstream again(shown);
+  again << flip(102, 1) << std::flush;
+  CHECK(world.at(101.9).image == nullptr);
+  CHECK(world.at(102.5).image != nullptr);
+  CHECK(world.at(102.5).lit_s == doctest::Approx(1.5));
+  std::filesystem::remove(shown);
+}
+
 TEST_CASE("An exposure is the sum of its parts; a card's target brightness is the image mean, with the lens' shading") {
   SimBench bench = small_bench();
   bench.bodies.clear();
