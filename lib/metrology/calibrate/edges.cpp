@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"
+#include "base/text.hpp"
 
 namespace vam::metrology {
 
@@ -124,7 +126,8 @@ Steepest steepest(const std::vector<double>& column, const std::vector<double>& 
 }
 
 // First the edges alone, with the light that suits them best, of an even share: from far away, a wide blur and a bent
-// share may take an edge's place. Then all together, for the sigmas.
+// share may take an edge's place. So they may with a sweep of wide steps whose signal is half its height far inside the
+// edges: the best of several radii is taken. Then all together, for the sigmas.
 BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes,
                    const Steepest& first) {
   using Values = std::vector<double>;
@@ -143,15 +146,27 @@ BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, con
     at = edges;
     return model.residuals(rows, p.data() + ground);
   };
-  Values start{0.5 * (first.rise + first.fall), 0.5 * (first.fall - first.rise) + 1, 1.5};
-  Values step(start.size(), 0.01);
-  start = stats::fit_curve(lit_best(true), start, step, subject).value;
-  start = stats::fit_curve(lit_best(false), start, step, subject).value;
+  const double middle = 0.5 * (first.rise + first.fall);
+  const double radius = 0.5 * (first.fall - first.rise);
+  Values step(ground, 0.01);
+  stats::CurveFit even;
+  for (const double wider : {1.0, 1 + edge_window / 3, 1 + 2 * edge_window / 3}) {
+    auto one = stats::fit_curve(lit_best(true), {middle, wider * radius + 1, 1.5}, step, subject);
+    if (even.n == 0 || one.rms < even.rms) even = std::move(one);
+  }
+  Values start = stats::fit_curve(lit_best(false), even.value, step, subject).value;
   const Values parts = model.best_parts(model.light(start), false);
   start.insert(start.end(), parts.begin(), parts.end());
   const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
   step.resize(count, 1e-3 * (*high - *low));
   const auto fit = stats::fit_curve(residuals, start, step, subject);
+  const double furthest = (1 + edge_window) * radius;  // where readings are
+  if (fit.value[centre] - fit.value[edge] < middle - furthest ||
+      fit.value[centre] + fit.value[edge] > middle + furthest) {
+    throw Error{Fault::data, subject + ": the fit leaves columns " + format_number(middle - furthest, 4) + " to " +
+                                 format_number(middle + furthest, 4) +
+                                 ", where light ends; sweep in smaller steps (--pitch), and expose the camera longer"};
+  }
   BandEdges out{fit.measured(centre), fit.measured(edge), fit.measured(blur)};
   out.blur.value = std::abs(out.blur.value);
   return out;
