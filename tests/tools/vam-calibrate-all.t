@@ -26,19 +26,25 @@ bench() {  # bench OPTIONS...
   camera_up --follow truth --flips keep/flips --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --projector-gamma 1.8 \
     --lag 40 --latency 30 --maker basler --axis-offset 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
 }
-calibrate() { vam-calibrate-all --display sdl:0 --light sim: --keep keep --log events --home --pitch ${pitch:-2} --sweep-exposure 19000 --scans "$@"; }
+calibrate() { vam-calibrate-all --display sdl:0 --light sim: --keep keep --log events --home --pitch 4 --sweep-exposure 19000 --scans "$@"; }
 
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'six scans in one run' calibrate 'edges axis beam latency lag response'
-# A signal ends what moves and what is lit at once.
+# A signal ends what moves and what is lit at once: a stage that turns for a minute, or a capture beside a lit projector.
+aborted() {  # aborted SCAN CONDITION: TERM to the script alone, once the condition holds
+  (exec env --default-signal=INT vam-calibrate-all --display sdl:0 --light sim: --keep keep --log aborted --scans "$1" 2>aborted.err) & scans=$!
+  await "$2"
+  sent=$(date +%s%N); kill -TERM $scans; wait $scans
+  is "TERM in $1: status" $? 143
+  holds "TERM in $1: within 2 s" "$(date +%s%N) - $sent < 2000000000"
+  is "TERM in $1: no tool is left" "$(pgrep -f 'vam-(capture|project|stage) .* calibration.folder=' | wc -l)" 0
+}
 turning() { [ -s keep/angles.jsonl ]; }
 rm -f keep/angles.jsonl
-(exec env --default-signal=INT vam-calibrate-all --display sdl:0 --light sim: --keep keep --log aborted --scans lag 2>aborted.err) & scans=$!
-await turning
-sent=$(date +%s%N); kill -TERM $scans; wait $scans
-is 'TERM: status' $? 143
-holds 'TERM: within 2 s, where the scan turns for a minute' "$(date +%s%N) - $sent < 2000000000"
-is 'TERM: no tool is left' "$(pgrep -f 'vam-capture .* keep/(lag|reverse).exr' | wc -l)" 0
+aborted lag turning
+capturing() { pgrep -f 'vam-capture .* keep/latency.exr' >looked && grep -q '"frame":1' keep/flips; }
+aborted latency capturing
+is 'TERM in latency: the last image is the dark one' "$(grep '"event":"flip"' keep/flips | tail -n 1 | grep -c '"frame":-1')" 1
 camera_down
 is 'every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' events)" 0
 is 'in the order of dependence' "$(grep -o '"event":"end","scan":"[a-z]*"' events | cut -d'"' -f8 | tr '\n' ' ')" 'lag latency response axis beam edges '
@@ -66,7 +72,7 @@ within 'edges: the radius' "$(value edges radius)" 9 "$(sigma edges radius)"
 
 # A vial with wobble: its centre is up to 3 px beside the axis.
 bench --wobble 0.3 --wobble-phase 50 --beam 0.5 --part 'cylinder:x=2,diameter=8,height=20' --lit 0  # nothing may grow in a sweep
-pitch=4; quiet 'edges of a vial that wobbles' calibrate edges; pitch=2
+quiet 'edges of a vial that wobbles' calibrate edges
 near 'edges: the axis, not the middle of the vial' "$(value edges axis_column)" 106.7 0.1
 near 'edges: the wobble' "$(value edges wobble)" 3 0.1
 near 'edges: in millimetres' "$(value edges wobble_mm)" 0.3 0.01
