@@ -43,6 +43,8 @@ class ImageFolder {
   [[nodiscard]] const std::string& path(int index) const { return paths_[index]; }
   /// Where the image stands in the whole series, from 0: its number from the first one's, in steps of the numbers.
   [[nodiscard]] long place(int index) const { return places_[index]; }
+  /// The number of the first image.
+  [[nodiscard]] long first_number() const { return first_number_; }
 
   /// Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a
   /// time.
@@ -51,6 +53,7 @@ class ImageFolder {
  private:
   std::vector<std::string> paths_;
   std::vector<long> places_;
+  long first_number_ = 0;
   int width_ = 0;
   int height_ = 0;
 };

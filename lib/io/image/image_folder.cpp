@@ -79,6 +79,7 @@ ImageFolder::ImageFolder(const std::string& folder, bool gaps) {
   });
   const long step = step_of(images);
   if (!gaps) require_no_gaps(images);
+  first_number_ = images.front().number;
   for (const auto& image : images) {
     paths_.push_back(image.path.string());
     places_.push_back((image.number - images.front().number) / step);

@@ -101,6 +101,11 @@ ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::m
       warn(path + ": " + std::to_string(missing) + (missing == 1 ? " number is" : " numbers are") +
            " missing between the first and the last; the others keep their angles");
     }
+    // Programs number from 0 or 1, and cameras from any number, but rarely a small one.
+    if (const long first = folder.first_number(); first > 1 && first < 10) {
+      warn(path + ": numbers begin at " + std::to_string(first) +
+           ", which is taken for angle 0; if earlier images are missing, all angles are too small");
+    }
   } else if (is_video(path)) {
     state_->video = std::make_unique<VideoReader>(path);
     (void)state_->needed_step();
