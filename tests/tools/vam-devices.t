@@ -76,6 +76,8 @@ if [ "$(id -u)" = 0 ] && chgrp dialout port 2>/dev/null; then
 else
   echo '# not root, or no group dialout: nothing is tried without permission'
 fi
+list --port /dev/null
+ok 'a device that is no serial port' grep -q '! is not a serial port' list
 list --port "$PWD/nowhere"
 ok 'a port that does not exist' grep -q "! $PWD/nowhere: No such file" list
 

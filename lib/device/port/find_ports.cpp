@@ -1,6 +1,8 @@
 #include "device/port/find_ports.hpp"
 
 #include <libusb.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include <algorithm>
 #include <array>
@@ -86,12 +88,21 @@ void look_at(libusb_device* device, std::vector<Found>& found) {
   if (handle != nullptr) libusb_close(handle);
 }
 
+// Of a port that the user names.
+std::string named_obstacle(const std::string& path) {
+  const std::string obstacle = node_obstacle(path);
+  struct stat about {};
+  if (!obstacle.empty() || stat(path.c_str(), &about) != 0) return obstacle;
+  constexpr unsigned memory_devices = 1;  // null, zero, random
+  return S_ISCHR(about.st_mode) && major(about.st_rdev) != memory_devices ? "" : "is not a serial port";
+}
+
 }  // namespace
 
 std::vector<Found> find_serial_stages(const std::vector<std::string>& ports) {
   std::vector<Found> found;
   for (const Json& entry : list_serial_ports()) found.push_back(serial_stage(entry));
-  for (const std::string& path : ports) found.push_back({"stage", "gcs:" + path, "", node_obstacle(path)});
+  for (const std::string& path : ports) found.push_back({"stage", "gcs:" + path, "", named_obstacle(path)});
   return found;
 }
 
