@@ -26,7 +26,8 @@ bench() {  # bench OPTIONS...
   camera_up --follow truth --flips keep/flips --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --projector-gamma 1.8 \
     --lag 40 --latency 30 --maker basler --axis-offset 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
 }
-calibrate() { vam-calibrate-all --display sdl:0 --light sim: --keep keep --log events --home --pitch 4 --sweep-exposure 19000 --scans "$@"; }
+calibrate() { vam-calibrate-all --display sdl:0 --light sim: --set stage.speed_deg_s=30 --keep keep --log events --home --pitch 4 \
+    --sweep-exposure 19000 --scans "$@"; }
 
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'six scans in one run' calibrate 'edges axis beam latency lag response'
