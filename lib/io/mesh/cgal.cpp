@@ -31,7 +31,7 @@ PolygonSoup converted(CgalSoup&& soup) {
   return result;
 }
 
-// CGAL takes coordinates of other types for floats.
+// CGAL takes coordinates of other types, and lists, for floats.
 void check_ply_property(const std::string& element, const std::string& type, const std::string& name) {
   if (element.empty()) throw MeshProblem{"the PLY header has a property of no element"};
   const bool coordinate = (element == "vertex" || element == "vertices") && (name == "x" || name == "y" || name == "z");
@@ -52,7 +52,11 @@ void check_ply_header(const std::string& bytes) {
     std::string second;
     words >> keyword >> first >> second;
     if (keyword == "end_header") return;
-    if (keyword == "property") check_ply_property(element, first, second);
+    if (keyword == "property") {
+      std::string name = second;
+      if (first == "list") words >> name >> name;  // behind the types of count and entries
+      check_ply_property(element, first, name);
+    }
     if (keyword != "element") continue;
     element = first;
     std::uint64_t count = 0;

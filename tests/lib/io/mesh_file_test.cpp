@@ -257,6 +257,7 @@ TEST_CASE("PLY coordinates that are no floats, and OFF that is no text, are refu
   for (const std::string type : {"uchar", "int", "int32"}) {
     CHECK(refusal(folder, ply(type)).find("the PLY coordinate y is of type " + type) != std::string::npos);
   }
+  CHECK(refusal(folder, ply("list uchar float")).find("the PLY coordinate y is of type list") != std::string::npos);
   CHECK(refusal(folder, "OFF BINARY\n" + std::string(40, '\x7f')).find("is a binary OFF file") != std::string::npos);
 }
 
