@@ -14,8 +14,10 @@
 #include "io/array/private/npy_head.hpp"
 #include "io/array/private/npz.hpp"
 #include "io/array/private/nrrd_head.hpp"
+#include "io/hdf5/hdf5_array.hpp"
 #include "io/image/tiff_pages.hpp"
 #include "io/stream/apart.hpp"
+#include "io/stream/passage.hpp"
 #include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
@@ -25,8 +27,20 @@ namespace {
 
 constexpr std::uint64_t most_held = std::uint64_t{16} << 30;  // bytes of a file that is not read front to back
 constexpr std::uint64_t most_ratio = 1032;                    // bytes of which deflate makes one
+constexpr std::uint64_t most_angles = 1 << 20;
 
-enum class Format { npy, npz, nrrd, mrc, tiff };
+constexpr const char* known_formats = "an array (NumPy, HDF5, NRRD, MRC, TIFF)";
+
+enum class Format { npy, npz, hdf5, nrrd, mrc, tiff };
+
+// Behind a block of the writer's own (MATLAB's), too.
+bool is_hdf5(std::string_view head) {
+  constexpr std::string_view magic = "\x89HDF\r\n\x1a\n";
+  for (const std::size_t at : {0, 512, 1024, 2048}) {
+    if (head.size() > at && head.substr(at).starts_with(magic)) return true;
+  }
+  return !head.empty() && magic.starts_with(head);
+}
 
 std::optional<Format> format_of(std::string_view head) {
   using namespace std::string_view_literals;
@@ -36,6 +50,7 @@ std::optional<Format> format_of(std::string_view head) {
   };
   if (begins(arrays::npy_magic)) return Format::npy;
   if (begins("PK\3\4"sv)) return Format::npz;
+  if (is_hdf5(head)) return Format::hdf5;
   if (begins(arrays::nrrd_magic)) return Format::nrrd;
   if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return Format::tiff;
   const bool mrc =
@@ -56,8 +71,17 @@ std::string whole(InputFile& file) {
   return bytes;
 }
 
-void send(arrays::Parser parser, Sender& out) {
+template <class Pass, class Views>
+void pass(const Pass& member, Views& views) {
+  member(views.top_first);
+  member(views.source);
+}
+
+void send(arrays::Parser parser, Sender& out, const StatedViews& views = {}) {
   for (const std::size_t size : parser.size()) out.put(std::uint64_t{size});
+  pass(Put{out}, views);
+  out.put(std::uint64_t{views.angles_deg.size()});
+  for (const double angle : views.angles_deg) out.put(angle);
   out.flush();
   Image image;
   for (std::size_t k = 0; k < parser.size()[0]; ++k) {
@@ -76,12 +100,15 @@ struct ArrayReader::State {
     const auto known = format_of(head);
     if (!known) refuse(head);
     format = *known;
-    const bool held = format == Format::npz || format == Format::tiff;
+    if (format == Format::hdf5) load_hdf5();
+    const bool seeks = format == Format::hdf5 && file.size() > 0;
+    const bool held = format == Format::npz || format == Format::tiff || (format == Format::hdf5 && !seeks);
     if (held) bytes = whole(file);
     // What repeats packs well: an array may unpack to as much as its bytes can hold, and as there is memory for.
     const std::uint64_t length = held ? bytes.size() : file.size();
-    const bool packed = held || format == Format::nrrd;
+    const bool packed = held || seeks || format == Format::nrrd;
     const std::uint64_t unpacked = packed ? std::min(most_ratio * length, memory_left() / 2) : 0;
+    images_memory = memory_left() / 8;
     apart.emplace(Foreign{file.name(), length, file.descriptor(), unpacked},
                   [this, &options](Sender& out) { parse(options, out); });
     apart->take([this](Receiver& in) { take_size(in); });
@@ -91,8 +118,8 @@ struct ArrayReader::State {
     const std::string foreign = foreign_format(head);
     throw Error{Fault::data, file.name() + ": " +
                                  (head.empty()      ? "is empty"
-                                  : foreign.empty() ? "is not an array (NumPy, NRRD, MRC, TIFF)"
-                                                    : "is " + foreign + ", not an array (NumPy, NRRD, MRC, TIFF)")};
+                                  : foreign.empty() ? std::string("is not ") + known_formats
+                                                    : "is " + foreign + ", not " + known_formats)};
   }
 
   void parse(const ArrayOptions& options, Sender& out) {
@@ -112,11 +139,23 @@ struct ArrayReader::State {
       set_shape(values, {pages.pages(), pages.rows(), pages.columns()}, head);
       return send({head, std::move(values), options.axes}, out);
     }
+    if (format == Format::hdf5) return parse_hdf5(options, out);
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); }, file.name());
     const arrays::Head head = format == Format::npy    ? take_npy_head(front)
                               : format == Format::nrrd ? take_nrrd_head(front)
                                                        : take_mrc_head(front);
     send({head, std::move(front), options.axes}, out);
+  }
+
+  void parse_hdf5(const ArrayOptions& options, Sender& out) {
+    Hdf5Bytes all{nullptr, file.descriptor(), file.size()};
+    if (!bytes.empty()) all = {bytes.data(), -1, bytes.size()};
+    Hdf5Array array(all, {options.name, options.axes, options.projections, options.own_order, images_memory},
+                    file.name());
+    arrays::Bytes values([&](void* to, std::size_t wanted) { return array.read(to, wanted); }, file.name());
+    arrays::Head head;  // floats of this machine
+    set_shape(values, {array.size().begin(), array.size().end()}, head);
+    send({head, std::move(values), {0, 1, 2}}, out, array.views());
   }
 
   // What a child sends is not believed.
@@ -127,13 +166,17 @@ struct ArrayReader::State {
     if (product(size.rows, size.columns) > arrays::most_image) {
       throw Error{Fault::data, file.name() + ": is damaged: its reader failed"};
     }
+    pass(Get{in}, views);
+    for (auto left = in.get_count(most_angles); left > 0; --left) views.angles_deg.push_back(in.get<double>());
   }
 
   InputFile file;
   Format format = Format::npy;
   std::string bytes;
   std::optional<Apart> apart;
+  std::uint64_t images_memory = 0;  // for those that are held at a time
   ArraySize size;
+  StatedViews views;
   int done = 0;
 };
 
@@ -143,6 +186,8 @@ ArrayReader::ArrayReader(const std::string& path, const ArrayOptions& options)
 ArrayReader::~ArrayReader() = default;
 
 const ArraySize& ArrayReader::size() const { return state_->size; }
+
+const StatedViews& ArrayReader::views() const { return state_->views; }
 
 bool ArrayReader::next(Image& image) {
   if (state_->done == state_->size.images) return false;

@@ -1,5 +1,5 @@
-// Arrays of other programs as images one after the other: NumPy's .npy and .npz, NRRD and MRC volumes, TIFF of several
-// pages.
+// Arrays of other programs as images one after the other: NumPy's .npy and .npz, HDF5 (DXchange, NXtomo), NRRD and MRC
+// volumes, TIFF of several pages.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/image.hpp"
+#include "io/hdf5/stated_views.hpp"
 
 namespace vam::io {
 
@@ -18,19 +19,24 @@ struct ArraySize {
 };
 
 struct ArrayOptions {
-  std::string name;                  // of the array in a .npz that holds several
+  std::string name;                  // of the array in a .npz or HDF5 file that holds several
   std::array<int, 3> axes{0, 1, 2};  // which axis of the array counts the images, the rows and the columns
+  bool projections = false;          // the rows are stage angles: what an HDF5 file states about them counts
+  bool own_order = false;            // of projections, the order of an HDF5 file's convention goes before `axes`
 };
 
 /// Reads an array of 2 or 3 axes front to back, parsed in a child; what is not finite as float is refused. Where
-/// images, rows and columns are the array's own order, in constant memory (.npz and TIFF: that of the file); else all
-/// of it is held. "-" is stdin. Throws Error: no_input, io, data (none of these, truncated, damaged, objects, another
-/// number of axes, too large, not finite), usage (no array of that name).
+/// images, rows and columns are the array's own order, in constant memory (.npz, TIFF and HDF5 from a pipe: that of the
+/// file); else all of it is held (HDF5: what memory allows). "-" is stdin. Throws Error: no_input, io, data (none of
+/// these, truncated, damaged, objects, another number of axes, too large, not finite), usage (no array of that name),
+/// absent (libhdf5).
 class ArrayReader {
  public:
   ArrayReader(const std::string& path, const ArrayOptions& options);
   ~ArrayReader();
   [[nodiscard]] const ArraySize& size() const;
+  /// Of projections; only HDF5 states anything.
+  [[nodiscard]] const StatedViews& views() const;
   /// The next image; false after the last.
   bool next(Image& image);
 

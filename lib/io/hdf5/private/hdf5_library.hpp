@@ -1,0 +1,36 @@
+// libhdf5, loaded when the first such file is read: its 40 libraries would take most of the start of a tool that only
+// may read arrays. Its headers say what the functions are; nothing is linked.
+#pragma once
+
+#define H5_USE_110_API
+#include <hdf5.h>
+
+// Every function of libhdf5 that is called.
+// clang-format off
+#define VAM_HDF5_FUNCTIONS(X)                                                                                         \
+  X(H5Aexists) X(H5Aget_space) X(H5Aget_type) X(H5Aopen) X(H5Aread) X(H5Dget_create_plist) X(H5Dget_space)            \
+  X(H5Dget_space_status) X(H5Dget_type) X(H5Dread) X(H5Eset_auto2) X(H5Ewalk2) X(H5FDregister) X(H5Fopen)             \
+  X(H5Gget_info) X(H5Idec_ref) X(H5Iget_type) X(H5Lget_name_by_idx) X(H5Oget_info2) X(H5Oopen) X(H5PLset_loading_state) \
+  X(H5Pcreate) X(H5Pget_chunk) X(H5Pget_driver_info) X(H5Pget_external_count) X(H5Pget_filter2) X(H5Pget_layout)      \
+  X(H5Pget_nfilters) X(H5Pset_driver) X(H5Screate_simple) X(H5Sget_simple_extent_dims) X(H5Sget_simple_extent_ndims)  \
+  X(H5Sget_simple_extent_npoints) X(H5Sselect_hyperslab) X(H5Tget_class) X(H5Tget_size) X(H5Tis_variable_str)         \
+  X(H5Zfilter_avail) X(H5free_memory) X(H5open)
+// clang-format on
+
+namespace vam::io::hdf5 {
+
+struct Api {
+#define VAM_POINTER(name) decltype(&::name) name;  // NOLINT(bugprone-macro-parentheses): it is declared here
+  VAM_HDF5_FUNCTIONS(VAM_POINTER)
+#undef VAM_POINTER
+  // Set by H5open().
+  const hid_t* file_access;
+  const hid_t* native_int;
+  const hid_t* native_float;
+  const hid_t* native_double;
+};
+
+/// The one of this process. Throws Fault::absent when the machine does not have the release that this was built with.
+const Api& api();
+
+}  // namespace vam::io::hdf5

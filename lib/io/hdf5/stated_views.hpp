@@ -1,0 +1,15 @@
+// What a file of projections states about them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vam::io {
+
+struct StatedViews {
+  bool top_first = false;          // the file has its rows from the top; they are read upwards
+  std::string source;              // of the angles, a dataset
+  std::vector<double> angles_deg;  // of the rows of a sinogram, as measured; none where the file has none
+};
+
+}  // namespace vam::io
