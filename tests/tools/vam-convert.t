@@ -89,7 +89,7 @@ data = open("a.npy", "rb").read().replace(b"<f4", b"<f8")
 open("huge.npy", "wb").write(data[:128] + struct.pack("<24d", *[1e300] * 24))'
 fails 65 'huge.npy: column 0, row 0 of image 0 is not a finite number' vam-convert huge.npy --voxel 1 -o x.vdb
 printf 'solid' >mesh.stl
-fails 65 'mesh.stl: is not an array \(NumPy, NRRD, MRC, TIFF\)' vam-convert mesh.stl --voxel 1 -o x.vdb
+fails 65 'mesh.stl: is not an array \(NumPy, HDF5, NRRD, MRC, TIFF\)' vam-convert mesh.stl --voxel 1 -o x.vdb
 : >empty.npy
 fails 65 'empty.npy: is empty' vam-convert empty.npy --voxel 1 -o x.vdb
 

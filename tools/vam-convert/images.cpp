@@ -16,9 +16,12 @@ void scale(Image& image, const std::optional<double>& full_scale) {
 class Array : public Images {
  public:
   Array(const Options& options, const std::string& letters)
-      : reader_(options.input, {options.array, axes_of(options, letters)}), full_scale_(options.full_scale) {}
+      : reader_(options.input,
+                {options.array, axes_of(options, letters), options.geometry != "none", options.axes.empty()}),
+        full_scale_(options.full_scale) {}
   [[nodiscard]] io::ArraySize size() const override { return reader_.size(); }
   [[nodiscard]] bool are_frames() const override { return false; }
+  [[nodiscard]] const io::StatedViews& views() const override { return reader_.views(); }
   bool next(Image& image) override {
     if (!reader_.next(image)) return false;
     scale(image, full_scale_);

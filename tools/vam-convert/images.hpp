@@ -25,6 +25,11 @@ class Images {
   [[nodiscard]] virtual bool are_frames() const = 0;
   /// From frame to frame, as stated beside them; 0: not known.
   [[nodiscard]] virtual double angle_step_deg() const { return 0; }
+  /// What an array's file states about projections.
+  [[nodiscard]] virtual const io::StatedViews& views() const {
+    static const io::StatedViews none;
+    return none;
+  }
 };
 
 /// An array with these axes for images, rows and columns; or the images of a folder or video. Throws what opening them

@@ -8,7 +8,8 @@ cli::Manual manual() {
       "exchange volumes and projections with other programs",
       {"vam-convert reads data of other programs and writes files of these tools, or the reverse; the content of the "
        "input decides. A volume (VDB) or a stack (EXR) becomes a NumPy array (.npy). An array of 2 or 3 axes "
-       "(NumPy .npy and .npz, NRRD, MRC, TIFF of several pages) becomes a volume with --voxel, or a stack of sinograms "
+       "(NumPy .npy and .npz, HDF5, NRRD, MRC, TIFF of several pages) becomes a volume with --voxel, or a stack of "
+       "sinograms "
        "with --geometry, so that vam-dose computes the "
        "dose of projections made by any program. A folder of numbered images (PNG, TIFF) or a video (MKV, MP4) is read "
        "as projections, one for each stage angle; with --voxel a folder is read as the slices of a volume.",
@@ -20,6 +21,16 @@ cli::Manual manual() {
        "order xaz. Values are unchanged unless --full-scale is given. Python objects (pickles) are refused. "
        "Of NRRD, MRC and TIFF files the values are read (x the fastest axis, pages as z) and voxel size and place are "
        "given by options; NRRD values must be in the same file, raw or gzip, TIFF pages grey and in strips.",
+       "Of HDF5 files one dataset is read, of integers or floats of any size, packed by gzip, shuffle or szip, or not: "
+       "the one that --array names, else /exchange/data (DXchange), else that of the NeXus groups, else the only one "
+       "of "
+       "3 axes. With --geometry the projections of DXchange and NXtomo files are read as these keep them, "
+       "[angle][row][column] with row 0 at the top, unless --axes is given; of NXtomo those whose image_key is 0. "
+       "Their "
+       "stage angles (theta, rotation_angle, in degrees, or in radians where their attribute units says so) give the "
+       "step and the first angle, unless --view-step is given; each must lie within a tenth of a step of even ones. "
+       "Flat and dark fields are not divided out. MATLAB stores the axes in reverse order. Values in other files "
+       "(external links, virtual datasets) and filters of plugins are refused.",
        "Projections of other programs do not state their geometry, which is therefore given by options: the column "
        "pitch at the axis (--pixel), the stage angle between projections (--view-step), the column of the axis "
        "(--axis-column), the row of z = 0 (--axis-row) and the orientation of the images (--orientation). With "
@@ -41,6 +52,15 @@ cli::Manual manual() {
         "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb\n"
         "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-convert -o sino.npy\n"
         "vam-convert sino.npy --geometry parallel --pixel 0.5 | vam-dose --like part.vdb -o dose.vdb"},
+       {"Projections from an HDF5 file in the order of tomography, as DXchange keeps them:",
+        "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb\n"
+        "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-convert -o sino.npy\n"
+        "/usr/bin/python3 -c 'import h5py, numpy\n"
+        "sino = numpy.load(\"sino.npy\")\n"
+        "with h5py.File(\"scan.h5\", \"w\") as f:\n"
+        "    f[\"exchange/data\"] = sino[::-1].transpose(1, 0, 2)\n"
+        "    f[\"exchange/theta\"] = numpy.arange(360.0)'\n"
+        "vam-convert scan.h5 --geometry parallel --pixel 0.5 | vam-dose --like part.vdb -o dose.vdb"},
        {"Does a folder of frames print?",
         "vam-slice --print-printer --set projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 -o "
         "small.toml\n"
@@ -48,7 +68,9 @@ cli::Manual manual() {
         "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb\n"
         "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample | vam-project --turns 1 -o frames\n"
         "vam-convert frames --geometry vial --like part.vdb | vam-dose --like part.vdb | vam-score --target part.vdb"}},
-      {"Memory: one image of an array in C order, and the file for .npz and TIFF; the whole of an array in another "
+      {"Memory: one image of an array in C order, and the file for .npz and TIFF, and for HDF5 from a pipe; of HDF5 "
+       "the "
+       "images of a chunk, or an eighth of the memory in another order; the whole of any other array in another "
        "order, whose first values are "
        "needed "
        "last; 4 bytes for each lit pixel of frames that become sinograms; a volume as it is stored.",

@@ -15,6 +15,7 @@
 #include "vam-convert/images.hpp"
 #include "vam-convert/resliced.hpp"
 #include "vam-convert/slices.hpp"
+#include "vam-convert/stage_angles.hpp"
 
 namespace vam::convert_tool {
 
@@ -32,12 +33,26 @@ struct Plan {
   int per_turn = 0;  // angles
   int turns = 0;
   bool backwards = false;
-  double shift = 0;  // of columns, to the right
+  double start_deg = 0;  // stage angle of the first row
+  double shift = 0;      // of columns, to the right
   int columns = 0;
 };
 
-void plan_turns(const Options& options, double stated_deg, int angles, Plan& plan) {
-  const double step_deg = options.view_step_deg.value_or(stated_deg != 0 ? stated_deg : 360.0 / angles);
+/// From row to row: as given, measured or stated, else a turn in all; the measured start.
+double angle_step_deg(const Options& options, const Slices& slices, Plan& plan) {
+  const io::StatedViews& views = slices.views();
+  if (options.view_step_deg) return *options.view_step_deg;
+  if (!views.angles_deg.empty()) {
+    const StageAngles measured = even_angles(views, slices.size().rows, io::input_name(options.input));
+    plan.start_deg = measured.start_deg;
+    if (measured.step_deg != 0) return measured.step_deg;
+  }
+  return slices.angle_step_deg() != 0 ? slices.angle_step_deg() : 360.0 / slices.size().rows;
+}
+
+void plan_turns(const Options& options, const Slices& slices, Plan& plan) {
+  const int angles = slices.size().rows;
+  const double step_deg = angle_step_deg(options, slices, plan);
   const std::string name = io::input_name(options.input);
   const double per_turn = 360 / std::abs(step_deg);
   plan.per_turn = round_int(per_turn);
@@ -63,11 +78,11 @@ double axis_column(const Options& options, const model::Projector& projector, in
 }
 
 /// Slices are counted upwards, rows of images downwards.
-double slice_of_zero(const Options& options, const model::Projector& projector, int slices, bool frames) {
-  const bool own = frames && options.in_vial() && slices == projector.rows;
+double slice_of_zero(const Options& options, const model::Projector& projector, int slices, bool from_top) {
+  const bool own = from_top && options.in_vial() && slices == projector.rows;
   if (!options.axis_row && !own) return 0.5 * (slices - 1);
   const double row = options.axis_row.value_or(projector.axis_row);
-  return frames ? slices - 1 - row : row;
+  return from_top ? slices - 1 - row : row;
 }
 
 void plan_columns(const Options& options, const model::Projector& projector, int columns, Plan& plan) {
@@ -140,6 +155,7 @@ model::StackInfo info_of(const cli::App& app, const Options& options, const mode
   info.pixel_mm = pixel_mm(options, printer.projector);
   info.row_mm = heights.pitch_mm;
   info.z_start_mm = heights.z0_mm;
+  info.angle_start_deg = plan.start_deg;
   info.angle_step_deg = 360.0 / plan.per_turn;
   info.units = frames && options.units == "relative" ? "fraction of full intensity" : options.units;
   info.history = {app.history()};
@@ -147,9 +163,9 @@ model::StackInfo info_of(const cli::App& app, const Options& options, const mode
   return info;
 }
 
-Heights own_heights(const Options& options, const model::Projector& projector, int slices, bool frames) {
+Heights own_heights(const Options& options, const model::Projector& projector, int slices, bool from_top) {
   const double pitch_mm = options.slice_height_mm.value_or(pixel_mm(options, projector));
-  return {slices, -slice_of_zero(options, projector, slices, frames) * pitch_mm, pitch_mm};
+  return {slices, -slice_of_zero(options, projector, slices, from_top) * pitch_mm, pitch_mm};
 }
 
 std::optional<model::Grid> grid_like(const Options& options) {
@@ -181,10 +197,11 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   }
   Slices slices(std::move(images), options, printer);
   Plan plan;
-  plan_turns(options, slices.angle_step_deg(), slices.size().rows, plan);
+  plan_turns(options, slices, plan);
   plan_columns(options, printer.projector, slices.size().columns, plan);
   const std::optional<model::Grid> grid = grid_like(options);
-  const Heights own = own_heights(options, printer.projector, slices.size().images, frames);
+  const bool from_top = frames || slices.views().top_first;
+  const Heights own = own_heights(options, printer.projector, slices.size().images, from_top);
   Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
   const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
   io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, frames), options.stack);

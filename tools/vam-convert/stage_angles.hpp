@@ -1,0 +1,21 @@
+// Measured stage angles as even steps.
+#pragma once
+
+#include <string>
+
+#include "io/hdf5/stated_views.hpp"
+
+namespace vam::convert_tool {
+
+struct StageAngles {
+  double start_deg = 0;
+  double step_deg = 0;  // negative for a stage that turns the other way; 0: a single projection does not show it
+};
+
+/// The steps, of which a whole number makes a turn. Each angle is within a tenth of a step of its place, which moves
+/// nothing in the vial by more than some tenth of a column where there are as many projections as those resolve. Notes
+/// what it found. Throws Fault::data that begins with `name`: uneven steps, with the first that differs; another number
+/// of angles than projections.
+[[nodiscard]] StageAngles even_angles(const io::StatedViews& views, int projections, const std::string& name);
+
+}  // namespace vam::convert_tool
