@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -207,6 +208,7 @@ bool App::print_about(int argc, char** argv) const {
 
 int App::run(int argc, char** argv, const std::function<void()>& body) {
   set_program_name(state_->tool.manual.name);
+  (void)std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of file sizes a write fails, and is reported
   const auto start = std::chrono::steady_clock::now();
   std::string line;
   Fault fault = Fault::bug;
@@ -218,8 +220,9 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
         note(use_of_machine(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
     }
     errno = 0;
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      throw Error{Fault::io, std::string("standard output: write failed (") + std::strerror(errno) + ")"};
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {  // errno is that of an earlier write, or lost
+      throw Error{Fault::io, "standard output: write failed" +
+                                 (errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : std::string())};
     }
     return 0;
   } catch (const Error& error) {
