@@ -13,7 +13,7 @@ std::string margin(const model::DoseMetrics& m) { return (m.pw > 0 ? "+" : "") +
 
 }  // namespace
 
-bool prints(const Verdict& verdict) { return verdict.whole.pw >= 0; }
+bool prints(const Verdict& verdict) { return verdict.whole.pw > 0; }
 
 std::string words(const Verdict& verdict) {
   const std::int64_t cut = voxels(verdict.with_cut) - voxels(verdict.whole);

@@ -44,7 +44,7 @@ std::string signed_number(double value) { return (value >= 0 ? "+" : "") + numbe
 
 std::string print_rows(const Plan& plan) {
   const optimize::Printed& nominal = plan.preview->trials.nominal;
-  const bool prints = nominal.figures.pw >= 0;
+  const bool prints = nominal.figures.pw > 0;
   std::string text = row("will it print", std::string(prints ? "yes" : "not everywhere") + ": process window " +
                                               signed_number(window(nominal)) + " of the largest dose, VER " +
                                               number(nominal.figures.ver) + " (estimate on voxels of " +
