@@ -71,6 +71,20 @@ sed 's/"voxel_mm": 0.3/"voxel_mm": 0.8/' r.json >s.json
 fails 65 's.json: changed after it was written' vam-check s.json
 python3 -c 'import json; json.dump(json.load(open("r.json")), open("t.json", "w"))'
 ok 'the layout of a report is not sealed' vam-check t.json
+# Damage by which a file is no longer of its kind.
+for cut in 3 200; do
+  head -c $cut r.json >cut.json
+  fails 65 'cut.json: is damaged: no longer JSON' vam-check cut.json
+done
+fails 65 'stdin: is damaged: no longer JSON' sh -c 'head -c -9 r.json | vam-check'
+for file in part.vdb sino.exr; do
+  flip $file 1 "lost.${file##*.}"
+  fails 65 "lost.${file##*.}: is damaged: does not begin as a file .${file##*.} does" vam-check "lost.${file##*.}"
+done
+for cut in 60 2681; do
+  head -c $cut printer.toml >short.toml
+  fails 65 "short.toml: is cut off after $cut bytes" vam-check short.toml
+done
 
 fails 66 'none.exr: cannot open' vam-check none.exr
 : >empty.vdb

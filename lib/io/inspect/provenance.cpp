@@ -1,5 +1,7 @@
 #include "io/inspect/provenance.hpp"
 
+#include <filesystem>
+
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
@@ -20,7 +22,7 @@ namespace {
 
 std::vector<ProvenanceEntry> inspect_stacks(const std::string& path, bool fast) {
   std::vector<ProvenanceEntry> findings;
-  StackReader reader(path);
+  StackReader reader(path, true);
   do {
     Image image;
     model::ImageInfo about;
@@ -59,15 +61,29 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};
   }
-  const char* kind = has_printer_section(text) ? "printer file" : "file of another kind";
-  return {{kind, require_text_seal(text, name), "", {}}};
+  if (path.ends_with(".json") || (text.front() == '{' && text.find("\"seal\":") != std::string::npos)) {
+    throw Error{Fault::data, name + ": is damaged: no longer JSON; write it again"};
+  }
+  if (!has_printer_section(text) && !path.ends_with(".toml")) {
+    return {{"file of another kind", require_text_seal(text, name), "", {}}};
+  }
+  const bool sealed = require_text_seal(text, name);
+  (void)parse_printer(text, name);  // one that the tools wrote has a mark at its end, which a cut loses
+  return {{"printer file", sealed, "", {}}};
 }
 
 }  // namespace
 
 std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast) {
   const auto type = known_file_type(path);
-  if (!type) return inspect_text(path);
+  if (!type) {
+    for (const char* ending : {".exr", ".vdb", ".mkv"}) {
+      if (!path.ends_with(ending) || !std::filesystem::is_regular_file(path) || std::filesystem::is_empty(path))
+        continue;
+      throw Error{Fault::data, path + ": is damaged: does not begin as a file " + ending + " does"};
+    }
+    return inspect_text(path);
+  }
   switch (*type) {
     case FileType::volume:
       return inspect_volumes(path, fast);
