@@ -27,6 +27,15 @@ void warn_clipped(const resin::LightTally& tally) {
        " % of the lit pixels exceed full intensity and were clipped; reduce --multiplier or increase --full-scale");
 }
 
+void warn_dark(const resin::LightTally& tally) {
+  constexpr double half_a_level = 0.5 / 255;
+  const double mean = tally.lit > 0 ? tally.light / static_cast<double>(tally.lit) : 1.0;
+  if (mean >= half_a_level) return;
+  warn("the lit pixels have " + format_number(100 * mean, 2) +
+       " % of full intensity on average, less than half a grey level: a few far brighter ones set full intensity; "
+       "lower it by --full-scale");
+}
+
 /// Frames one after the other, their rows by all threads.
 class DitheredFrames {
  public:
@@ -139,6 +148,7 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
   resin::LightTally all;
   for (const auto& tally : tallies) all += tally;
   warn_clipped(all);
+  if (dithering.turns == 0) warn_dark(all);
   return all;
 }
 
