@@ -31,7 +31,8 @@ for stack in sealed plain; do
   fails 65 'long.exr: trailing data after the last image, from byte [0-9]+ on, is not a stack' vam-view long.exr -o x.png
   fails 65 'stdin: trailing data after the last image' sh -c 'vam-view - -o x.png <long.exr'
   cat $stack.exr $stack.exr >two.exr
-  ok "$stack: a further stack is none of them" vam-view two.exr -o two.png
+  fails 65 'two.exr: another stack follows the last image, from byte [0-9]+ on' vam-view two.exr -o two.png
+  ok "$stack: vam-check takes each" vam-check two.exr
 done
 
 # --memory: refused with both numbers, before it is taken.
@@ -63,6 +64,22 @@ same 'the same bytes' free.exr block.exr
 mkdir scratch
 ok 'scratch files in TMPDIR' sh -c "TMPDIR=scratch $coupled --memory 0.2 -o block.exr"
 is 'nothing is left of them' "$(ls -A scratch)" ''
+# A limit of file sizes is an error of writing, which leaves nothing; a response is not read without end.
+fails 74 'limited.exr: cannot write' sh -c 'ulimit -f 4; vam-sinogram part.vdb --angles 90 -o limited.exr'
+is 'nothing is left of it' "$(ls -A | grep -c 'limited')" 0
+
+# Places and intensities that no stack beside a vial has.
+for wrong in row=1e30:'vam:row_mm' pixel=1e9:'vam:pixel_mm' step=1e6:'vam:angle_step_deg'; do
+  python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=2 ${wrong%%:*}
+  fails 65 "wrong.exr: .*${wrong##*:}.* is 1e.*, beyond" vam-dose wrong.exr -o x.vdb
+done
+python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=12 row=99
+fails 65 'wrong.exr: vam:z_mm of image 11 is 1089, beyond 1000' vam-dose wrong.exr -o x.vdb
+tiny_print tiny.exr
+fails 65 '/dev/zero: longer than the limit of 16 MiB' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
+python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 value=1e30
+fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' \
+  vam-project wrong.exr --printer printer.toml -o x.mkv
 python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 2>/dev/null
 sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory in addition to the [0-9.e-]+ GiB in use; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
 

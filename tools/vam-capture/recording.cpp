@@ -65,7 +65,7 @@ GreyImage to_levels(const Image& image, int bits, const std::string& what) {
 }
 
 device::CameraFeed stack_feed(const std::string& place) {
-  auto reader = std::make_shared<io::StackReader>(place);
+  auto reader = std::make_shared<io::StackReader>(place, true);
   io::require(place, reader->info(), model::Kind::frames, model::Space::camera);
   return [reader, place, next = 0, bits = 0](CapturedFrame& frame) mutable {
     Image image;

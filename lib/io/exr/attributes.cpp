@@ -13,6 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/text.hpp"
 #include "io/stream/seal.hpp"
 
 namespace vam::io::exr {
@@ -26,6 +27,7 @@ using model::StackInfo;
 
 constexpr std::array kinds = {Kind::sinogram, Kind::frames};
 constexpr const char* poses_name = "vam:poses";
+constexpr double farthest_mm = 1000;  // from the lens's height
 constexpr std::array spaces = {Space::virtual_, Space::projector, Space::camera};
 
 void set_text(Imf::Header& header, const char* name, const std::string& text) {
@@ -94,6 +96,27 @@ std::string part_name(const StackInfo& info, int index) {
   return name;
 }
 
+std::string implausible(const StackInfo& info) {
+  struct Bound {
+    const char* name;
+    double value, most;
+  };
+  constexpr double most_pitch_mm = 100, least_pitch_mm = 1e-6, most_turned_deg = 1e7;
+  for (const Bound& bound : {Bound{"vam:pixel_mm", info.pixel_mm, most_pitch_mm},
+                             {"vam:row_mm", info.row_mm, most_pitch_mm},
+                             {"vam:z_mm", info.z_start_mm, farthest_mm},
+                             {"vam:angle_start_deg", info.angle_start_deg, most_turned_deg},
+                             {"vam:angle_step_deg", info.angle_step_deg, 360}}) {
+    if (std::abs(bound.value) <= bound.most) continue;
+    return std::string(bound.name) + " is " + format_number(bound.value) + ", beyond " + format_number(bound.most);
+  }
+  for (const double pitch_mm : {info.pixel_mm, std::abs(info.row_mm)}) {
+    if (pitch_mm == 0 || pitch_mm >= least_pitch_mm) continue;
+    return "a pitch of " + format_number(pitch_mm) + " mm is less than " + format_number(least_pitch_mm);
+  }
+  return "";
+}
+
 void set_common(Imf::Header& header, const StackInfo& info) {
   for (const auto& [name, value] : info.extra) set_text(header, name.c_str(), value);
   set_text(header, "vam:kind", kind_name(info.kind));
@@ -143,6 +166,7 @@ StackInfo stack_info(const Imf::Header& header) {
   info.z_start_mm = number(header, "vam:z_mm").value_or(0);
   info.angle_start_deg = number(header, "vam:angle_start_deg").value_or(0);
   info.angle_step_deg = number(header, "vam:angle_step_deg").value_or(0);
+  if (const std::string why = implausible(info); !why.empty()) throw std::runtime_error(why);
   info.units = text(header, "vam:units").value_or(info.units);
   info.history = split(text(header, "vam:history").value_or(""));
   if (const auto poses = text(header, poses_name)) info.poses = model::parse_poses(*poses);
@@ -167,6 +191,10 @@ ImageInfo image_info(const Imf::Header& header, const StackInfo& info, int index
   }
   ImageInfo about = implied(info, index);
   about.z_mm = number(header, "vam:z_mm").value_or(about.z_mm);
+  if (!(std::abs(about.z_mm) <= farthest_mm)) {
+    throw std::runtime_error("vam:z_mm of image " + std::to_string(index) + " is " + format_number(about.z_mm) +
+                             ", beyond " + format_number(farthest_mm));
+  }
   if (const auto angle = number(header, "vam:angle_deg")) {
     about.angle_deg = *angle;
     about.has_angle = true;

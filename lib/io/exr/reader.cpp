@@ -14,7 +14,7 @@ using model::ImageInfo;
 using model::StackInfo;
 
 struct StackReader::State {
-  explicit State(const std::string& path) : parser(path) { read_head(); }
+  State(const std::string& path, bool several) : parser(path, several) { read_head(); }
 
   void read_head() {
     if (parser.has_seals()) {
@@ -28,7 +28,7 @@ struct StackReader::State {
   std::optional<exr::ForeignStacks> foreign;  // from this stack on
 };
 
-StackReader::StackReader(const std::string& path) : state_(std::make_unique<State>(path)) {}
+StackReader::StackReader(const std::string& path, bool several) : state_(std::make_unique<State>(path, several)) {}
 StackReader::~StackReader() = default;
 
 std::string StackReader::seal() const { return state_->foreign ? "" : chained_seal(state_->parser.seals().chained()); }

@@ -20,7 +20,8 @@ struct StackOptions {
 /// Throws Error: no_input, data (not an EXR, truncated, no channel Y, no vam:kind, sizes beyond the limits), io.
 class StackReader {
  public:
-  explicit StackReader(const std::string& path);
+  /// several: stacks may follow each other on the stream; else what follows the last image is refused with it.
+  explicit StackReader(const std::string& path, bool several = false);
   ~StackReader();
   [[nodiscard]] const model::StackInfo& info() const;
   /// The facts of every image, known before the first is read.
@@ -32,7 +33,7 @@ class StackReader {
   /// held to it: what differs ends in Fault::data, at the header, the image or, on a pipe, after the last one.
   [[nodiscard]] std::string seal() const;
   [[nodiscard]] bool is_sealed() const;
-  /// After the last image: moves on to the stack that follows on the same stream (a live capture sends one per turn).
+  /// After the last image, of several: moves on to the stack that follows (a live capture sends one per turn).
   /// False at the end of the stream.
   bool next_stack();
 

@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/stream/finite.hpp"
 #include "io/stream/signature.hpp"
@@ -34,6 +35,18 @@ void check_finite(const Image& image, std::size_t index) {
   const auto at = bad - image.values.begin();
   throw std::runtime_error("pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
                            " of image " + std::to_string(index) + " is not a finite number");
+}
+
+// Projector intensities are relative to what cures the resin; a value beyond has another unit, or is damaged, and would
+// leave all others dark.
+void check_intensity(const Image& image, std::size_t index) {
+  constexpr float most = 1e9F;
+  const auto peak = std::max_element(image.values.begin(), image.values.end());
+  if (peak == image.values.end() || *peak <= most) return;
+  const auto at = peak - image.values.begin();
+  throw std::runtime_error("pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
+                           " of image " + std::to_string(index) + " is " + format_number(*peak, 3) +
+                           ", more than 1e9, which is no intensity; scale or mend it");
 }
 
 void require_own_poses(const StackInfo& info) {
@@ -221,6 +234,7 @@ void StackParser::refill(bool alone) {
     const auto at = static_cast<std::size_t>(i);
     decode(layouts_[layout_of_[first + at]].header, taken[at], ready_[at]);
     check_finite(ready_[at], first + at);
+    if (info_.space == model::Space::projector) check_intensity(ready_[at], first + at);
     seals_->note_image(first + at, ready_[at]);
   };
   if (count == 1) {
@@ -240,7 +254,12 @@ void StackParser::require_clean_end() {
   if ((in_.size() == 0 && poll(&more, 1, 0) <= 0) || in_.at_end()) return;
   const auto next = in_.peek();
   const std::size_t size = std::min(next.size(), sizeof magic);
-  if (std::memcmp(next.data(), &magic, size) == 0) return;  // a further stack
+  const bool stack = std::memcmp(next.data(), &magic, size) == 0;
+  if (stack && several_) return;
+  if (stack) {
+    throw std::runtime_error("another stack follows the last image, from byte " + std::to_string(in_.position()) +
+                             " on, and one is read; write each to a file of its own");
+  }
   throw std::runtime_error("trailing data after the last image, from byte " + std::to_string(in_.position()) +
                            " on, is not a stack; write the file again, or truncate it there");
 }

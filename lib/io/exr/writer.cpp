@@ -104,6 +104,9 @@ StackWriter::State::State(const std::string& path, const StackInfo& stack, std::
                                  std::to_string(info.width) + " x " + std::to_string(info.height) +
                                  " pixels cannot be written; at most 65536 per axis and 2^28 in all"};
   }
+  if (const std::string why = exr::implausible(info); !why.empty()) {
+    throw Error{Fault::data, out.name() + ": " + why + "; check the geometry"};
+  }
 }
 
 // Magic, version, all headers and all tables: all that stands before the first chunk.

@@ -110,7 +110,7 @@ ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::m
     state_->video = std::make_unique<VideoReader>(path);
     (void)state_->needed_step();
   } else {
-    state_->stack = std::make_unique<StackReader>(path);
+    state_->stack = std::make_unique<StackReader>(path, true);
     require(path, state_->stack->info(), model::Kind::frames, model::Space::camera);
   }
 }

@@ -1,13 +1,11 @@
 #include "io/settings/response_file.hpp"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <optional>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
@@ -38,14 +36,14 @@ void append(model::ResponseTable& table, double grey, double intensity, const st
 }  // namespace
 
 model::ResponseTable read_response(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
+  constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
   model::ResponseTable table;
   table.source = file;
-  std::string line;
   bool header_allowed = true;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    line = trimmed(line);
+  int number = 0;
+  for (const std::string& raw : split(read_all(file, Content::text, most_bytes), '\n')) {
+    ++number;
+    const std::string line = trimmed(raw);
     if (line.empty() || line[0] == '#') continue;
     const std::string place = file + ":" + std::to_string(number);
     const auto cells = split(line, ',');
@@ -54,7 +52,7 @@ model::ResponseTable read_response(const std::string& file) {
     if (grey && intensity) {
       append(table, *grey, *intensity, place);
     } else if (!header_allowed || grey) {
-      throw Error{Fault::data, place + ": '" + line + "' is not two numbers 'grey,intensity'"};
+      throw Error{Fault::data, place + ": '" + line.substr(0, 80) + "' is not two numbers 'grey,intensity'"};
     }
     header_allowed = false;
   }

@@ -20,8 +20,11 @@ void set_common(Imf::Header& layout, const model::StackInfo& info);
 /// Sets the facts of part `index`.
 void set_own(Imf::Header& header, const model::StackInfo& info, int index, const model::ImageInfo& about);
 
+/// What is no place or pitch of a stack beside a vial ("vam:row_mm is 1e+30, ..."); empty where all is.
+[[nodiscard]] std::string implausible(const model::StackInfo& info);
+
 /// The facts of a stack from its first header; width and height are left to the caller, count is 0 where it is absent.
-/// Throws std::runtime_error: no vam:kind, an unknown space, no positive pixel pitch.
+/// Throws std::runtime_error: no vam:kind, an unknown space, no positive pixel pitch, what is implausible.
 [[nodiscard]] model::StackInfo stack_info(const Imf::Header& header);
 /// The facts of part `index`. Throws std::runtime_error when the part is marked as another, or of another stack.
 [[nodiscard]] model::ImageInfo image_info(const Imf::Header& header, const model::StackInfo& info, int index);

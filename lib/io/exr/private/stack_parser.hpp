@@ -23,7 +23,7 @@ namespace vam::io::exr {
 /// Of a stack after the other on one stream. All throw Fault::data, with one line, for what is no stack.
 class StackParser {
  public:
-  explicit StackParser(const std::string& path) : in_(path) { begin(); }
+  StackParser(const std::string& path, bool several) : in_(path), several_(several) { begin(); }
 
   /// Whether the stack bears seals, by its first header, of which OpenEXR has seen nothing yet.
   [[nodiscard]] bool has_seals() const;
@@ -66,6 +66,7 @@ class StackParser {
   void as_data_fault(const Work& work) const;
 
   InputFile in_;
+  bool several_;
   model::StackInfo info_;
   std::vector<model::ImageInfo> about_;
   std::int32_t flags_ = 0;
