@@ -203,6 +203,18 @@ TEST_CASE("V4L2: a rate that cannot be set is taken where it agrees, and told wh
   CHECK(has(error_of(call, Fault::protocol), "rejects the frame rate (VIDIOC_S_PARM)"));
 }
 
+TEST_CASE("V4L2: a rate within a hundredth of the requested one is taken for it") {
+  VirtualClock clock;
+  V4l2Script script;
+  CameraSettings settings;
+  settings.fps = 10000;
+  script.rate_limit = 9900;
+  CHECK(v4l2(script, clock, settings)->mode().fps == 9900);
+  script.rate_limit = 9899;
+  CHECK(has(error_of([&] { (void)v4l2(script, clock, settings); }, Fault::protocol),
+            "the frame rate reads back as 9899 instead of 10000"));
+}
+
 TEST_CASE("V4L2: luma is of limited range unless the driver says otherwise") {
   struct Case {
     __u32 quantization, colorspace;
@@ -314,6 +326,10 @@ TEST_CASE("V4L2: a camera that stops sending is queried once: busy if it answers
   };
   V4l2Script script;
   CHECK(has(failure(script, Fault::busy), "/dev/video9: no frame within 1 s, although the camera responds; check"));
+  script.rate_errno = EINVAL;
+  script.hides_rate = true;  // one frame a second, for all that is known
+  CHECK(has(failure(script, Fault::busy), "/dev/video9: no frame within 4 s"));
+  script.hides_rate = false;
   script.ended = true;
   CHECK(has(failure(script, Fault::busy), "the stream has ended (POLLERR), although the camera responds"));
   script.dequeue_errno = EIO;
