@@ -183,3 +183,13 @@ TEST_CASE("projections made for tolerances do not depend on the number of thread
   REQUIRE(one.size() == two.size());
   for (std::size_t k = 0; k < one.size(); ++k) CHECK(one[k].values == two[k].values);
 }
+
+TEST_CASE("where the window is wider than the part can have, its doses miss both ends and still print") {
+  std::vector<Image> frames;
+  VolumeTask task = make_task(frames, true);
+  const double threshold = task.demands.window.threshold();
+  task.demands.window = {0.5 * threshold, 1.5 * threshold};
+  const auto metrics = optimise(task, *light::make_operator(setup_of({}))).metrics;
+  CHECK(metrics.min_part > threshold);
+  CHECK(metrics.max_void < threshold);
+}
