@@ -5,16 +5,20 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <random>
 #include <string>
 
 #include "base/printable.hpp"
+#include "fault_of.hpp"
 #include "lib/io/exr_stacks.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "trials.hpp"
@@ -112,14 +116,17 @@ model::StackInfo stack_of_tools(int width, int height, int count) {
   return info;
 }
 
-// What oiiotool does with --compression: every part with its attributes, decoded and encoded again.
-void recompress(const std::string& from, const std::string& to, Imf::Compression compression) {
+// What oiiotool does with --compression: every part with its attributes, decoded and encoded again; and with --attrib,
+// where an owner is given.
+void recompress(const std::string& from, const std::string& to, Imf::Compression compression,
+                const std::string& owner = "") {
   Imf::MultiPartInputFile in(from.c_str(), 0, false);
   std::vector<Imf::Header> headers;
   for (int part = 0; part < in.parts(); ++part) {
     headers.push_back(in.header(part));
     headers.back().compression() = compression;
     headers.back().erase("chunkCount");
+    if (!owner.empty()) headers.back().insert("owner", Imf::StringAttribute(owner));
   }
   Imf::MultiPartOutputFile out(to.c_str(), headers.data(), in.parts());
   for (int part = 0; part < in.parts(); ++part) {
@@ -182,6 +189,32 @@ TEST_CASE("a mismatch is one line with image or grid, both hashes and a remedy")
   CHECK(line.find("create it again") != std::string::npos);
 }
 
+TEST_CASE("a damaged offset table of a sealed stack is detected, though nobody here seeks by it") {
+  const scratch::Folder folder;
+  stacks::write_stack(folder / "s.exr", stack_of_tools(19, 35, 3), {false, "zip"});
+  const std::string whole = slurp(folder / "s.exr");
+  const std::string wanted = seen_stack(folder / "s.exr");
+  constexpr std::size_t chunks = 3 * 3;  // of 16 rows
+  const auto stated = [&](std::size_t at) {
+    std::uint64_t offset = 0;
+    std::memcpy(&offset, whole.data() + at, sizeof offset);
+    return offset;
+  };
+  std::size_t table = 0;  // the first chunk follows it
+  while (table + 8 * chunks < whole.size() && stated(table) != table + 8 * chunks) ++table;
+  REQUIRE(table + 8 * chunks < whole.size());
+  for (std::size_t entry = 0; entry < chunks; ++entry) {
+    std::string damaged = whole;
+    damaged[table + 8 * entry] ^= 1;
+    spill(folder / "s.exr", damaged);
+    std::string line;
+    CHECK(status([&] { (void)seen_stack(folder / "s.exr"); }, &line) == 65);
+    CHECK(line.find("its offset table is damaged, so that other programs cannot read it") != std::string::npos);
+  }
+  spill(folder / "s.exr", whole);
+  CHECK(seen_stack(folder / "s.exr") == wanted);
+}
+
 TEST_CASE("OpenEXR keeps the seal through a compression without loss; with loss the change is noticed") {
   const scratch::Folder folder;
   stacks::write_stack(folder / "s.exr", stack_of_tools(64, 64, 2));
@@ -190,6 +223,8 @@ TEST_CASE("OpenEXR keeps the seal through a compression without loss; with loss 
     recompress(folder / "s.exr", folder / "again.exr", compression);
     CHECK(seen_stack(folder / "again.exr") == wanted);
   }
+  recompress(folder / "s.exr", folder / "owned.exr", Imf::NO_COMPRESSION, "a lab");  // an attribute of nobody's seal
+  CHECK(status([&] { CHECK(has(seen_stack(folder / "owned.exr"), "owner=a lab\n")); }) == 0);
   std::string line;
   recompress(folder / "s.exr", folder / "lossy.exr", Imf::DWAA_COMPRESSION);
   CHECK(status([&] { (void)seen_stack(folder / "lossy.exr"); }, &line) == 65);
