@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "io/stream/output_folder.hpp"
+#include "io/stream/private/temporary.hpp"
 #include "lib/io/scratch.hpp"
 
 using namespace vam::io;
@@ -145,6 +146,20 @@ TEST_CASE("a signal removes named temporary files and still kills") {
     CHECK(WIFSIGNALED(ended));
     CHECK(WTERMSIG(ended) == number);
     CHECK(folder.count() == 0);
+  }
+}
+
+TEST_CASE("the place of a temporary name is free again once it is final") {
+  const scratch::Folder folder;
+  for (int i = 0; i < 3; ++i) {
+    std::string name;
+    int slot = -1;
+    const int file = create_temporary(folder / "a.txt", name, slot);
+    REQUIRE(file >= 0);
+    CHECK(slot == 0);  // no other output is open
+    close(file);
+    std::filesystem::remove(name);
+    forget_temporary(slot);
   }
 }
 
