@@ -110,6 +110,10 @@ TEST_CASE("wrong types and impossible values name file and line") {
   CHECK(has(refusal("[vial]\nwall_mm = 13\n"), "leaves no room"));
   CHECK(has(refusal("[projector]\nlens_distance_mm = 5\n"), "is not outside vial.radius_mm"));
   CHECK(has(refusal("[bath]\nwindow_mm = 5\n"), "cuts into"));
+  CHECK(has(refusal("[vial]\nradius_mm = 12\n[camera]\ndistance_mm = 12\n"),
+            "camera.distance_mm 12 mm is not outside vial.radius_mm 12 mm"));
+  CHECK_NOTHROW(parse_printer("[vial]\nradius_mm = 12\n[camera]\ndistance_mm = 12.1\n", "p"));
+  CHECK_NOTHROW(parse_printer("[camera]\ndistance_mm = 5\ntelecentric = true\n", "p"));
 }
 
 TEST_CASE("--set overrides, takes text with or without quotes, and is a usage error when wrong") {
