@@ -115,9 +115,17 @@ TEST_CASE("binary STL comes back as written, also when its header begins with so
   CHECK(volume(read_mesh(folder / "box.stl")) == doctest::Approx(6));
   bytes.replace(0, 6, "solid ");
   CHECK(volume(read_mesh(folder.write("mesh", bytes))) == doctest::Approx(6));
-  float normal[3];
-  std::memcpy(normal, bytes.data() + 84, sizeof normal);
-  CHECK(normal[2] == -1);  // the first face is the bottom
+  for (std::size_t face = 0; face < 12; ++face) {
+    float record[4][3];  // normal and corners
+    std::memcpy(record, bytes.data() + 84 + 50 * face, sizeof record);
+    const auto along_normal = [&](float x, float y, float z) {
+      return record[0][0] * x + record[0][1] * y + record[0][2] * z;
+    };
+    CHECK(along_normal(record[0][0], record[0][1], record[0][2]) == 1);
+    const auto* a = record[1];
+    CHECK(along_normal(a[0] - 0.5F, a[1] - 1, a[2] - 1.5F) > 0);  // outwards from the middle
+    for (const auto* b : {record[2], record[3]}) CHECK(along_normal(b[0] - a[0], b[1] - a[1], b[2] - a[2]) == 0);
+  }
 }
 
 TEST_CASE("PLY carries quality twice, colours and comments, and reads back") {
@@ -198,6 +206,7 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   CHECK(has(refusal(folder, "solid nothing\nendsolid nothing\n"), "empty"));
   CHECK(has(refusal(folder, ""), "is empty"));
   CHECK(has(refusal(folder, "hello, world\n"), "not a mesh of a known format"));
+  CHECK(has(refusal(folder, std::string("\0\nv 0 0 0\n", 10)), "not a whole STL file"));  // no text
   CHECK(has(refusal(folder, " BDV" + std::string(200, '\0')), "is a volume (OpenVDB), not a mesh"));
   CHECK(has(refusal(folder, "\x76\x2f\x31\x01" + std::string(200, '\0')), "is a stack (OpenEXR), not a mesh"));
   CHECK(has(refusal(folder, "\x93NUMPY\1" + std::string(200, '\0')), "is a NumPy array (.npy), not a mesh"));
@@ -283,6 +292,14 @@ TEST_CASE("OFF with counts beside its magic word, comments, normals and colours;
   for (const char* counts : {"", "4\n", "-4 1\n", "4 1.5\n", "x\n"}) {
     CHECK(has(refusal(folder, std::string("OFF\n") + counts), "the OFF header has no counts"));
   }
+}
+
+TEST_CASE("an element of other programs in a PLY file, a digit a line, is no promise that the file is too short for") {
+  const scratch::Folder folder;
+  std::string ply = box_ply();
+  ply.insert(ply.find("end_header"), "element mark 2000\nproperty uchar set\n");
+  for (int i = 0; i < 2000; ++i) ply += "1\n";
+  CHECK(volume(read_mesh(folder.write("a", ply))) == doctest::Approx(6));
 }
 
 TEST_CASE("a PLY property without an element is reported") {
