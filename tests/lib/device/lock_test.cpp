@@ -1,16 +1,22 @@
 #include "device/os/lock.hpp"
 
 #include <doctest/doctest.h>
+#include <grp.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string>
 
 #include "base/error.hpp"
+#include "device/os/found.hpp"
 #include "fault_of.hpp"
 
 using namespace vam;
@@ -75,4 +81,58 @@ TEST_CASE("A missing folder cannot hold locks") {
   const LockFolder folder;
   setenv("VAM_LOCK_DIR", "/nonexistent", 1);
   CHECK(fault_of([] { DeviceLock("usb-1"); }) == Fault::no_output);
+}
+
+namespace {
+
+// As a user without rights sees it.
+std::string obstacle_for_nobody(const std::string& node) {
+  std::array<int, 2> line{};
+  REQUIRE(pipe(line.data()) == 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    constexpr unsigned nobody = 65534;
+    const bool left = setgroups(0, nullptr) == 0 && setgid(nobody) == 0 && setuid(nobody) == 0;
+    const std::string text = left ? device::node_obstacle(node) : "still root";
+    (void)!write(line[1], text.data(), text.size());
+    _exit(0);
+  }
+  close(line[1]);
+  std::array<char, 200> text{};
+  const ssize_t size = read(line[0], text.data(), text.size());
+  close(line[0]);
+  waitpid(child, nullptr, 0);
+  return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
+}
+
+}  // namespace
+
+TEST_CASE("A device node is free, in use by a process, or not there") {
+  const LockFolder folder;
+  CHECK(device::node_obstacle("/dev/null").empty());
+  CHECK(has(device::node_obstacle(folder.path + "/none"), "/none: No such file or directory"));
+  const DeviceLock lock("/dev/null");
+  CHECK(has(device::node_obstacle("/dev/null"), "in use by process " + std::to_string(getpid())));
+  CHECK(has(device::lock_obstacle("/dev/null"), "in use by process " + std::to_string(getpid())));
+  CHECK(device::lock_obstacle("/dev/zero").empty());
+}
+
+TEST_CASE("To a user who may not use a device node its group is named, or a rule where the group is root's") {
+  if (geteuid() != 0) return;  // who alone can be somebody else
+  const LockFolder folder;
+  const group* dialout = getgrnam("dialout");
+  REQUIRE(dialout != nullptr);
+  const std::string node = folder.path + "/node";
+  std::ofstream(node) << "x";
+  REQUIRE(chmod(folder.path.c_str(), 0755) == 0);
+  const auto seen = [&](gid_t owner, mode_t mode) {
+    REQUIRE(chown(node.c_str(), 0, owner) == 0);
+    REQUIRE(chmod(node.c_str(), mode) == 0);
+    return obstacle_for_nobody(node);
+  };
+  const std::string rule = "not permitted to this user; add a udev rule with TAG+=\"uaccess\"";
+  CHECK(seen(dialout->gr_gid, 0660) ==
+        "not permitted to this user; run `sudo usermod -aG dialout $USER` and log in again");
+  CHECK(seen(dialout->gr_gid, 0640) == rule);  // who joins it may still not write
+  CHECK(seen(0, 0660) == rule);
 }
