@@ -9,10 +9,12 @@
 #include <array>
 #include <csignal>
 #include <functional>
+#include <string>
 
 #include "base/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/safety/guardian_actions.hpp"
+#include "device/safety/stop_order.hpp"
 
 using namespace vam;
 using namespace vam::device;
@@ -112,6 +114,20 @@ TEST_CASE("Without registered actions no heartbeat is needed") {
     guardian.forget(2);
     usleep(500000);
     (void)!write(device, "alive", 5);
+  });
+  CHECK(result.bytes == "alive");
+}
+
+TEST_CASE(
+    "For a stage without a handle, which ends with the tool, the guardian has no order and asks for no heartbeat") {
+  const Outcome result = outcome([](Guardian& guardian, int device) {
+    guardian.forget(1);
+    guardian.forget(2);
+    StopOrder order(&guardian);
+    order.give(std::string("halt\n"), -1);
+    usleep(500000);
+    const std::string said = order.standing() ? "alive" : "no order";
+    (void)!write(device, said.data(), said.size());
   });
   CHECK(result.bytes == "alive");
 }
