@@ -37,6 +37,23 @@ TEST_CASE("The reported sigma covers the error of the prediction") {
   CHECK(inside >= 463);
 }
 
+TEST_CASE("The sigma of a line is that of its samples, or of their scatter where that is larger") {
+  // Five samples 0.1 s apart: the sum of squares of their times from the middle is 0.1 s^2.
+  const auto fitted = [](double scatter_deg) {
+    constexpr double off[] = {1, -2, 0, 2, -1};  // orthogonal to every line; their squares add up to 10
+    AngleFit fit;
+    for (int i = 0; i < 5; ++i) fit.add({100 + 0.1 * i, 25 * 0.1 * i + scatter_deg * off[i], 0.03});
+    return fit;
+  };
+  const AngleFit fine = fitted(0), rough = fitted(0.3);
+  CHECK(fine.speed_sigma_deg_s() == doctest::Approx(0.03 / std::sqrt(0.1)).epsilon(1e-6));
+  CHECK(fine.at(100.5).sigma_deg == doctest::Approx(0.03 * std::sqrt(1.0 / 5 + 0.09 / 0.1)).epsilon(1e-6));
+  // Three degrees of freedom are left: a variance of 10 / 3 x 0.3^2 a sample.
+  CHECK(rough.speed_deg_s() == doctest::Approx(25).epsilon(1e-9));
+  CHECK(rough.speed_sigma_deg_s() == doctest::Approx(0.3 * std::sqrt(10.0 / 3 / 0.1)).epsilon(1e-6));
+  CHECK(rough.at(100.2).sigma_deg == doctest::Approx(0.3 * std::sqrt(10.0 / 3 / 5)).epsilon(1e-6));
+}
+
 TEST_CASE("Old samples are forgotten and too few are not a line") {
   AngleFit fit(1);
   fit.add({0, 0, 0.01});
