@@ -1,5 +1,9 @@
 #include <doctest/doctest.h>
+#include <linux/videodev2.h>
+#include <pty.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <functional>
@@ -371,4 +375,20 @@ TEST_CASE("V4L2: an unsupported setting is named in the error") {
   CHECK(fault({}) == Fault::busy);
   script.refuse_open = ENOENT;
   CHECK(fault({}) == Fault::absent);
+}
+
+TEST_CASE("V4L2: the kernel's node has a frame, none in time, or is gone") {
+  int leader = -1, terminal = -1;  // a node that can be unplugged
+  std::array<char, 64> name{};
+  REQUIRE(openpty(&leader, &terminal, name.data(), nullptr, nullptr) == 0);
+  const auto driver = kernel_v4l2();
+  REQUIRE(driver->open(name.data()) >= 0);
+  close(terminal);
+  CHECK(driver->wait(0.01) == 0);
+  REQUIRE(write(leader, "x\n", 2) == 2);
+  CHECK(driver->wait(1) == 1);
+  v4l2_capability about{};
+  CHECK(driver->control(VIDIOC_QUERYCAP, &about) == -1);
+  close(leader);
+  CHECK(driver->wait(1) == -1);
 }
