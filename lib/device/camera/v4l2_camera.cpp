@@ -78,7 +78,6 @@ class V4l2Camera final : public Camera {
       if (ready == 0) continue;
       auto buffer = capture_buffer();
       if (node_.driver->control(VIDIOC_DQBUF, &buffer) == 0) return take(buffer);
-      if (errno == ENODEV) throw node_.gone();
       if (errno != EAGAIN) throw silent(std::string("no frame (VIDIOC_DQBUF: ") + std::strerror(errno) + ")");
     }
   }
