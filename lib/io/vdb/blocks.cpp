@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <array>
 
 #include "base/error.hpp"
 #include "io/stream/stream.hpp"
@@ -28,7 +28,7 @@ class Taker {
 
   void tile(const TileRecord& tile) const {
     constexpr std::array<int, 3> edges{8, 128, 4096};
-    const auto level = static_cast<std::size_t>(std::clamp(tile.level, 1, 3) - 1);
+    const auto level = static_cast<std::size_t>(tile.level - 1);
     if (tile.value != background_) pass(tile.corner, edges[level], nullptr, tile.value);
   }
   void leaf() {

@@ -1,5 +1,4 @@
 // Volumes out of the records of the child that reads archives: leaves and tiles are inserted into trees.
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <map>
@@ -54,7 +53,7 @@ class VolumeBuilder {
 
   void tile(const TileRecord& tile) {
     if (!accessor_) return;
-    const auto level = static_cast<openvdb::Index>(std::clamp(tile.level, 1, 3));
+    const auto level = static_cast<openvdb::Index>(tile.level);
     accessor_->addTile(level, Coord(tile.corner.data()), tile.value, tile.active != 0);
   }
 

@@ -2,9 +2,11 @@
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "io/vdb/private/passage.hpp"
 #include "lib/io/vdb_volumes.hpp"
 
 using namespace vam;
@@ -72,4 +74,25 @@ TEST_CASE("blocks of other programs: half floats, all octants, tiles of any size
   CHECK(status([&] { by_blocks(folder / "twins.vdb", "twin"); }, &line) == 65);
   CHECK(line.find("shares the voxels of 'surface'") != std::string::npos);
   CHECK(by_blocks(folder / "twins.vdb", "surface") == whole);
+}
+
+TEST_CASE("a tile of a level that no tree has is taken for one of the nearest level") {
+  struct Levels {
+    void start(const GridHead&) {}
+    void other(const std::string&) {}
+    void tile(const TileRecord& tile) { seen.push_back(tile.level); }
+    void leaf() {}
+    std::vector<std::int32_t> seen;
+  } levels;
+  read_apart(
+      {"a.vdb", 1000},
+      [](Sender& out) {
+        for (const std::int32_t level : {-2147483647, 0, 1, 2, 3, 4, 2147483647}) {
+          out.put(Record::tile);
+          out.put(TileRecord{{}, level, 1, 1});
+        }
+        out.put(Record::end);
+      },
+      [&](Receiver& in) { receive_records(in, levels); });
+  CHECK(levels.seen == std::vector<std::int32_t>{1, 1, 1, 2, 3, 3, 3});
 }

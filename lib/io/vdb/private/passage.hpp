@@ -4,6 +4,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -62,8 +63,8 @@ void send_head(GridHead head, Sender& out);
 /// After its Record.
 [[nodiscard]] GridHead receive_head(Receiver& in);
 
-/// Hands on all records: start(GridHead), other(text), tile(TileRecord), and leaf(), which receives the LeafRecord
-/// itself.
+/// Hands on all records: start(GridHead), other(text), tile(TileRecord) of a level that there is, whatever is sent, and
+/// leaf(), which receives the LeafRecord itself.
 template <class Taker>
 void receive_records(Receiver& in, Taker& taker) {
   while (true) {
@@ -74,9 +75,12 @@ void receive_records(Receiver& in, Taker& taker) {
       case Record::other:
         taker.other(in.get_text());
         break;
-      case Record::tile:
-        taker.tile(in.get<TileRecord>());
+      case Record::tile: {
+        auto tile = in.get<TileRecord>();
+        tile.level = std::clamp(tile.level, 1, 3);
+        taker.tile(tile);
         break;
+      }
       case Record::leaf:
         taker.leaf();
         break;
