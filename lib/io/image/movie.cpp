@@ -11,7 +11,7 @@ struct Movie::State {
 
 Movie::Movie(const std::string& path, int width, int height, double fps, const std::string& comment) {
   if (!path.ends_with(".mp4")) throw Error{Fault::usage, path + ": a movie ends in .mp4"};
-  const VideoFormat format{.width = width, .height = height, .bits = 8, .fps = fps, .comment = comment, .colour = true};
+  const VideoFormat format{.width = width, .height = height, .fps = fps, .comment = comment, .colour = true};
   state_.reset(new State{VideoWriter(path, format)});
 }
 
