@@ -101,10 +101,9 @@ void StackParser::begin() {
 }
 
 void StackParser::refuse_foreign(std::int32_t first) {
-  std::string head(400, '\0');
-  std::memcpy(head.data(), &first, sizeof first);
-  head.resize(sizeof first + in_.read(head.data() + sizeof first, head.size() - sizeof first));
-  const std::string foreign = foreign_format(head);
+  std::string more(400, '\0');
+  more.resize(in_.read(more.data(), more.size()));
+  const std::string foreign = foreign_format(std::string(reinterpret_cast<const char*>(&first), sizeof first) + more);
   throw std::runtime_error(foreign.empty() ? "is not OpenEXR" : "is " + foreign + ", not a stack (OpenEXR)");
 }
 
