@@ -272,6 +272,25 @@ TEST_CASE("OpenVDB keeps the seal of a volume that it writes again, and the chan
   CHECK(line.find("c.vdb: grid 'target' changed after it was written (sealed ") != std::string::npos);
 }
 
+TEST_CASE("the heads of volumes in a file are read past damaged voxels, which the whole check finds") {
+  const scratch::Folder folder;
+  const auto grid = model::centred_grid(30, 26, 22, 0.1, 0.4);
+  std::vector<SparseVolume> both;
+  both.push_back(volumes::filled("target", grid, volumes::ball(grid)));
+  both.push_back(SparseVolume("insert", grid));
+  both[0].history = {"vam-slice 0.1.0 part.stl"};
+  write_volumes(folder / "v.vdb", both);
+  std::string bytes = slurp(folder / "v.vdb");
+  bytes[bytes.size() / 2] ^= 1;
+  spill(folder / "v.vdb", bytes);
+  const auto heads = check_volumes(folder / "v.vdb", true);
+  REQUIRE(heads.size() == 2);
+  CHECK(heads[0].name == "target");
+  CHECK(heads[0].history.front() == both[0].history.front());
+  CHECK(heads[1].name == "insert");
+  CHECK(status([&] { (void)check_volumes(folder / "v.vdb", false); }) == 65);
+}
+
 TEST_CASE("a trailer that is missing, of fewer images or behind damaged pixels ends a pipe with 65") {
   const scratch::Folder folder;
   {
