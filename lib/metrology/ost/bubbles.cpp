@@ -5,10 +5,10 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "base/per_slice.hpp"
 #include "base/stats/median.hpp"
+#include "metrology/ost/private/body_paths.hpp"
+#include "metrology/ost/private/hidden_rays.hpp"
 #include "metrology/ost/private/ray_mask.hpp"
-#include "tomo/fbp.hpp"
 
 namespace vam::metrology {
 
@@ -104,90 +104,38 @@ std::vector<RayMask> surroundings(const std::vector<RayMask>& marked, int width,
   return near;
 }
 
-// Rays whose line is near bubbles at either end.
-std::vector<RayMask> suspect_rays(const std::vector<RayMask>& marked, int width, int heights) {
-  const std::vector<RayMask> near = surroundings(marked, width, heights);
-  const auto angles = count_of(near);
-  std::vector<RayMask> suspect(near.size());
+// The rays of these lines from their other ends.
+std::vector<RayMask> mirrored(const std::vector<RayMask>& rays, int width) {
+  const auto angles = count_of(rays);
+  std::vector<RayMask> out(rays.size());
   parallel_for(angles, [&](int a) {
-    const RayMask& far = near[(a + angles / 2) % angles];
-    if (near[a].empty() || far.empty()) return;
-    suspect[a].resize(far.size(), 0);
-    for (int k = 0; k < heights; ++k) {
-      for (int t = 0; t < width; ++t) {
-        const std::size_t i = product(k, width) + t;
-        suspect[a][i] = static_cast<char>(near[a][i] & far[product(k, width) + width - 1 - t]);
-      }
-    }
+    out[a] = rays[(a + angles / 2) % angles];
+    for (auto row = out[a].begin(); row != out[a].end(); row += width) std::reverse(row, row + width);
   });
+  return out;
+}
+
+// Rays whose line is near bubbles at both ends.
+std::vector<RayMask> suspect_rays(const std::vector<RayMask>& marked, int width, int heights) {
+  std::vector<RayMask> suspect = surroundings(marked, width, heights);
+  const std::vector<RayMask> far = mirrored(suspect, width);
+  for (std::size_t a = 0; a < far.size(); ++a) {
+    if (far[a].empty()) suspect[a].clear();
+    for (std::size_t i = 0; i < suspect[a].size(); ++i) suspect[a][i] = static_cast<char>(suspect[a][i] & far[a][i]);
+  }
   return suspect;
 }
 
-// Suspect rays of one height are at most what lies between the rays of that column before and after them.
-void bridge(Image& s, const std::vector<RayMask>& suspect, int k) {
-  const auto is_suspect = [&](int t, int a) {
-    const RayMask& mask = suspect[a % s.height];
-    return !mask.empty() && mask[product(k, s.width) + t] != 0;
-  };
-  for (int t = 0; t < s.width; ++t) {
-    int first = 0;
-    while (first < s.height && is_suspect(t, first)) ++first;
-    int before = first;  // the last that is not suspect
-    for (int a = first + 1; a <= first + s.height && first < s.height; ++a) {
-      if (is_suspect(t, a)) continue;
-      const float low = s(t, before % s.height);
-      const float high = s(t, a % s.height);
-      for (int b = before + 1; b < a; ++b) {
-        const float part = static_cast<float>(b - before) / static_cast<float>(a - before);
-        s(t, b % s.height) = std::min(s(t, b % s.height), low + part * (high - low));
-      }
-      before = a;
-    }
+void add(const std::vector<RayMask>& more, std::vector<RayMask>& masks) {
+  for (std::size_t a = 0; a < masks.size(); ++a) {
+    if (masks[a].empty()) masks[a].resize(more[a].size(), 0);
+    for (std::size_t i = 0; i < more[a].size(); ++i) masks[a][i] = static_cast<char>(masks[a][i] | more[a][i]);
   }
-}
-
-// The volume of these rays without its faint values, most of which are streaks.
-std::vector<Slab> bodies_of(const tomo::ParallelGeometry& geometry, std::vector<Slab> sinograms) {
-  constexpr float least = 0.05F;  // of the density of the bodies
-  std::vector<Slab> images = slabs(sinograms.size(), geometry.nx, geometry.ny);
-  tomo::fbp(geometry, sinograms, images);
-  std::vector<float> some;
-  for (const Slab& slab : images) {
-    for (std::size_t i = 0; i < slab.values.size(); i += 5) {
-      if (slab.values[i] > 0) some.push_back(slab.values[i]);
-    }
-  }
-  if (some.empty()) return images;
-  const auto high = some.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(some.size()));
-  std::nth_element(some.begin(), high, some.end());
-  const float level = least * *high;
-  for (Slab& slab : images) {
-    for (float& v : slab.values) v = v < level ? 0.0F : v;
-  }
-  return images;
-}
-
-// Suspect rays that are brighter than the bodies in `estimate` get their projection.
-void limit_by_bodies(const tomo::ParallelGeometry& geometry, const std::vector<Image>& estimate,
-                     const std::vector<RayMask>& suspect, float least, std::vector<Image>& sinograms) {
-  const std::vector<Slab> bodies = bodies_of(geometry, packed(estimate, geometry.columns, geometry.angles));
-  std::vector<Slab> projected = slabs(bodies.size(), geometry.columns, geometry.angles);
-  tomo::forward(geometry, bodies, projected);
-  parallel_for(count_of(sinograms), [&](int k) {
-    Image& s = sinograms[k];
-    for (int a = 0; a < s.height; ++a) {
-      if (suspect[a].empty()) continue;
-      for (int t = 0; t < s.width; ++t) {
-        const float body = projected[k / lanes].at(t, a)[k % lanes];
-        if (suspect[a][product(k, s.width) + t] != 0 && s(t, a) > body + least) s(t, a) = body;
-      }
-    }
-  });
 }
 
 }  // namespace
 
-double remove_bubbles(const tomo::ParallelGeometry& geometry, std::vector<Image>& sinograms,
+double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, std::vector<Image>& sinograms,
                       std::span<const int> rows) {
   const int width = sinograms.front().width;
   const int angles = sinograms.front().height;
@@ -203,10 +151,14 @@ double remove_bubbles(const tomo::ParallelGeometry& geometry, std::vector<Image>
   const double share = static_cast<double>(count) / (static_cast<double>(width) * angles * heights);
   if (count == 0 || share > most_bubbles) return share;
   take_darker_ends(sinograms, marked);
-  const std::vector<RayMask> suspect = suspect_rays(marked, width, heights);
-  std::vector<Image> estimate = sinograms;
-  parallel_for(heights, [&](int k) { bridge(estimate[k], suspect, k); });
-  limit_by_bodies(geometry, estimate, suspect, least, sinograms);
+  std::vector<RayMask> hidden = suspect_rays(marked, width, heights);
+  const BodyPaths bodies(rays, grid, sinograms, 0.5F * least);
+  // Bubbles are seldom alike at both ends of a line: more rays than this are bodies of another density. Twice the
+  // contrast, as the bodies are known to a few per cent.
+  const std::vector<RayMask> above = rays_above(bodies, sinograms, hidden, count / 4, 2 * least);
+  add(above, hidden);
+  add(mirrored(above, width), hidden);
+  limit_to_bodies(bodies, hidden, least, sinograms);
   return share;
 }
 

@@ -145,7 +145,10 @@ void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<con
   for (const double height : heights_mm) {
     rows.push_back(1 + ceil_int(2 * std::abs(height) * rate * detector.x_mm(detector.columns - 1) / grid.voxel_mm));
   }
-  const double share = remove_bubbles(geometry(sinograms.front().height), sinograms, rows);
+  model::Grid stretch = grid;
+  stretch.nz = count_of(sinograms);
+  stretch.origin_mm[2] = heights_mm.front();
+  const double share = remove_bubbles(this->rays(sinograms.front().height), stretch, sinograms, rows);
   found.bubbles_exceed_limit = found.bubbles_exceed_limit || share > most_bubbles;
   found.bubble_percent += 100 * part * share;
 }
