@@ -1,6 +1,6 @@
 #!/bin/sh
 # A print of which the script or a tool is killed: dark, the relay open, and still within 100 ms, beside six busy loops within 250 ms
-# [devices guarantee 1]. A fifth of VAM_TRIALS a cause (10; 100: "long"), as a print takes seconds to begin.
+# [devices guarantee 1]. A fifth of VAM_TRIALS a cause (5; 100: "long"), as a print takes seconds to begin.
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
@@ -9,7 +9,7 @@ tiny_print frames.exr
 printf 'relay = "relay:%s/relay"\n' "$PWD" >>printer.toml
 printf '[stage]\ndevice = "gcs:%s/stage"\nspeed_deg_s = 180\n' "$PWD" >>printer.toml
 screen_up 64 48
-python3 "$VAM_SOURCE/tests/device/print_trials.py" $((${VAM_TRIALS:-10} / 5)) >table; status=$?
+python3 "$VAM_SOURCE/tests/device/print_trials.py" $((${VAM_TRIALS:-5} / 5)) >table; status=$?
 screen_down
 cat table
 is 'every trial was dark and still in time' $status 0
