@@ -4,14 +4,37 @@
 
 namespace vam {
 
+namespace {
+
+/// How many bytes the character of UTF-8 takes that the text begins with; 0 where it begins with none.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
+  const auto continues = [&](std::size_t i) { return (byte(i) & 0xc0) == 0x80; };
+  if (byte(0) < 0x80) return 1;
+  if (byte(0) >= 0xc2 && byte(0) <= 0xdf) return continues(1) ? 2 : 0;
+  if (byte(0) >= 0xe0 && byte(0) <= 0xef) {
+    const bool overlong = byte(0) == 0xe0 && byte(1) < 0xa0;
+    const bool surrogate = byte(0) == 0xed && byte(1) > 0x9f;
+    return continues(1) && continues(2) && !overlong && !surrogate ? 3 : 0;
+  }
+  if (byte(0) < 0xf0 || byte(0) > 0xf4) return 0;
+  const bool overlong = byte(0) == 0xf0 && byte(1) < 0x90;
+  const bool beyond = byte(0) == 0xf4 && byte(1) > 0x8f;
+  return continues(1) && continues(2) && continues(3) && !overlong && !beyond ? 4 : 0;
+}
+
+}  // namespace
+
 std::string printable(std::string_view text) {
   std::string shown;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
     const bool c1 = byte == 0xc2 && next >= 0x80 && next <= 0x9f;  // U+0080 to U+009F
-    if (byte >= 0x20 && byte != 0x7f && !c1) {
-      shown += text[i];
+    const std::size_t bytes = character_bytes(text.substr(i));
+    if (byte >= 0x20 && byte != 0x7f && !c1 && bytes > 0) {
+      shown += text.substr(i, bytes);
+      i += bytes - 1;
     } else if (byte == '\n' || byte == '\t') {
       shown += byte == '\n' ? "\\n" : "\\t";
     } else {

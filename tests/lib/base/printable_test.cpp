@@ -9,9 +9,19 @@ TEST_CASE("control characters are shown, not sent") {
   CHECK(vam::printable("\xc2\x9b"
                        "2J \xc2\xb5m \xc3\xa4") == "\\x9b2J \xc2\xb5m \xc3\xa4");
   CHECK(vam::printable(std::string_view("\0", 1)) == "\\x00");
-  CHECK(vam::printable("\xc2").size() == 1);
+  CHECK(vam::printable("\xc2") == "\\xc2");
   CHECK(vam::printable("\x1f ~") == "\\x1f ~");
-  CHECK(vam::printable("\xc2\x7f\xc2\x80\xc2\x9f\xc2\xa0") == "\xc2\\x7f\\x80\\x9f\xc2\xa0");
+  CHECK(vam::printable("\xc2\x7f\xc2\x80\xc2\x9f\xc2\xa0") == "\\xc2\\x7f\\x80\\x9f\xc2\xa0");
+}
+
+// [RFC 3629]: what is no character of UTF-8 would make a page or a figure unreadable.
+TEST_CASE("bytes that are no UTF-8 are shown as numbers") {
+  CHECK(vam::printable("a\xff z") == "a\\xff z");
+  CHECK(vam::printable("\xe2\x82\xac \xf0\x9f\x98\x80") == "\xe2\x82\xac \xf0\x9f\x98\x80");  // whole characters
+  CHECK(vam::printable("\xe2\x82") == "\\xe2\\x82");
+  CHECK(vam::printable("\xc0\x80 \xe0\x80\x80") == "\\xc0\\x80 \\xe0\\x80\\x80");  // too long
+  CHECK(vam::printable("\xed\xa0\x80") == "\\xed\\xa0\\x80");                      // a surrogate
+  CHECK(vam::printable("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");             // beyond U+10FFFF
 }
 
 TEST_CASE("a name in a page is escaped inside its link") {
