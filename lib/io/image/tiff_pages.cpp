@@ -51,7 +51,10 @@ struct TiffPages::State {
            " values; up to 65536 along an axis are read");
     }
     count = TIFFNumberOfDirectories(tiff.get());
-    if (TIFFSetDirectory(tiff.get(), 0) == 0) fail("is a truncated or damaged TIFF");
+    // Pages are counted as far as they are found; the last of them names none that follows.
+    const bool found = count > 0 && TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(count - 1)) != 0;
+    if (found && TIFFLastDirectory(tiff.get()) == 0) fail("is cut off after page " + std::to_string(count));
+    if (!found || TIFFSetDirectory(tiff.get(), 0) == 0) fail("is a truncated or damaged TIFF");
     row.resize(std::size_t{layout.columns} * layout.bits / 8);
     require_page();
   }

@@ -161,5 +161,9 @@ TEST_CASE("TIFF files of several pages, whole numbers and floats") {
   CHECK(has(array_refusal(tiff(16, 1, counted<std::uint16_t>(), false, 0)), "page 0 is not grey in strips"));
   CHECK(has(array_refusal(tiff(16, 1, counted<std::uint16_t>(), false, 1, 3)), "page 1 differs from page 0"));
   CHECK(has(array_refusal(tiff(12, 1, counted<std::uint16_t>())), "12 bits"));
+  // Cut anywhere in the list of the second page, which the first one's names.
+  const std::string whole = tiff(8, 1, counted<std::uint8_t>());
+  for (std::size_t lost = 1; lost <= 114; ++lost)
+    CHECK(has(array_refusal(whole.substr(0, whole.size() - lost)), "cut off"));
   CHECK(has(array_refusal(tiff(32, 6, counted<double>())), "sample format 6"));
 }
