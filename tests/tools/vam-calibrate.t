@@ -107,6 +107,20 @@ ok 'check' vam-calibrate check --need 'edges, response'
 vam-calibrate check >state
 is 'the records in force' "$(json state edges.usable) $(json state edges.sha256)" "true $(sha256sum <cal/current-edges.json | cut -d' ' -f1)"
 
+# A value that no tool takes over makes a record unusable for all.
+edited() {  # edited KEY VALUE: a copy of the records, without seals, in ./edited
+  rm -rf edited; cp -rL cal edited; chmod -R u+w edited
+  python3 -c 'import json, sys
+path = "edited/current-edges.json"
+record = json.load(open(path)); del record["seal"]
+record["values"][sys.argv[1]]["value"] = json.loads(sys.argv[2])
+json.dump(record, open(path, "w"))' "$@"
+}
+for wrong in '1e9:projector.axis_column' 'null:incomplete record of edges' '"512":incomplete record of edges'; do
+  edited axis_column "${wrong%%:*}"
+  fails 65 "edited/current-edges.json: ${wrong#*:}" vam-calibrate check --set calibration.folder=edited
+done
+
 # Expired, foreign and missing records.
 fails 65 'has no record of latency; run vam-calibrate' vam-calibrate check --need latency
 fails 64 'expected one of edges' vam-calibrate check --need edge

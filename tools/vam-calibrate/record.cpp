@@ -86,6 +86,17 @@ std::string stranger(const Json& record, const Json& devices) {
   return "";
 }
 
+// Why its values cannot be taken over; empty when they can, and are.
+std::string refusal(model::Printer& printer, const io::CalibrationRecord& record) {
+  try {
+    io::apply_record(printer, record);
+    return "";
+  } catch (const Error& error) {
+    const std::string why = error.what();
+    return why.starts_with(record.path + ": ") ? why.substr(record.path.size() + 2) : why;
+  }
+}
+
 /// The file that a link in force names; of a folder that was copied with the links followed, the file itself.
 std::string record_file(const std::string& current) {
   if (!fs::is_symlink(current)) return current;
@@ -136,7 +147,8 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
   for (const auto& reason : finding.warnings_) warn(scan + ": " + reason);
 }
 
-void check_records(const ScanOptions& options, const model::Calibration& calibration) {
+void check_records(const ScanOptions& options, model::Printer printer) {
+  const model::Calibration calibration = printer.calibration;
   if (calibration.folder.empty())
     throw Error{Fault::usage,
                 "no calibration.folder in the printer settings; name one, e.g. --set calibration.folder=DIR"};
@@ -163,6 +175,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
     if (record) {
       why = io::objection(*record, calibration, utc_seconds());
       if (why.empty()) why = stranger(*record->json, devices);
+      if (why.empty()) why = refusal(printer, *record);
       const std::string path = record_file(record->path);
       report[scan] = {{"record", path},
                       {"sha256", io::sha256_of(path)},

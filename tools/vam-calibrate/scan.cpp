@@ -26,7 +26,7 @@ const std::map<std::string, Scan>& scans() {
 void run_scan(const cli::App& app, const ScanOptions& options) {
   const std::string& command = options.command;
   model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
-  if (command == "check") return check_records(options, printer.calibration);
+  if (command == "check") return check_records(options, printer);
   // The axis in the camera's image, as measured before.
   const auto axis_record = io::current_record(printer.calibration, "axis");
   if (axis_record && command != "axis" && io::objection(*axis_record, printer.calibration, utc_seconds()).empty()) {

@@ -136,8 +136,8 @@ class Finding {
 void keep(const cli::App& app, const ScanOptions& options, const model::Calibration& calibration,
           const std::string& scan, Finding finding);
 
-/// Prints the current records and their validity as JSON. Throws Fault::data when a needed one is missing,
-/// stale or foreign.
-void check_records(const ScanOptions& options, const model::Calibration& calibration);
+/// Prints the current records and their validity as JSON. Throws Fault::data when a needed one is missing, and when one
+/// is stale, foreign or beyond what this printer can have.
+void check_records(const ScanOptions& options, model::Printer printer);
 
 }  // namespace vam::calibrate_tool

@@ -246,19 +246,26 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
   return "";
 }
 
+void apply_record(model::Printer& printer, const CalibrationRecord& record) {
+  const std::string name = record.json->at("scan");
+  const auto* scan =
+      std::find_if(std::begin(scans), std::end(scans), [&](const ScanKind& s) { return name == s.name; });
+  try {
+    if (scan != std::end(scans)) scan->take_over(printer, record);
+  } catch (const Json::exception&) {
+    throw Error{Fault::data, record.path + ": incomplete record of " + name + "; run vam-calibrate"};
+  }
+  require_possible(printer, record);
+}
+
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s) {
-  for (const ScanKind& scan : scans) {
-    const auto record = current_record(calibration, scan.name);
+  for (const std::string& scan : calibration_scans()) {
+    const auto record = current_record(calibration, scan);
     if (!record) continue;
     if (const std::string why = objection(*record, calibration, utc_s); !why.empty()) {
       throw Error{Fault::data, record->path + ": " + why + ", or disable records with an empty calibration.folder"};
     }
-    try {
-      scan.take_over(printer, *record);
-    } catch (const Json::exception&) {
-      throw Error{Fault::data, record->path + ": incomplete record of " + scan.name + "; run vam-calibrate"};
-    }
-    require_possible(printer, *record);
+    apply_record(printer, *record);
   }
 }
 

@@ -48,6 +48,10 @@ struct CalibrationRecord {
 [[nodiscard]] std::string objection(const CalibrationRecord& record, const model::Calibration& calibration,
                                     double utc_s);
 
+/// Takes over what one record says. Throws Fault::data where a value is missing or beyond the ranges of the printer file,
+/// or a table has changed.
+void apply_record(model::Printer& printer, const CalibrationRecord& record);
+
 /// Takes over what the current records say: projector.axis_column and vial.radius_mm (edges), projector.response
 /// (response), projector.latency_ms (latency), camera.axis_column and tilt_deg (axis), camera.flat (flat),
 /// camera.lag_ms (lag). The beam is for people. Nothing without calibration.folder. Throws Fault::data with the
