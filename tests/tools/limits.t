@@ -73,10 +73,12 @@ for wrong in row=1e30:'vam:row_mm' pixel=1e9:'vam:pixel_mm' step=1e6:'vam:angle_
   python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=2 ${wrong%%:*}
   fails 65 "wrong.exr: .*${wrong##*:}.* is 1e.*, beyond" vam-dose wrong.exr -o x.vdb
 done
-python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=12 row=99
-fails 65 'wrong.exr: vam:z_mm of image 11 is 1089, beyond 1000' vam-dose wrong.exr -o x.vdb
+python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=22 row=99
+fails 65 'wrong.exr: vam:z_mm of image 21 is 2079, beyond 2000' vam-dose wrong.exr -o x.vdb
 tiny_print tiny.exr
 fails 65 '/dev/zero: longer than the limit of 16 MiB' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
+python3 "$VAM_SOURCE/tests/tools/exr.py" make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1
+fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam-dose far.exr --printer printer.toml -o x.vdb
 python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 value=1e30
 fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' \
   vam-project wrong.exr --printer printer.toml -o x.mkv

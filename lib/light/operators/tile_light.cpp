@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/simd.hpp"
+#include "base/text.hpp"
 #include "light/operators/private/columns_kernel.hpp"
 
 namespace vam::light {
@@ -155,6 +157,12 @@ void TileLight::find_angle(const RayNodes& nodes, AngleTaps& to) {
   to.row = chunk_.slice();
   to.rows = chunk_.width();
   if (!rays_.climbs()) return;
+  const double across = static_cast<double>(to.taps.last_row) - to.taps.first_row;
+  if (!(across < most_tile_rows - 2)) {  // VialRays bounds the slopes; slices far above or below the lens bend most
+    throw Error{Fault::data, "projector: " + format_number(across, 3) + " rows of its images cross " +
+                                 std::to_string(chunk_.width()) + " slices, and " + std::to_string(most_tile_rows) +
+                                 " can; the slices are too far from the height of the lens (projector.axis_row)"};
+  }
   to.taps.first_row = std::floor(to.taps.first_row);
   to.row = static_cast<int>(to.taps.first_row);
   const int needed = static_cast<int>(to.taps.last_row - to.taps.first_row) + 2;
