@@ -27,7 +27,7 @@ using model::StackInfo;
 
 constexpr std::array kinds = {Kind::sinogram, Kind::frames};
 constexpr const char* poses_name = "vam:poses";
-constexpr double farthest_mm = 1000;  // from the lens's height
+constexpr double farthest_mm = 2000;  // from the lens's height
 constexpr std::array spaces = {Space::virtual_, Space::projector, Space::camera};
 
 void set_text(Imf::Header& header, const char* name, const std::string& text) {

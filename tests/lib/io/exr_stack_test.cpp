@@ -163,7 +163,7 @@ TEST_CASE("several stacks on one stream follow each other") {
   write_stack(folder / "one.exr", sinogram(8, 4, 3));
   write_stack(folder / "two.exr", sinogram(8, 5, 2), {false, "none"});
   spill(folder / "both.exr", slurp(folder / "one.exr") + slurp(folder / "two.exr"));
-  StackReader reader(folder / "both.exr");
+  StackReader reader(folder / "both.exr", true);
   Image image;
   model::ImageInfo about;
   CHECK(reader.info().count == 3);
@@ -175,6 +175,10 @@ TEST_CASE("several stacks on one stream follow each other") {
   for (int i = 0; i < 2; ++i) REQUIRE(reader.next(image, about));
   CHECK(image.values == pattern(8, 5, 1).values);
   CHECK_FALSE(reader.next_stack());
+  StackReader single(folder / "both.exr");  // what follows would be ignored
+  CHECK(status([&] {
+          while (single.next(image, about)) continue;
+        }) == 65);
 }
 
 TEST_CASE("part names grow with the number of parts, so that they sort") {

@@ -298,7 +298,7 @@ TEST_CASE("a trailer that is missing, of fewer images or behind damaged pixels e
     stacks::write_stack("-", stack_of_tools(9, 7, 3));
     stacks::write_stack("-", stack_of_tools(9, 7, 2));
   }
-  StackReader reader(folder / "pipe.exr");
+  StackReader reader(folder / "pipe.exr", true);
   Image image;
   model::ImageInfo about;
   CHECK(reader.seal().empty());
