@@ -6,8 +6,8 @@
 
 namespace vam {
 
-/// Control characters (ASCII, and C1 in UTF-8), and bytes that are no UTF-8, become \n, \t or \x1b; the rest stays as it
-/// is.
+/// Control characters (ASCII, and C1 in UTF-8), and bytes that are no UTF-8, become \n, \t or \x1b; the rest stays as
+/// it is.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// As text of a page, or as the quoted value of an attribute: printable(), with <, >, &, " and ' as entities.

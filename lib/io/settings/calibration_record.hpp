@@ -48,8 +48,8 @@ struct CalibrationRecord {
 [[nodiscard]] std::string objection(const CalibrationRecord& record, const model::Calibration& calibration,
                                     double utc_s);
 
-/// Takes over what one record says. Throws Fault::data where a value is missing or beyond the ranges of the printer file,
-/// or a table has changed.
+/// Takes over what one record says. Throws Fault::data where a value is missing or beyond the ranges of the printer
+/// file, or a table has changed.
 void apply_record(model::Printer& printer, const CalibrationRecord& record);
 
 /// Takes over what the current records say: projector.axis_column and vial.radius_mm (edges), projector.response
