@@ -14,7 +14,7 @@ TEST_CASE("control characters are shown, not sent") {
   CHECK(vam::printable("\xc2\x7f\xc2\x80\xc2\x9f\xc2\xa0") == "\\xc2\\x7f\\x80\\x9f\xc2\xa0");
 }
 
-// [RFC 3629]: what is no character of UTF-8 would make a page or a figure unreadable.
+// By RFC 3629. What is no character of UTF-8 would make a page or a figure unreadable.
 TEST_CASE("bytes that are no UTF-8 are shown as numbers") {
   CHECK(vam::printable("a\xff z") == "a\\xff z");
   CHECK(vam::printable("\xe2\x82\xac \xf0\x9f\x98\x80") == "\xe2\x82\xac \xf0\x9f\x98\x80");  // whole characters
