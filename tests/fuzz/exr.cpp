@@ -6,7 +6,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   if (size > fuzz::Pipe::room) return -1;
   const fuzz::FUZZ_SOURCE source(fuzz::text_of(bytes, size));
   return fuzz::attempt_in_child([&] {
-    vam::io::exr::StackParser parser(source.path);
+    vam::io::exr::StackParser parser(source.path, true);
     vam::Image image;
     vam::model::ImageInfo about;
     do {
