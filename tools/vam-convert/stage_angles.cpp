@@ -8,6 +8,7 @@
 #include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "base/stats/median.hpp"
 #include "base/text.hpp"
 
 namespace vam::convert_tool {
@@ -26,12 +27,6 @@ std::vector<double> steps_of(const std::vector<double>& angles_deg) {
     steps.push_back(std::remainder(angles_deg[i] - angles_deg[i - 1], 360.0));
   }
   return steps;
-}
-
-double median_of(std::vector<double> steps) {
-  const auto middle = steps.begin() + std::ssize(steps) / 2;
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
 }
 
 void require_finite(const io::StatedViews& views, const std::string& name) {
@@ -83,7 +78,7 @@ StageAngles even_angles(const io::StatedViews& views, int projections, const std
   StageAngles found{std::fmod(std::fmod(views.angles_deg.front(), 360.0) + 360.0, 360.0), 0};
   const std::vector<double> steps = steps_of(views.angles_deg);
   if (steps.empty()) return found;
-  const double usual = median_of(steps);
+  const double usual = stats::median(steps);
   require_alike(views, steps, usual, name);
   double sum = 0;
   for (const double step : steps) sum += step;
