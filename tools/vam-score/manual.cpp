@@ -11,7 +11,7 @@ std::vector<std::string> description() {
       "writable circle, x the dose: VER = #{V: x >= min_G x} / (#G + #V). PW, the process window, = min_G x - max_V x; "
       "if it is positive, a threshold dose exists that prints the part exactly. IPDR = max_G x - min_G x. CV = sigma_G "
       "/ mean_G. IoU = |print and part| / |print or part| at the threshold that maximises it.",
-      "The last line is the verdict in words: whether the part will print (PW >= 0), by what margin, from how many "
+      "The last line is the verdict in words: whether the part will print (PW > 0), by what margin, from how many "
       "voxels, the figures with the voxels that the surface cuts included, and the duration of the print if the resin "
       "is known. The exit status depends on --require only.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
