@@ -21,7 +21,7 @@ void LogTail::read_on(std::vector<Json>& lines) {
   std::array<char, 4096> piece;
   while (std::fgets(piece.data(), piece.size(), file_.get())) {
     rest_ += piece.data();
-    if (rest_.back() != '\n') continue;
+    if (!rest_.ends_with('\n')) continue;  // or a zero byte, as a fault of the disk leaves them
     Json event = parse_json(rest_);
     if (event.is_object()) lines.push_back(std::move(event));
     rest_.clear();
