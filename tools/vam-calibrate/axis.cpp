@@ -8,11 +8,11 @@
 
 namespace vam::calibrate_tool {
 
-BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer) {
+BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer, ColumnsOfBands columns_of) {
   BeadTurn turn;
   turn.scan.middle.resize(options.heights);
   each_frame(options, printer, FrameKind::turned, [&](const ScanFrame& frame) {
-    const auto middles = metrology::bright_middles(frame.image, options.heights);
+    const auto middles = columns_of(frame.image, options.heights);
     for (std::size_t b = 0; b < middles.size(); ++b) turn.scan.middle[b].push_back(middles[b]);
     turn.scan.angle_deg.push_back(frame.angle_deg);
     turn.time_s.push_back(frame.time_s);
@@ -24,7 +24,7 @@ BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer) {
 }
 
 Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
-  const BeadTurn turn = read_turn(options, printer);
+  const BeadTurn turn = read_turn(options, printer, metrology::bright_middles);
   const double pixel_mm = turn.pixel_mm;
   const auto found = metrology::find_camera_axis(turn.scan);
   Finding finding;

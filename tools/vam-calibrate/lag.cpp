@@ -52,7 +52,7 @@ metrology::StageCourse course_of(const std::vector<metrology::StagePoint>& point
 // as a whole.
 MeasuredTurn measure(const ScanOptions& options, const model::Printer& printer,
                      const std::vector<metrology::StagePoint>& points) {
-  BeadTurn frames = read_turn(options, printer);
+  BeadTurn frames = read_turn(options, printer, metrology::bright_centroids);
   if (frames.time_s.empty() || frames.time_s.front() == 0) {
     throw Error{Fault::data, "lag: the frames have no times; capture them with vam-capture --follow"};
   }

@@ -86,8 +86,10 @@ struct BeadTurn {
   double time_sigma_s = 0;     // that they share, the largest stated
   double pixel_mm = 0;
 };
+/// Where an image shows it, in each of so many bands of rows.
+using ColumnsOfBands = std::vector<double> (*)(const Image& frame, int bands);
 /// Throws Error: no_input, data, usage (frames without angles).
-[[nodiscard]] BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer);
+[[nodiscard]] BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer, ColumnsOfBands columns_of);
 
 /// Mean over the image: each frame is reduced to one number until the timing of the pattern is known.
 [[nodiscard]] double mean_level(const Image& image);

@@ -29,6 +29,17 @@ void require_full_turn(const std::vector<double>& angle_deg) {
   }
 }
 
+template <class Column>
+std::vector<double> columns_of(const Image& frame, int bands, const Column& column) {
+  std::vector<double> columns;
+  for (int b = 0; b < bands; ++b) {
+    const auto extent =
+        half_maximum(column_profile(frame, b * frame.height / bands, std::max((b + 1) * frame.height / bands, b + 1)));
+    columns.push_back(extent ? column(*extent) : NAN);
+  }
+  return columns;
+}
+
 stats::CurveFit fit_band(const TurnScan& scan, const std::vector<double>& middle) {
   const auto residuals = [&](const std::vector<double>& p) {
     std::vector<double> out;
@@ -46,13 +57,11 @@ stats::CurveFit fit_band(const TurnScan& scan, const std::vector<double>& middle
 }  // namespace
 
 std::vector<double> bright_middles(const Image& frame, int bands) {
-  std::vector<double> middles;
-  for (int b = 0; b < bands; ++b) {
-    const auto extent =
-        half_maximum(column_profile(frame, b * frame.height / bands, std::max((b + 1) * frame.height / bands, b + 1)));
-    middles.push_back(extent ? extent->middle() : NAN);
-  }
-  return middles;
+  return columns_of(frame, bands, [](const Extent& extent) { return extent.middle(); });
+}
+
+std::vector<double> bright_centroids(const Image& frame, int bands) {
+  return columns_of(frame, bands, [](const Extent& extent) { return extent.centroid; });
 }
 
 CameraAxis find_camera_axis(const TurnScan& scan) {

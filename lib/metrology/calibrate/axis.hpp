@@ -12,6 +12,10 @@ namespace vam::metrology {
 /// (NaN). See half_maximum().
 [[nodiscard]] std::vector<double> bright_middles(const Image& frame, int bands);
 
+/// The same of its centroid: several times less noise where its top is round, as that of a bead, but uneven light
+/// shifts it, as a whole, by a constant.
+[[nodiscard]] std::vector<double> bright_centroids(const Image& frame, int bands);
+
 struct TurnScan {
   int rows = 0;                             // of the images
   std::vector<double> angle_deg;            // of the stage, of each frame

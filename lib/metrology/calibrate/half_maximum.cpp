@@ -62,6 +62,22 @@ double top_of(const std::vector<double>& profile, const Crossings& at) {
   return (sxx * sy - sx * sxy) / (n * sxx - sx * sx);
 }
 
+// Of what exceeds the level, as far as it is joined to the samples between the crossings.
+double centroid_above(const std::vector<double>& profile, const Crossings& at, double level) {
+  auto first = static_cast<std::size_t>(std::ceil(at.begin));
+  while (first > 0 && profile[first - 1] > level) --first;
+  auto end = static_cast<std::size_t>(at.end) + 1;
+  while (end < profile.size() && profile[end] > level) ++end;
+  double sum = 0;
+  double moment = 0;
+  for (std::size_t i = first; i < end; ++i) {
+    const double excess = std::max(profile[i] - level, 0.0);
+    sum += excess;
+    moment += excess * (static_cast<double>(i) - at.begin);
+  }
+  return at.begin + moment / sum;
+}
+
 }  // namespace
 
 std::optional<Extent> half_maximum(const std::vector<double>& profile) {
@@ -75,9 +91,10 @@ std::optional<Extent> half_maximum(const std::vector<double>& profile) {
   const auto rough = crossings(profile, ground + 0.5 * (peak - ground));
   if (!rough) return std::nullopt;
   const double height = top_of(profile, *rough) - ground;
-  const auto exact = crossings(profile, ground + 0.5 * height);
+  const double level = ground + 0.5 * height;
+  const auto exact = crossings(profile, level);
   if (!exact || height <= 0) return std::nullopt;
-  return Extent{exact->begin, exact->end, height};
+  return Extent{exact->begin, exact->end, height, centroid_above(profile, *exact, ground + 0.25 * height)};
 }
 
 std::vector<double> column_profile(const Image& image, int first, int last) {

@@ -54,13 +54,14 @@ void SimMotor::step() {
 }
 
 void SimMotor::advance(double to_s) {
-  while (now_s_ + step_s <= to_s) {
+  asked_s_ = std::max(asked_s_, to_s);
+  while (stepped_s_ + step_s <= to_s) {
     if (mode_ == Mode::standing) {
-      now_s_ += std::floor((to_s - now_s_) / step_s) * step_s;
+      stepped_s_ += std::floor((to_s - stepped_s_) / step_s) * step_s;
       return;
     }
     step();
-    now_s_ += step_s;
+    stepped_s_ += step_s;
   }
 }
 

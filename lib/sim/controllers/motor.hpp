@@ -11,10 +11,12 @@ struct MotorSettings {
   double ripple = 0;           // relative amplitude of the speed error that repeats with every 30 deg (worm, gear)
 };
 
-/// Moves in steps of 0.5 ms of the time it is given, so its path does not depend on the sampling.
+/// Moves in steps of 0.5 ms of the time it is given, so its path does not depend on the sampling; between two steps at
+/// the speed of the former.
 class SimMotor {
  public:
-  SimMotor(const MotorSettings& settings, double start_s) : settings_(settings), now_s_(start_s) {}
+  SimMotor(const MotorSettings& settings, double start_s)
+      : settings_(settings), asked_s_(start_s), stepped_s_(start_s) {}
 
   void advance(double to_s);
   void go_to(double target_deg);
@@ -25,7 +27,7 @@ class SimMotor {
   /// Declares the present angle of a standing stage.
   void set_angle(double angle_deg);
 
-  [[nodiscard]] double angle_deg() const { return angle_deg_; }
+  [[nodiscard]] double angle_deg() const { return angle_deg_ + speed_deg_s() * (asked_s_ - stepped_s_); }
   [[nodiscard]] double target_deg() const { return target_deg_; }
   /// Of the stage, what an observer would measure.
   [[nodiscard]] double speed_deg_s() const;
@@ -38,7 +40,8 @@ class SimMotor {
 
   MotorSettings settings_;
   Mode mode_ = Mode::standing;
-  double now_s_;
+  double asked_s_;    // time up to which it was to advance
+  double stepped_s_;  // of the last step, at most one before
   double angle_deg_ = 0;
   double drive_deg_s_ = 0;  // what the drive believes
   double target_deg_ = 0;

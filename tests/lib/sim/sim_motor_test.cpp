@@ -35,8 +35,20 @@ TEST_CASE("Its path does not depend on the sampling") {
   seldom.go_to(-77);
   for (int i = 1; i <= 3000; ++i) often.advance(0.001 * i);
   seldom.advance(3.0);
-  // 0.001 * i and 3.0 may fall on either side of one step of 0.5 ms at 10 deg/s.
-  CHECK(std::abs(often.angle_deg() - seldom.angle_deg()) < 0.0051);
+  // 0.001 * i and 3.0 may fall on either side of one step of 0.5 ms.
+  CHECK(std::abs(often.angle_deg() - seldom.angle_deg()) < 1e-6);
+}
+
+TEST_CASE("A stage at constant speed is where it was plus speed times time, at any moment") {
+  SimMotor motor(MotorSettings{}, 0);
+  motor.set_speed(60);
+  motor.go_to(1000);
+  motor.advance(2);
+  const double there_deg = motor.angle_deg();
+  for (const double later_s : {0.0001, 0.00049, 0.0012, 0.00789}) {
+    motor.advance(2 + later_s);
+    CHECK(motor.angle_deg() == doctest::Approx(there_deg + 60 * later_s).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("Smooth and abrupt stops take v/a") {

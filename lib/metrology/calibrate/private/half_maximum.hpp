@@ -11,7 +11,8 @@ namespace vam::metrology {
 struct Extent {
   double begin = 0;  // columns of half height
   double end = 0;
-  double height = 0;  // above the ground
+  double height = 0;    // above the ground
+  double centroid = 0;  // column, of what exceeds a quarter of the height
   [[nodiscard]] double width() const { return end - begin; }
   [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
 };
