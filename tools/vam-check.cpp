@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "cli/app.hpp"
 #include "io/inspect/provenance.hpp"
@@ -74,7 +75,11 @@ void check(const Options& options) {
   std::map<std::string, std::vector<ProvenanceEntry>> found;
   Names names;
   std::vector<Error> damaged;
-  for (const std::string& path : options.files) {
+  const long count = std::ssize(options.files);
+  Progress progress("checking", count);
+  for (long done = 0; done < count; ++done) {
+    progress.stand(done, count, {});
+    const std::string& path = options.files[done];
     try {
       found[path] = io::inspect(path, options.fast);
     } catch (const Error& error) {  // the others are checked, too

@@ -23,7 +23,7 @@ PARTS = {
     "gyroid, 24 mm": (["--shape", "gyroid:height=24"], []),
     "boat": (["--shape", "boat"], []),
     "boat on its stern, 20 mm": (["--shape", "boat", "--rotate", "0,-90,0", "--fit", "20"], []),
-    "octet, 48 mm": (["--shape", "octet:height=48"], []),
+    "octet, 46 mm": (["--shape", "octet:layers=9"], []),
     "gyroid, 10 mm, throw ratio 1": (["--shape", "gyroid"], SHORT),
     "gyroid, 24 mm, throw ratio 1": (["--shape", "gyroid:height=24"], SHORT),
     "gyroid, 10 mm, lens at the lower edge": (["--shape", "gyroid"], EDGE),

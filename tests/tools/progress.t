@@ -23,6 +23,10 @@ ok 'the tools of a pipe' seen 80 'vam-sinogram --angles 90 fine.vdb | vam-resamp
 grep -o '^vam-[a-z]*: [a-z]* ' .log/out | uniq >turns
 is 'take turns' "$(sort turns | uniq -d)" ''
 
+vam-slice --shape gyroid --voxel 0.2 --stretch-z 1 -o print.vdb
+ok 'vam-sdf' seen 80 'vam-sdf print.vdb fine.vdb --isovalue 0.5 --volume apart.vdb --volume-voxel 0.06'
+holds 'says that it measures' "$(grep -c '^vam-sdf: measuring distances \[' .log/out) > 0"
+
 ok 'no terminal' sh -c "$work -o x.exr"
 is 'no line' "$(cat .log/err)" ''
 mv x.exr plain.exr

@@ -6,6 +6,7 @@
 #include "base/base64.hpp"
 #include "base/json.hpp"
 #include "base/printable.hpp"
+#include "base/progress.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/page.hpp"
@@ -57,20 +58,31 @@ std::string images(const std::vector<std::string>& paths) {
 std::string views(const Sources& sources, const Volumes& volumes, const std::optional<Judged>& judged,
                   const std::optional<InspectionViews>& inspection, const Wanted& wanted) {
   std::string made = "<div class=\"images\">\n";
+  constexpr int bodies_and_sections = 3;
+  Progress progress("drawing", bodies_and_sections + std::ssize(sources.stacks) + std::ssize(sources.videos));
   if (const io::SparseVolume* target = volumes.find("target")) {
     std::optional<PrintedDose> print;
     if (judged) print = {volumes.find("dose"), judged->score.print_threshold()};
     made += body_view(*target, print);
   }
+  progress.tick();
   if (!sources.meshes.empty()) {
     const std::vector<ShownMesh> meshes = read_meshes(sources.meshes);
     made += meshes_view(meshes, inspection ? std::optional(inspection->limit_mm) : std::nullopt);
     made += mesh_sections(meshes);
   }
+  progress.tick();
   if (inspection) made += inspection->histogram;
   made += section_views(volumes, wanted.sections);
-  for (const auto& stack : sources.stacks) made += light_view(stack, io::FileType::stack, wanted.projections);
-  for (const auto& video : sources.videos) made += light_view(video, io::FileType::video, wanted.projections);
+  progress.tick();
+  const auto show = [&](const std::vector<std::string>& paths, io::FileType type) {
+    for (const std::string& path : paths) {
+      made += light_view(path, type, wanted.projections);
+      progress.tick();
+    }
+  };
+  show(sources.stacks, io::FileType::stack);
+  show(sources.videos, io::FileType::video);
   if (judged) made += histogram(*volumes.find("dose"), *volumes.find("target"), judged->how);
   for (const std::string& trace : sources.traces) made += convergence(trace);
   return made + images(sources.images) + "</div>\n";

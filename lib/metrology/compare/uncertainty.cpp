@@ -9,6 +9,7 @@
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 #include "base/random.hpp"
 #include "solid/mesh/pose_response.hpp"
 
@@ -271,7 +272,11 @@ Json expanded_uncertainty(const Inspection& inspection, const model::TriangleSou
   for (std::size_t first = 0; first < stride; ++first) parts.push_back(part_of(inspection, first));
   std::vector<Trials> made;
   for (const Inspection& part : parts) made.emplace_back(part, print, errors);
-  parallel_for(trials, [&](int trial) { tried[trial] = made[static_cast<std::size_t>(trial) % stride].run(trial); });
+  Progress progress("estimating uncertainties", trials);
+  parallel_for(trials, [&](int trial) {
+    tried[trial] = made[static_cast<std::size_t>(trial) % stride].run(trial);
+    progress.tick();
+  });
   std::vector<const Json*> all;
   for (const Json& one : tried) all.push_back(&one);
   return expanded("", figures_json(inspection), all);

@@ -5,6 +5,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 #include "solid/mesh/private/icp.hpp"
 #include "solid/mesh/private/overlap_search.hpp"
 
@@ -22,9 +23,11 @@ struct Start {
 // Fewer and fewer starts are refined more and more.
 template <class RmsOf>
 void keep_best(std::vector<Start>& starts, std::size_t count, const RmsOf& rms_of) {
+  Progress progress("aligning", count_of(starts));
   parallel_for(count_of(starts), [&](int i) {
     Start& start = starts[i];
     start.rms = rms_of(start.pose);
+    progress.tick();
   });
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });
   starts.resize(std::min(starts.size(), count));

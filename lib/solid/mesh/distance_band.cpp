@@ -5,6 +5,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 
 namespace vam::solid {
 
@@ -55,7 +56,9 @@ model::Volume distance_band(const Surface& surface, const model::Grid& grid, dou
   const int across = blocks(grid.nx);
   const int along = blocks(grid.ny);
   const double reach_mm = band_mm + 0.5 * std::sqrt(3.0) * edge * grid.voxel_mm;
-  parallel_for(across * along * blocks(grid.nz), [&](int n) {
+  const int count = across * along * blocks(grid.nz);
+  Progress progress("measuring distances", count);
+  parallel_for(count, [&](int n) {
     const VoxelSpan x = span_of(n % across, grid.nx);
     const VoxelSpan y = span_of(n / across % along, grid.ny);
     const VoxelSpan z = span_of(n / across / along, grid.nz);
@@ -76,6 +79,7 @@ model::Volume distance_band(const Surface& surface, const model::Grid& grid, dou
         }
       }
     }
+    progress.tick();
   });
   return volume;
 }

@@ -6,6 +6,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 
 namespace vam::solid {
 
@@ -137,7 +138,11 @@ std::vector<Motion> overlapping_poses(const std::vector<Vector3d>& print, const 
   const DistanceGrid distance(box, design);
   const std::vector<Matrix3d> turns = rotations();
   std::vector<Candidate> found(turns.size());
-  parallel_for(count_of(turns), [&](int i) { found[i] = best_shift(print, turns[i], box, distance); });
+  Progress progress("searching the overlap", count_of(turns));
+  parallel_for(count_of(turns), [&](int i) {
+    found[i] = best_shift(print, turns[i], box, distance);
+    progress.tick();
+  });
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
   std::vector<Motion> poses;
