@@ -21,6 +21,20 @@ double sharpest_mm(const model::Printer& printer, const solid::Part& part, doubl
   return light::best_lift_mm(printer, finder.faces(), voxel_mm, least_mm, most_mm);
 }
 
+/// The lifts that keep the part within the projector's rows, in voxels, with room beyond both ends if there is any: the
+/// dose at an end face is the threshold only if the voxels beyond it can be lit as well.
+struct Lifts {
+  double least, most;
+};
+
+Lifts lifts(double least_mm, double most_mm, double voxel_mm) {
+  constexpr double rounding = 1e-6;
+  constexpr double beyond = 2;
+  const Lifts all{std::ceil(least_mm / voxel_mm - rounding), std::floor(most_mm / voxel_mm + rounding)};
+  const double spare = std::clamp(std::floor((all.most - all.least) / 2), 0.0, beyond);
+  return {all.least + spare, all.most - spare};
+}
+
 double requested_mm(const Options& options) {
   const auto mm = parse_number(options.place);
   if (mm && std::isfinite(*mm)) return *mm * options.placement.stretch_z;
@@ -39,10 +53,12 @@ double lift_mm(const Options& options, const model::Printer& printer, const soli
     return std::round(requested_mm(options) / voxel_mm) * voxel_mm;
   }
   if (most_mm < least_mm - rounding) return 0;  // taller than the image
-  if (options.place == "auto") return sharpest_mm(printer, part, voxel_mm, least_mm, most_mm);
+  const Lifts within = lifts(least_mm, most_mm, voxel_mm);
+  if (options.place == "auto") {
+    return sharpest_mm(printer, part, voxel_mm, within.least * voxel_mm, within.most * voxel_mm);
+  }
   if (options.no_centre) return 0;
-  if (least_mm > 0) return std::ceil(least_mm / voxel_mm - rounding) * voxel_mm;
-  return std::min(0.0, std::floor(most_mm / voxel_mm + rounding) * voxel_mm);
+  return std::clamp(0.0, within.least, std::max(within.least, within.most)) * voxel_mm;
 }
 
 Json lift_figures(const Options& options, double lift_mm) {

@@ -26,8 +26,9 @@ std::vector<std::string> description() {
       "its true height. --stretch-z 1 disables this. The factor is recorded as vam:stretch_z.",
       "Rays of a projector that is not telecentric climb, and climb more steeply with increasing distance from the "
       "height of the lens: horizontal faces far from that height are printed less sharply. --place raises the part; "
-      "--place auto chooses the height at which its horizontal faces are blurred least. Target and projections then "
-      "contain the part at this height."};
+      "--place auto chooses the height at which its horizontal faces are blurred least. By default the part is at the "
+      "height of the lens, or as near to it as the rows allow with two more voxels beyond each end. Target and "
+      "projections then contain the part at this height."};
 }
 
 std::vector<std::string> limits() {
