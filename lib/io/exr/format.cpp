@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "io/exr/private/rows.hpp"
+
 namespace vam::io::exr {
 
 namespace {
@@ -70,32 +72,6 @@ Chunks encode_raw(const Image& image, Imf::PixelType type) {
     chunks.bytes.append(static_cast<const char*>(row), row_bytes);
   }
   return chunks;
-}
-
-bool is_raw(const Imf::Header& layout) {
-  auto second = layout.channels().begin();
-  return layout.compression() == Imf::NO_COMPRESSION && (second++).channel().type != Imf::UINT &&
-         second == layout.channels().end();
-}
-
-void decode_raw(const Imf::Header& layout, const Chunks& chunks, Image& image) {
-  const bool is_half = layout.channels().begin().channel().type == Imf::HALF;
-  const auto width = static_cast<std::size_t>(image.width);
-  const std::size_t row_bytes = width * (is_half ? sizeof(half) : sizeof(float));
-  std::vector<half> halves(is_half ? width : 0);
-  for (int y = 0; y < image.height; ++y) {
-    const std::size_t start = chunks.starts[y];
-    if (number_at<std::int32_t>(chunks.bytes, start + 4) != static_cast<std::int32_t>(row_bytes)) {
-      throw std::runtime_error("an uncompressed row has the wrong size");
-    }
-    const char* from = chunks.bytes.data() + start + 8;
-    if (is_half) {
-      std::memcpy(halves.data(), from, row_bytes);
-      std::copy(halves.begin(), halves.end(), image.row(y));
-    } else {
-      std::memcpy(image.row(y), from, row_bytes);
-    }
-  }
 }
 
 }  // namespace
@@ -203,7 +179,7 @@ Chunks encode(const Image& image, Imf::PixelType type, Imf::Compression compress
 }
 
 void decode(const Imf::Header& layout, const Chunks& chunks, Image& image) {
-  if (is_raw(layout)) return decode_raw(layout, chunks, image);
+  if (has_plain_rows(layout)) return decode_rows(layout, chunks, image);
   std::string file;
   append(file, magic);
   append(file, version | long_names_flag);

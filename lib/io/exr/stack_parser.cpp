@@ -41,12 +41,21 @@ void check_finite(const Image& image, std::size_t index) {
 // leave all others dark.
 void check_intensity(const Image& image, std::size_t index) {
   constexpr float most = 1e9F;
+  unsigned beyond = 0;  // without an early exit: vector code
+  for (const float value : image.values) beyond |= static_cast<unsigned>(value > most);
+  if (beyond == 0) return;
   const auto peak = std::max_element(image.values.begin(), image.values.end());
-  if (peak == image.values.end() || *peak <= most) return;
   const auto at = peak - image.values.begin();
   throw std::runtime_error("pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
                            " of image " + std::to_string(index) + " is " + format_number(*peak, 3) +
                            ", more than 1e9, which is no intensity; scale or mend it");
+}
+
+// In the memory of a former image; all of it is decoded anew.
+void take_size(Image& image, const StackInfo& info) {
+  image.width = info.width;
+  image.height = info.height;
+  image.values.resize(product(info.width, info.height));
 }
 
 void require_own_poses(const StackInfo& info) {
@@ -228,9 +237,11 @@ void StackParser::refill(bool alone) {
   const std::size_t count = std::min(raw || alone ? 1 : batch, about_.size() - first);
   std::vector<Chunks> taken;
   for (std::size_t i = 0; i < count; ++i) taken.push_back(complete_part().chunks);
-  ready_.assign(count, Image(info_.width, info_.height));
+  ready_.swap(used_);
+  ready_.resize(count);
   const auto decode_one = [&](int i) {
     const auto at = static_cast<std::size_t>(i);
+    take_size(ready_[at], info_);
     decode(layouts_[layout_of_[first + at]].header, taken[at], ready_[at]);
     check_finite(ready_[at], first + at);
     if (info_.space == model::Space::projector) check_intensity(ready_[at], first + at);
@@ -266,7 +277,8 @@ void StackParser::require_clean_end() {
 bool StackParser::next(Image& image, ImageInfo& about, bool alone) {
   if (done_ == about_.size()) return false;
   if (ready_.empty()) as_data_fault([&] { refill(alone); });
-  image = std::move(ready_.front());
+  std::swap(image, ready_.front());
+  used_.push_back(std::move(ready_.front()));
   ready_.pop_front();
   about = about_[done_++];
   return true;

@@ -237,3 +237,36 @@ TEST_CASE("poses travel in the first header, one a row") {
   write_stack(folder / "short.exr", info, {});
   CHECK(status([&] { StackReader{folder / "short.exr"}; }) == 65);
 }
+
+// OpenEXR's writer makes the file, so that nothing of ours knows its runs.
+TEST_CASE("rows of RLE: dark, equal, even, steps and noise, of any width, as OpenEXR reads them") {
+  const scratch::Folder folder;
+  for (const int width : {1, 2, 3, 127, 129, 300}) {
+    for (const bool narrow : {false, true}) {
+      CAPTURE(width);
+      const auto info = sinogram(width, 14, 2);
+      const auto pixel = [&](int x, int y, unsigned noise) -> float {
+        if (y < 4) return 0;
+        if (y < 6) return x < width / 3 || x > width / 2 ? 0.0F : 0.25F;
+        if (y < 8) return 7;
+        if (y < 10) return static_cast<float>(x);
+        return static_cast<float>(noise >> 20) / 4096.0F;
+      };
+      unsigned state = 1;
+      Image image(width, info.height);
+      for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < width; ++x) image(x, y) = pixel(x, y, state = state * 1664525U + 1013904223U);
+      }
+      StackWriter writer(folder / "s.exr", info, {narrow, "rle"});
+      writer.write(image);
+      writer.write(Image(width, info.height));
+      writer.commit();
+      StackReader reader(folder / "s.exr");
+      Image read;
+      model::ImageInfo about;
+      for (int part = 0; reader.next(read, about); ++part) {
+        CHECK(read.values == read_by_openexr(folder / "s.exr", part).values);
+      }
+    }
+  }
+}
