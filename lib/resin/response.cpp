@@ -134,11 +134,17 @@ GreyLevels::GreyLevels(const Response& response, int bits) : bits_(bits) {
     from = std::bit_cast<float>(low);
     least_.push_back(from);
   }
-  least_.resize(intensity_.size(), std::numeric_limits<float>::infinity());
   const int steps = 4 * count();
   for (int step = 0; step <= steps; ++step) {  // one too low, for rounding
     first_.push_back(nearest(static_cast<float>(step - 1) / static_cast<float>(steps)));
   }
+  int most = 1;
+  for (int step = 0; step <= steps; ++step) {
+    const int end = step + 3 <= steps ? first_[step + 3] : nearest(intensity_.back());
+    most = std::max(most, end - first_[step]);
+  }
+  reach_ = std::bit_floor(static_cast<unsigned>(most));
+  least_.resize(intensity_.size() + 2 * reach_, std::numeric_limits<float>::infinity());
 }
 
 int GreyLevels::nearest(float intensity) const {
@@ -153,8 +159,12 @@ int GreyLevels::nearest(float intensity) const {
 int GreyLevels::level(float intensity) const {
   if (!(intensity > 0)) return 0;
   const float held = std::min(intensity, 1.0F);
-  auto level = static_cast<std::size_t>(first_[static_cast<std::size_t>(held * static_cast<float>(first_.size() - 1))]);
-  while (held >= least_[level]) ++level;
+  const auto step = static_cast<std::size_t>(held * static_cast<float>(first_.size() - 1));
+  auto level = static_cast<std::size_t>(first_[step]);
+  // Halves what may follow, by arithmetic: a branch would be guessed wrongly at every other pixel.
+  for (std::size_t half = reach_; half > 0; half /= 2) {
+    level += half * static_cast<std::size_t>(held >= least_[level + half - 1]);
+  }
   return static_cast<int>(level);
 }
 

@@ -61,6 +61,7 @@ class GreyLevels {
   std::vector<float> intensity_;  // rising with the level
   std::vector<float> least_;      // wanted intensity from which on a higher level than this one is the nearest
   std::vector<int> first_;        // of each of equal steps of intensity: the nearest level to its begin
+  std::size_t reach_ = 1;         // power of 2: twice that many levels, less one, may follow within a step
 };
 
 /// Intensity of an image, summed, and the pixels that were clipped.
