@@ -4,37 +4,41 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/index.hpp"
 #include "io/image/private/ffv1.hpp"
 
 namespace vam::io {
 
 namespace {
 
-// Bits, the highest first; up to 32 at once.
+// Bits, the highest first; up to 32 at once, into bytes for which make_room() was asked before.
 class BitWriter {
  public:
-  explicit BitWriter(Bytes& bytes) : bytes_(bytes) {}
+  explicit BitWriter(Bytes& bytes) : bytes_(bytes), end_(bytes.size()) {}
+
+  void make_room(std::size_t bits) {
+    const std::size_t least = end_ + bits / 8 + 2 * sizeof(held_);
+    if (bytes_.size() < least) bytes_.resize(2 * least);
+  }
+  // Writes whole bytes and those that wait behind them, without a branch on how many there are.
   void put(int count, std::uint32_t value) {
     held_ = held_ << count | value;
-    waiting_ += count;
-    if (waiting_ < 32) return;
-    waiting_ -= 32;
-    const auto word = static_cast<std::uint32_t>(held_ >> waiting_);
-    const std::array<std::uint8_t, 4> four{static_cast<std::uint8_t>(word >> 24), static_cast<std::uint8_t>(word >> 16),
-                                           static_cast<std::uint8_t>(word >> 8), static_cast<std::uint8_t>(word)};
-    bytes_.insert(bytes_.end(), four.begin(), four.end());
+    waiting_ += static_cast<unsigned>(count);
+    const std::uint64_t aligned = held_ << 1 << (63 - waiting_);
+    std::array<std::uint8_t, sizeof aligned> bytes{};
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(aligned >> (56 - 8 * i));
+    std::memcpy(bytes_.data() + end_, bytes.data(), bytes.size());
+    end_ += waiting_ / 8;
+    waiting_ %= 8;
   }
-  void flush() {
-    for (put((8 - waiting_ % 8) % 8, 0); waiting_ > 0;) {
-      waiting_ -= 8;
-      bytes_.push_back(static_cast<std::uint8_t>(held_ >> waiting_));
-    }
-  }
+  // The bytes end here.
+  void flush() { bytes_.resize(end_ + (waiting_ > 0 ? 1 : 0)); }
 
  private:
   Bytes& bytes_;
+  std::size_t end_;
   std::uint64_t held_ = 0;
-  int waiting_ = 0;
+  unsigned waiting_ = 0;  // bits behind the last whole byte
 };
 
 // What a context has learned of its differences (section 3.8.2.3).
@@ -53,13 +57,17 @@ struct Learned {
       error_sum >>= 1;
     }
     ++count;
-    if (drift <= -count) {
-      bias = std::max(bias - 1, -128);
-      drift = std::max(drift + count, 1 - count);
-    } else if (drift > 0) {
-      bias = std::min(bias + 1, 127);
-      drift = std::min(drift - count, 0);
-    }
+    // Without branches, which would be guessed wrongly; a drift that does not move the bias is within its bounds.
+    const int move = static_cast<int>(drift > 0) - static_cast<int>(drift <= -count);
+    bias = std::clamp(bias + move, -128, 127);
+    drift = std::clamp(drift - move * count, 1 - count, 0);
+  }
+
+  // The least k with count * 2^k >= error_sum.
+  [[nodiscard]] int low_bits() const {
+    const auto width = [](int value) { return static_cast<int>(std::bit_width(static_cast<unsigned>(value))); };
+    const int k = std::max(width(error_sum) - width(count), 0);
+    return k + static_cast<int>(count << k < error_sum);
   }
 };
 
@@ -82,6 +90,7 @@ constexpr std::array<std::uint8_t, 41> run_bits{0,  0,  0,  0,  1,  1,  1,  1,  
 
 constexpr int longest_prefix = 12;
 constexpr int pixel_bits = 8;
+constexpr int longest_code = 2 * (longest_prefix + pixel_bits);  // of a pixel, and of the run that it ends
 
 int folded(int difference) { return static_cast<std::int8_t>(difference); }
 
@@ -91,6 +100,7 @@ class RowCoder {
 
   // Both rows have one more pixel on either side.
   void row(const std::uint8_t* above, const std::uint8_t* here, int width) {
+    bits_.make_room(product(width, longest_code));
     run_ = 0;
     bool running = false;
     for (int x = 0; x < width; ++x) {
@@ -106,13 +116,11 @@ class RowCoder {
       int context = classes[static_cast<std::uint8_t>(left - corner)] +
                     11 * classes[static_cast<std::uint8_t>(corner - top)] +
                     121 * classes[static_cast<std::uint8_t>(top - above[x + 1])];
-      const int median = std::max(std::min(left, top), std::min(std::max(left, top), left + top - corner));
+      const int median = std::clamp(left + top - corner, std::min(left, top), std::max(left, top));
       int difference = here[x] - median;
-      if (context < 0) {
-        context = -context;
-        difference = -difference;
-      }
-      difference = folded(difference);
+      const int sign = context >> 31;  // a branch would be guessed wrongly
+      context = (context ^ sign) - sign;
+      difference = folded((difference ^ sign) - sign);
       running = running || context == 0;
       if (running && difference == 0) {
         ++run_;
@@ -165,10 +173,9 @@ class RowCoder {
 
   void symbol(Learned& context, int difference) {
     const int value = folded(difference - context.bias);
-    int low_bits = 0;
-    while (context.count << low_bits < context.error_sum) ++low_bits;
+    const int low_bits = context.low_bits();
     const int turned = value ^ ((2 * context.drift + context.count) >> 31);
-    const auto code = static_cast<std::uint32_t>(turned < 0 ? -2 * turned - 1 : 2 * turned);
+    const auto code = static_cast<std::uint32_t>(2 * turned ^ (turned >> 31));
     const auto prefix = static_cast<int>(code >> low_bits);
     if (prefix < longest_prefix) {
       bits_.put(prefix + low_bits + 1, (1U << low_bits) + (code & ((1U << low_bits) - 1)));
