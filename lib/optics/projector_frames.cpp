@@ -74,16 +74,22 @@ struct Lit {
 };
 
 Lit lit_columns(const Image& sinogram) {
-  Lit lit;
+  const auto width = static_cast<std::size_t>(sinogram.width);
+  std::vector<float> least(width, 0.0F), most(width, 0.0F);
   for (int a = 0; a < sinogram.height; ++a) {
     const float* row = sinogram.row(a);
-    for (int c = 0; c < sinogram.width; ++c) {
-      if (row[c] == 0) continue;
-      lit.low = std::min(lit.low, c);
-      lit.high = std::max(lit.high, c);
-      lit.least = std::min(lit.least, row[c]);
-      lit.most = std::max(lit.most, row[c]);
+    for (std::size_t c = 0; c < width; ++c) {
+      least[c] = std::min(least[c], row[c]);
+      most[c] = std::max(most[c], row[c]);
     }
+  }
+  Lit lit;
+  for (int c = 0; c < sinogram.width; ++c) {
+    if (least[c] == 0 && most[c] == 0) continue;
+    lit.low = std::min(lit.low, c);
+    lit.high = c;
+    lit.least = std::min(lit.least, least[c]);
+    lit.most = std::max(lit.most, most[c]);
   }
   return lit;
 }
@@ -109,19 +115,21 @@ void FrameComposer::add(const Image& sinogram, double z_mm) {
   const int high = std::min(lit.high - taps.first, 2 * place_.columns - 1);
   slice.first = std::clamp(low, 0, place_.columns);
   slice.width = std::max(std::min(high + 1, place_.columns) - slice.first, 0);
-  slice.values.reserve(slice.width * static_cast<std::size_t>(sinogram.height));
-  float* peak = column_peak_.data() + place_.columns;
+  if (high < low) return;
+  slice.values.resize(product(sinogram.height, slice.width));
+  std::vector<float> shown(static_cast<std::size_t>(high - low + 1));
+  float* peak = column_peak_.data() + place_.columns + low;
   for (int a = 0; a < sinogram.height; ++a) {
+    std::fill(shown.begin(), shown.end(), 0.0F);
     const float* row = sinogram.row(a);
-    for (int x = low; x <= high; ++x) {
-      float value = 0;
-      for (int t = 0; t < count; ++t) {
-        const int c = x + taps.first + t;
-        if (c >= 0 && c < sinogram.width) value += taps.weights[t] * row[c];
-      }
-      peak[x] = std::max(peak[x], value);
-      if (x >= 0 && x < place_.columns) slice.values.push_back(value);
+    for (int t = 0; t < count; ++t) {
+      const int right = taps.first + t;
+      const int end = std::min(high + 1, sinogram.width - right);
+      for (int x = std::max(low, -right); x < end; ++x) shown[x - low] += taps.weights[t] * row[x + right];
     }
+    for (std::size_t x = 0; x < shown.size(); ++x) peak[x] = std::max(peak[x], shown[x]);
+    if (slice.width == 0) continue;  // beside the device
+    std::copy_n(shown.data() + (slice.first - low), slice.width, slice.values.data() + product(a, slice.width));
   }
 }
 
