@@ -67,41 +67,53 @@ struct Fit {
   }
 };
 
+// Of the 3 x 3 x 3 nodes of a cell's eight parts, x fastest.
+constexpr bool is_corner(unsigned n) { return n % 3 != 1 && n / 3 % 3 != 1 && n / 9 != 1; }
+constexpr unsigned middle_node = 13;
+
 // The mean over the cell's eight parts.
-double halved_fraction(const Field& field, const Point& centre, double edge_mm, const CubeValues& corners,
-                       double middle, int depth) {
-  // Nodes of the eight parts, 3 x 3 x 3: the corners and the middle are known.
-  std::array<double, 27> nodes{};
+double halved_fraction(const Field& field, const Point& centre, double edge_mm, double middle,
+                       const CubeValues& corners, int depth) {
+  // What is not known yet: the other nodes, then the middles of the parts.
+  std::array<Point, 27 - 8 - 1 + 8> points;
+  auto* point = points.data();
   for (unsigned n = 0; n < 27; ++n) {
-    const unsigned i = n % 3;
-    const unsigned j = n / 3 % 3;
-    const unsigned k = n / 9;
-    const bool corner = i != 1 && j != 1 && k != 1;
-    nodes[n] = corner    ? corners[i / 2 + j / 2 * 2 + k / 2 * 4]
-               : n == 13 ? middle
-                         : field.value(centre + (edge_mm / 2) * Point{i - 1.0, j - 1.0, k - 1.0});
+    if (is_corner(n) || n == middle_node) continue;
+    *point++ = centre + (edge_mm / 2) * Point{n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0};
+  }
+  for (unsigned part = 0; part < 8; ++part) *point++ = centre + (edge_mm / 2) * corner_sign(part);
+  std::array<double, points.size()> values;
+  values_at(field, points, values.data());
+
+  std::array<double, 27> nodes;
+  const double* value = values.data();
+  for (unsigned n = 0; n < 27; ++n) {
+    nodes[n] = is_corner(n)       ? corners[n % 3 / 2 + n / 3 % 3 / 2 * 2 + n / 9 / 2 * 4]
+               : n == middle_node ? middle
+                                  : *value++;
   }
   double fraction = 0;
   for (unsigned part = 0; part < 8; ++part) {
     const unsigned first = (part & 1U) + 3 * (part >> 1U & 1U) + 9 * (part >> 2U);
     CubeValues part_corners{};
     for (unsigned c = 0; c < 8; ++c) part_corners[c] = nodes[first + (c & 1U) + 3 * (c >> 1U & 1U) + 9 * (c >> 2U)];
-    fraction +=
-        cell_fraction(field, centre + (edge_mm / 2) * corner_sign(part), edge_mm / 2, part_corners, depth + 1) / 8;
+    fraction += cell_fraction(field, centre + (edge_mm / 2) * corner_sign(part), edge_mm / 2, *value++, part_corners,
+                              depth + 1) /
+                8;
   }
   return fraction;
 }
 
 }  // namespace
 
-double cell_fraction(const Field& field, const Point& centre, double edge_mm, const CubeValues& corners, int depth) {
-  const double middle = field.value(centre);
+double cell_fraction(const Field& field, const Point& centre, double edge_mm, double middle, const CubeValues& corners,
+                     int depth) {
   if (std::abs(middle) > clear_mm(field, half_diagonal * edge_mm)) return middle < 0 ? 1 : 0;
   const Fit fit(corners, middle);
   const double steepness = length(fit.slope);
   const double even_limit = std::clamp(0.3 * field.curvature_per_mm * edge_mm, even_least, even_most);
   const bool smooth = fit.even <= even_limit * steepness && fit.odd <= odd_limit * steepness;
-  if (!smooth && depth < deepest) return halved_fraction(field, centre, edge_mm, corners, middle, depth);
+  if (!smooth && depth < deepest) return halved_fraction(field, centre, edge_mm, middle, corners, depth);
   if (!smooth) {
     // What an edge makes of a plane fitted to it must not cut corners that are all on one side.
     const auto [low, high] = std::minmax_element(corners.begin(), corners.end());

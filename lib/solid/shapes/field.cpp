@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace vam::solid {
 
@@ -13,6 +14,11 @@ double Field::support_mm(const Point& d) const {
   const double by_cylinder = std::hypot(d[0], d[1]) * radius_mm + d[2] * centre[2] + std::abs(d[2]) * half[2];
   const double by_ball = dot(d, centre) + ball_mm;
   return std::min({by_box, by_cylinder, by_ball});
+}
+
+void values_at(const Field& field, std::span<const Point> points, double* values) {
+  if (field.many) return field.many(points, values);
+  std::transform(points.begin(), points.end(), values, field.value);
 }
 
 namespace {
@@ -63,6 +69,13 @@ Field transformed(const Field& field, const Affine& map) {
   result.ball_mm = std::min(0.5 * result.box.diagonal(),
                             stretch * field.ball_mm + length(map(field.box.centre()) - result.box.centre()));
   result.value = [inner = field.value, back](const Point& p) { return inner(back(p)); };
+  if (field.many) {
+    result.many = [inner = field.many, back](std::span<const Point> points, double* values) {
+      std::vector<Point> before(points.size());
+      std::transform(points.begin(), points.end(), before.begin(), back);
+      inner(before, values);
+    };
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "model/grid.hpp"
 #include "solid/mesh/geometry.hpp"
@@ -11,6 +12,8 @@ namespace vam::solid {
 /// A solid { p : value(p) < 0 }, p in mm.
 struct Field {
   std::function<double(const Point&)> value;
+  /// The same at many points, where that is faster than one by one; empty otherwise. See values_at().
+  std::function<void(std::span<const Point> points, double* values)> many;
   /// |value(p)| <= lipschitz * (distance from p to the surface), so a large value proves a ball free of surface.
   double lipschitz = 1;
   /// Largest curvature of the smooth parts of the surface, 1/mm: tells roundness from edges within a voxel.
@@ -23,6 +26,9 @@ struct Field {
   /// upright cylinders and balls.
   [[nodiscard]] double support_mm(const Point& d) const;
 };
+
+/// The field at every point, mm.
+void values_at(const Field& field, std::span<const Point> points, double* values);
 
 /// The solid moved by a map. Bounds, radius and ball stay bounds, tight where support_mm() is.
 [[nodiscard]] Field transformed(const Field& field, const Affine& map);

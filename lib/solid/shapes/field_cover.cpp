@@ -9,6 +9,7 @@
 #include "base/parallel.hpp"
 #include "solid/shapes/field.hpp"
 #include "solid/shapes/private/cell_fraction.hpp"
+#include "solid/shapes/private/lattice_values.hpp"
 #include "solid/shapes/private/smooth_block.hpp"
 
 namespace vam::solid {
@@ -18,32 +19,30 @@ namespace {
 constexpr int block = 4;    // voxels along the edge of the smallest box
 constexpr int widest = 16;  // and of the largest one
 
-// The field at the corners of a block's voxels, x fastest.
+// The field at the middles and corners of a block's voxels.
 class SampleLattice {
  public:
-  SampleLattice(const Field& field, const Point& first, double voxel_mm) {
-    for (int k = 0; k <= block; ++k) {
-      for (int j = 0; j <= block; ++j) {
-        for (int i = 0; i <= block; ++i) {
-          values_[index(i, j, k)] = field.value(first + voxel_mm * Point{i - 0.5, j - 0.5, k - 0.5});
-        }
-      }
-    }
-  }
+  SampleLattice(const Field& field, const Point& first, double voxel_mm)
+      : middles_(lattice_values<block>(field, first, 0, voxel_mm)),
+        corners_(lattice_values<block + 1>(field, first, -0.5, voxel_mm)) {}
 
   // Of the voxel that is the i, j, k-th of the block.
+  [[nodiscard]] double middle(int i, int j, int k) const { return middles_[index<block>(i, j, k)]; }
   [[nodiscard]] CubeValues corners(int i, int j, int k) const {
     CubeValues corners{};
     for (int c = 0; c < 8; ++c) {
-      corners[c] = values_[index(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))];
+      corners[c] = corners_[index<block + 1>(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))];
     }
     return corners;
   }
 
  private:
-  static constexpr std::size_t side = block + 1;
-  static std::size_t index(int i, int j, int k) { return flat_index(k, side, j) * side + i; }
-  std::array<double, side * side * side> values_{};
+  template <std::size_t side>
+  static std::size_t index(int i, int j, int k) {
+    return flat_index(k, side, j) * side + i;
+  }
+  std::array<double, block * block * block> middles_;
+  std::array<double, (block + 1) * (block + 1) * (block + 1)> corners_;
 };
 
 class Cover {
@@ -84,7 +83,8 @@ class Cover {
     const double edge_mm = grid_.voxel_mm;
     const SampleLattice lattice(field_, voxel(i, j, k), edge_mm);
     each(block, i, j, k, [&](int x, int y, int z) {
-      return cell_fraction(field_, voxel(i + x, j + y, k + z), edge_mm, lattice.corners(x, y, z));
+      return cell_fraction(field_, voxel(i + x, j + y, k + z), edge_mm, lattice.middle(x, y, z),
+                           lattice.corners(x, y, z));
     });
   }
 

@@ -1,60 +1,23 @@
 // Lattices and the ball in a cage.
+#include <array>
+#include <cmath>
 #include <numbers>
+#include <span>
 
+#include "base/index.hpp"
+#include "base/simd.hpp"
 #include "solid/shapes/private/builders.hpp"
+#include "solid/shapes/private/gyroid_kernel.hpp"
 #include "solid/shapes/private/sdf.hpp"
 
 namespace vam::solid::build {
 
 namespace {
 
-// The gyroid's level-set approximation F = sin x cos y + sin y cos z + sin z cos x [OST22 Methods, "Gyroid design"].
-struct LevelValue {
-  Point sine;
-  Point cosine;
+using GyroidDistances = decltype(&baseline::gyroid_distances);
 
-  [[nodiscard]] double value() const { return sine[0] * cosine[1] + sine[1] * cosine[2] + sine[2] * cosine[0]; }
-  [[nodiscard]] Point gradient() const {  // per radian
-    return {cosine[0] * cosine[1] - sine[2] * sine[0], cosine[1] * cosine[2] - sine[0] * sine[1],
-            cosine[2] * cosine[0] - sine[1] * sine[2]};
-  }
-};
-
-LevelValue level_at(const Point& p) {
-  return {{std::sin(p[0]), std::sin(p[1]), std::sin(p[2])}, {std::cos(p[0]), std::cos(p[1]), std::cos(p[2])}};
-}
-
-// The level at a small distance d (radians) from a known one, by the addition theorem with power series: to 1e-6 for
-// |d| < 1, at a tenth of the price.
-LevelValue level_near(const LevelValue& at, const Point& d) {
-  LevelValue moved{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double q = d[a] * d[a];
-    const double s = d[a] * (1 - q / 6 * (1 - q / 20 * (1 - q / 42)));
-    const double c = 1 - q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56)));
-    moved.sine[a] = at.sine[a] * c + at.cosine[a] * s;
-    moved.cosine[a] = at.cosine[a] * c - at.sine[a] * s;
-  }
-  return moved;
-}
-
-// Distance in radians to the surface F = 0: far away a lower bound (|grad F| <= sqrt(3)), near it the distance to the
-// tangent plane at the foot point, found by Newton steps along the gradient. So a sheet has the same thickness
-// everywhere.
-double gyroid_distance(const Point& p, double near) {
-  const LevelValue level = level_at(p);
-  const double bound = std::abs(level.value()) / std::numbers::sqrt3;
-  if (bound > near) return bound;
-  Point normal = level.gradient();
-  Point step = (-level.value() / dot(normal, normal)) * normal;  // from p to the foot point
-  for (int i = 0; i < 3; ++i) {
-    const LevelValue at = level_near(level, step);
-    normal = at.gradient();
-    // The point nearest to p of the plane on which the linearised F vanishes.
-    step = ((dot(step, normal) - at.value()) / dot(normal, normal)) * normal;
-  }
-  return length(step);
-}
+// max(hull, sheet) at up to that many points at a time.
+constexpr std::size_t together = 128;
 
 }  // namespace
 
@@ -67,14 +30,33 @@ Field gyroid(Values v) {
           "shape gyroid: sheet must not exceed 0.2 times cell (beyond it the offset surface is not smooth)");
   // Exact well beyond the sheet's surface, but not near the extrema of F (1.5), where Newton's steps go astray.
   const double near = std::min(1.6 * k * half_sheet, 1.25 / std::numbers::sqrt3);
+  const GyroidDistances distances = VAM_KERNEL(gyroid_distances, simd_level());
+  const auto some = [=](std::span<const Point> points, double* values) {
+    std::array<std::array<double, together>, 3> at{};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) at[a][i] = k * points[i][a];
+    }
+    distances(at[0].data(), at[1].data(), at[2].data(), count_of(points), near, values);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point& p = points[i];
+      const double hull = sdf::rectangle(std::sqrt(p[0] * p[0] + p[1] * p[1]), p[2], radius, half);
+      values[i] = hull > half_sheet ? hull : std::max(hull, values[i] / k - half_sheet);
+    }
+  };
   Field field = solid(
       [=](const Point& p) {
-        const double hull = sdf::cylinder(p, radius, half);
-        if (hull > half_sheet) return hull;
-        return std::max(hull, gyroid_distance(k * p, near) / k - half_sheet);
+        double value = 0;
+        some({&p, 1}, &value);
+        return value;
       },
       {-radius, -radius, -half}, {radius, radius, half}, radius,
       1 / (0.2 * v[0] - half_sheet));  // the minimal surface bends to a radius of 0.2 cell
+  field.many = [=](std::span<const Point> points, double* values) {
+    for (; points.size() > together; points = points.subspan(together), values += together) {
+      some(points.first(together), values);
+    }
+    some(points, values);
+  };
   field.ball_mm = std::hypot(radius, half);
   return field;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "solid/shapes/private/cell_fraction.hpp"
+#include "solid/shapes/private/lattice_values.hpp"
 
 namespace vam::solid {
 
@@ -52,23 +53,19 @@ template <int side>
 SmoothBlock<side>::SmoothBlock(const Field& field, const Point& middle, double voxel_mm)
     : clear_mm_(clear_mm(field, half_diagonal * voxel_mm)) {
   const double half_mm = 0.5 * side * voxel_mm;
-  for (int k = -1; k <= 1; ++k) {
-    for (int j = -1; j <= 1; ++j) {
-      for (int i = -1; i <= 1; ++i) {
-        const Point offset{half_mm * i, half_mm * j, half_mm * k};
-        nodes_[index<3>(i + 1, j + 1, k + 1)] = field.value(middle + offset);
-      }
-    }
-  }
+  nodes_ = lattice_values<3>(field, middle, -1, half_mm);
   const Point slope{nodes_[14] - nodes_[12], nodes_[16] - nodes_[10], nodes_[22] - nodes_[4]};
   steepness_ = length(slope) / side;
   if (!is_quadratic()) return;
   interpolate();
+  std::array<Point, 8> between;
+  for (unsigned c = 0; c < 8; ++c) between[c] = middle + half_mm * corner_sign(c);
+  CubeValues values;
+  values_at(field, between, values.data());
   for (unsigned c = 0; c < 8; ++c) {
-    const Point at = corner_sign(c);
-    const auto place = [&](std::size_t a) { return at[a] < 0 ? side / 4 : 3 * side / 4; };
+    const auto place = [&](unsigned a) { return ((c >> a) & 1U) == 0 ? side / 4 : 3 * side / 4; };
     const double expected = corner(place(0), place(1), place(2));
-    if (std::abs(field.value(middle + half_mm * at) - expected) > between_limit * steepness_) return;
+    if (std::abs(values[c] - expected) > between_limit * steepness_) return;
   }
   holds_ = true;
 }

@@ -23,7 +23,7 @@ inline double clear_mm(const Field& field, double radius_mm) { return 1.05 * fie
 
 /// A cell in which the field is linear to 2 % is cut by a plane; others are halved, `depth` counting how often, down to
 /// an eighth of a voxel.
-[[nodiscard]] double cell_fraction(const Field& field, const Point& centre, double edge_mm, const CubeValues& corners,
-                                   int depth = 0);
+[[nodiscard]] double cell_fraction(const Field& field, const Point& centre, double edge_mm, double middle,
+                                   const CubeValues& corners, int depth = 0);
 
 }  // namespace vam::solid
