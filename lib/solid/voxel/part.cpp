@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
 #include "solid/shapes/shapes.hpp"
@@ -83,16 +85,23 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
 
 namespace {
 
-/// Distance from the axis to the farthest voxel centre with coverage in these slices.
-double farthest_mm(const model::Grid& grid, int count, const float* slices) {
-  double farthest = 0;
-  for (int line = 0; line < count * grid.ny; ++line) {
-    const double y = grid.y_mm(line % grid.ny);
-    for (int i = 0; i < grid.nx; ++i) {
-      if (*slices++ > model::coverage_rounding) farthest = std::max(farthest, std::hypot(grid.x_mm(i), y));
-    }
+/// Adds what a row at y holds.
+void count_row(const model::Grid& grid, double y, const float* row, FillSummary& content, double& voxels) {
+  int first = grid.nx;
+  int last = -1;
+  for (int i = 0; i < grid.nx; ++i) {
+    const float value = row[i];
+    if (value == 0) continue;
+    voxels += value;
+    content.most = std::max(content.most, value);
+    ++(value == 1 ? content.solid_voxels : content.surface_voxels);
+    if (value <= model::coverage_rounding) continue;
+    first = std::min(first, i);
+    last = i;
   }
-  return farthest;
+  if (last < 0) return;
+  const double x = std::max(std::abs(grid.x_mm(first)), std::abs(grid.x_mm(last)));
+  content.radius_mm = std::max(content.radius_mm, std::hypot(x, y));
 }
 
 }  // namespace
@@ -101,17 +110,21 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
   FillSummary content;
   double voxels = 0;
   content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
-    const std::size_t size = grid.slice_size() * static_cast<std::size_t>(count);
-    for (std::size_t i = 0; i < size; ++i) {
-      voxels += slices[i];
-      content.most = std::max(content.most, slices[i]);
-      if (slices[i] == 1) {
-        ++content.solid_voxels;
-      } else if (slices[i] > 0) {
-        ++content.surface_voxels;
+    std::vector<FillSummary> of_slice(static_cast<std::size_t>(count));
+    std::vector<double> covered(of_slice.size());
+    parallel_for(count, [&](int k) {
+      const float* slice = slices + product(k, grid.slice_size());
+      for (int j = 0; j < grid.ny; ++j) {
+        count_row(grid, grid.y_mm(j), slice + product(j, grid.nx), of_slice[k], covered[k]);
       }
+    });
+    for (int k = 0; k < count; ++k) {
+      voxels += covered[k];
+      content.most = std::max(content.most, of_slice[k].most);
+      content.solid_voxels += of_slice[k].solid_voxels;
+      content.surface_voxels += of_slice[k].surface_voxels;
+      content.radius_mm = std::max(content.radius_mm, of_slice[k].radius_mm);
     }
-    content.radius_mm = std::max(content.radius_mm, farthest_mm(grid, count, slices));
     sink(k0, count, slices);
   });
   if (voxels == 0) {
