@@ -195,6 +195,10 @@ void StackParser::take_chunk() {
   const auto place = static_cast<std::size_t>(row / rows);
   Arriving& image = arriving_[index];
   if (image.chunks.starts.empty()) {
+    if (!emptied_.empty()) {
+      image.chunks.bytes = std::move(emptied_.back());
+      emptied_.pop_back();
+    }
     image.chunks.starts.assign(layout.chunks, absent);
     image.missing = layout.chunks;
   }
@@ -251,6 +255,10 @@ void StackParser::refill(bool alone) {
     decode_one(0);
   } else {
     parallel_for(static_cast<int>(count), decode_one);
+  }
+  for (Chunks& image : taken) {
+    image.bytes.clear();
+    emptied_.push_back(std::move(image.bytes));
   }
   seals_->judge(first, first + count);
   if (complete_ < about_.size()) return;

@@ -76,12 +76,13 @@ class StackParser {
   std::vector<std::size_t> layout_of_;  // of every part
   std::map<std::size_t, Arriving> arriving_;
   std::size_t waiting_bytes_ = 0;
-  std::optional<SealCheck> seals_;  // of this stack
-  std::uint64_t begin_ = 0;         // of the stack on the stream
-  std::size_t complete_ = 0;        // parts taken off the stream
-  std::deque<Image> ready_;         // decoded images
-  std::deque<Image> used_;          // former ones, whose memory the next take
-  std::size_t done_ = 0;            // images handed out
+  std::optional<SealCheck> seals_;    // of this stack
+  std::uint64_t begin_ = 0;           // of the stack on the stream
+  std::size_t complete_ = 0;          // parts taken off the stream
+  std::deque<Image> ready_;           // decoded images
+  std::deque<Image> used_;            // former ones, whose memory the next take
+  std::vector<std::string> emptied_;  // of chunks, likewise
+  std::size_t done_ = 0;              // images handed out
 };
 
 }  // namespace vam::io::exr
