@@ -1,9 +1,9 @@
 #include "solid/shapes/field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace vam::solid {
 
@@ -17,8 +17,13 @@ double Field::support_mm(const Point& d) const {
 }
 
 void values_at(const Field& field, std::span<const Point> points, double* values) {
-  if (field.many) return field.many(points, values);
-  std::transform(points.begin(), points.end(), values, field.value);
+  if (!field.some) {
+    std::transform(points.begin(), points.end(), values, field.value);
+    return;
+  }
+  for (std::size_t at = 0; at < points.size(); at += Field::together) {
+    field.some(points.subspan(at, std::min(Field::together, points.size() - at)), values + at);
+  }
 }
 
 namespace {
@@ -69,11 +74,11 @@ Field transformed(const Field& field, const Affine& map) {
   result.ball_mm = std::min(0.5 * result.box.diagonal(),
                             stretch * field.ball_mm + length(map(field.box.centre()) - result.box.centre()));
   result.value = [inner = field.value, back](const Point& p) { return inner(back(p)); };
-  if (field.many) {
-    result.many = [inner = field.many, back](std::span<const Point> points, double* values) {
-      std::vector<Point> before(points.size());
+  if (field.some) {
+    result.some = [inner = field.some, back](std::span<const Point> points, double* values) {
+      std::array<Point, Field::together> before{};
       std::transform(points.begin(), points.end(), before.begin(), back);
-      inner(before, values);
+      inner(std::span(before).first(points.size()), values);
     };
   }
   return result;

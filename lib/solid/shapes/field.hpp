@@ -12,8 +12,9 @@ namespace vam::solid {
 /// A solid { p : value(p) < 0 }, p in mm.
 struct Field {
   std::function<double(const Point&)> value;
-  /// The same at many points, where that is faster than one by one; empty otherwise. See values_at().
-  std::function<void(std::span<const Point> points, double* values)> many;
+  /// The same at up to so many points, where that is faster than one by one; empty otherwise. See values_at().
+  static constexpr std::size_t together = 32;
+  std::function<void(std::span<const Point> points, double* values)> some;
   /// |value(p)| <= lipschitz * (distance from p to the surface), so a large value proves a ball free of surface.
   double lipschitz = 1;
   /// Largest curvature of the smooth parts of the surface, 1/mm: tells roundness from edges within a voxel.

@@ -16,9 +16,6 @@ namespace {
 
 using GyroidDistances = decltype(&baseline::gyroid_distances);
 
-// max(hull, sheet) at up to that many points at a time.
-constexpr std::size_t together = 128;
-
 }  // namespace
 
 Field gyroid(Values v) {
@@ -32,15 +29,18 @@ Field gyroid(Values v) {
   const double near = std::min(1.6 * k * half_sheet, 1.25 / std::numbers::sqrt3);
   const GyroidDistances distances = VAM_KERNEL(gyroid_distances, simd_level());
   const auto some = [=](std::span<const Point> points, double* values) {
-    std::array<std::array<double, together>, 3> at{};
+    std::array<std::array<double, Field::together>, 3> at{};
     for (std::size_t i = 0; i < points.size(); ++i) {
       for (std::size_t a = 0; a < 3; ++a) at[a][i] = k * points[i][a];
     }
-    distances(at[0].data(), at[1].data(), at[2].data(), count_of(points), near, values);
+    std::array<double, Field::together> sheet{};
+    constexpr int lanes = 8;  // whole registers: a point left over takes as long as one of them
+    distances(at[0].data(), at[1].data(), at[2].data(), (count_of(points) + lanes - 1) / lanes * lanes, near,
+              sheet.data());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Point& p = points[i];
       const double hull = sdf::rectangle(std::sqrt(p[0] * p[0] + p[1] * p[1]), p[2], radius, half);
-      values[i] = hull > half_sheet ? hull : std::max(hull, values[i] / k - half_sheet);
+      values[i] = hull > half_sheet ? hull : std::max(hull, sheet[i] / k - half_sheet);
     }
   };
   Field field = solid(
@@ -51,12 +51,7 @@ Field gyroid(Values v) {
       },
       {-radius, -radius, -half}, {radius, radius, half}, radius,
       1 / (0.2 * v[0] - half_sheet));  // the minimal surface bends to a radius of 0.2 cell
-  field.many = [=](std::span<const Point> points, double* values) {
-    for (; points.size() > together; points = points.subspan(together), values += together) {
-      some(points.first(together), values);
-    }
-    some(points, values);
-  };
+  field.some = some;
   field.ball_mm = std::hypot(radius, half);
   return field;
 }
