@@ -74,7 +74,7 @@ refused "{'descr': '<f4', 'fortran_order': True, 'shape': (4294967296, 429496729
 refused "{'descr': '<f4', 'fortran_order': True, 'shape': (65536, 65536, 65536), }" 'has 65536 x 65536 x 65536 values; up to 2\^40 are read'
 refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 65536, 65536), }" 'has images of more than 2\^28'
 refused "{'descr': '<f8', 'fortran_order': True, 'shape': (8192, 8192, 8192), }" '(requires more than|is cut off)'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (40000, 2, 2), }" 'has 2 x 2 x 40000 voxels'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (70000, 2, 2), }" 'has 70000 x 2 x 2 values; up to 65536 along an axis'
 refused "{'descr': '<f4', 'shape': (2, 3), }" 'its NumPy header is damaged'
 refused "{'descr': '<f4', 'fortran_order': Maybe, 'shape': (2, 3), }" 'its NumPy header is damaged'
 refused "import os" 'its NumPy header is damaged'

@@ -190,6 +190,8 @@ fails 64 'does not apply to images' vam-slice stack --up y -o x.vdb
 fails 65 'array.npy: is a NumPy array .*, not a mesh; one of' vam-slice array.npy -o x.vdb
 fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb
 fails 65 'more than 4096 per axis' vam-slice cube.stl --voxel 0.001 -o x.vdb
+ok "a rod of 33,000 slices" vam-slice --shape cylinder:diameter=0.02,height=33 --voxel 0.001 --extent part -o rod.vdb
+ok "which others read" vam-sinogram --angles 4 rod.vdb -o rod.exr
 fails 65 'high.stl: covers no voxel' vam-slice cube.stl --insert high.stl --no-centre -o x.vdb
 fails 65 'vial.s inner radius' vam-slice cube.stl --insert far.stl --no-centre -o x.vdb
 fails 65 'black' vam-slice black -o x.vdb

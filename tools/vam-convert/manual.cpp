@@ -75,7 +75,8 @@ cli::Manual manual() {
        "needed "
        "last; 4 bytes for each lit pixel of frames that become sinograms; a volume as it is stored.",
        "An array is parsed in a process of its own (vam-formats(7), DESCRIPTION). Sizes are up to 65536 along an axis "
-       "(volumes: 32768) and 2^28 an image. Values that are not finite are refused."},
+       "and "
+       "2^28 an image. Values that are not finite are refused."},
       {"vam-dose", "vam-project", "vam-score", "vam-view"}};
 }
 

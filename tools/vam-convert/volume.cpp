@@ -24,10 +24,10 @@ model::Grid grid_of(const Options& options, const io::ArraySize& size) {
 }
 
 void require_voxels(const std::string& name, const io::ArraySize& size) {
-  constexpr int most = 32768;
+  constexpr int most = 65536;
   if (std::max({size.images, size.rows, size.columns}) <= most) return;
   throw Error{Fault::data, name + ": has " + std::to_string(size.columns) + " x " + std::to_string(size.rows) + " x " +
-                               std::to_string(size.images) + " voxels; up to 32768 along an axis are read"};
+                               std::to_string(size.images) + " voxels; up to 65536 along an axis are read"};
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
 // Refused beyond these, before dense memory is taken.
-constexpr int max_side = 1 << 15;                          // voxels
+constexpr int max_side = 1 << 16;                          // voxels
 constexpr double max_void = 8192;                          // voxels a side that are added around a part
 constexpr std::int64_t max_slice = std::int64_t{1} << 28;  // voxels: 1 GiB as float
 
@@ -67,7 +67,7 @@ CoordBBox box_of(const FloatGrid& sparse) {
   if (side(0) > max_side || side(1) > max_side || side(2) > max_side || side(0) * side(1) > max_slice) {
     throw std::runtime_error("grid '" + sparse.getName() + "' spans " + std::to_string(side(0)) + " x " +
                              std::to_string(side(1)) + " x " + std::to_string(side(2)) +
-                             " voxels; up to 32768 per axis and 2^28 a slice can be read");
+                             " voxels; up to 65536 per axis and 2^28 a slice can be read");
   }
   return box;
 }

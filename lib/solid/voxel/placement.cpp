@@ -15,7 +15,8 @@ namespace vam::solid {
 
 namespace {
 
-constexpr int most_voxels = 4096;     // a side; 256 GiB were it dense
+constexpr int most_voxels = 4096;     // a side of a slice; 64 MiB were it dense
+constexpr int most_slices = 65536;    // as many images as a stack may have rows
 constexpr double rounding_mm = 1e-6;  // a part made to measure may touch the border
 
 // A voxel's centre may be that far beyond the surface that cuts the voxel, in voxels: half the diagonal in the plane.
@@ -168,11 +169,12 @@ model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius
   const double first = std::floor(part.box.low[2] / voxel_mm - lattice.z_phase + 1e-9);
   const double last = std::max(std::ceil(part.box.high[2] / voxel_mm - lattice.z_phase - 1e-9), first + 1);
   const double side = 2 * half + odd;
-  if (side > most_voxels || last - first > most_voxels) {
+  if (side > most_voxels || last - first > most_slices) {
     throw Error{Fault::data, subject + ": " + format_number(side) + " x " + format_number(side) + " x " +
                                  format_number(last - first) + " voxels of " + format_number(voxel_mm) +
-                                 " mm are more than " + std::to_string(most_voxels) +
-                                 " per axis; check its unit, or use larger voxels or a smaller part"};
+                                 " mm are more than " + std::to_string(most_voxels) + " per axis in " +
+                                 std::to_string(most_slices) +
+                                 " slices; check its unit, or use larger voxels or a smaller part"};
   }
   return model::centred_grid(static_cast<int>(side), static_cast<int>(side), static_cast<int>(last - first), voxel_mm,
                              (first + lattice.z_phase + 0.5) * voxel_mm);

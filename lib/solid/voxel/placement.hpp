@@ -80,7 +80,7 @@ struct Lattice {
 };
 
 /// The smallest grid around the axis that holds the part with one voxel to spare in x and y, and at least `radius_mm`
-/// in every direction; nx = ny. Throws Fault::data above 4096 voxels a side.
+/// in every direction; nx = ny. Throws Fault::data above 4096 voxels a side, or 65536 slices.
 [[nodiscard]] model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius_mm,
                                       const Lattice& lattice, const std::string& subject);
 

@@ -111,6 +111,17 @@ TEST_CASE("grids: centred, even, faces at whole voxels, the part inside") {
   CHECK(data_error([&] { (void)grid_around(part, 1e-3, 0, {}, "test"); }).find("4096") != std::string::npos);
 }
 
+TEST_CASE("a thin rod may have 65536 slices, and no more") {
+  PlacedExtent rod;
+  rod.box = {{-0.012, -0.012, 0}, {0.012, 0.012, 65.536}};
+  rod.radius_mm = 0.012;
+  CHECK(grid_around(rod, 1e-3, 0, {}, "test").nz == 65536);
+  rod.box.high[2] += 1e-3;
+  CHECK(data_error([&] {
+          (void)grid_around(rod, 1e-3, 0, {}, "test");
+        }).find("26 x 26 x 65537 voxels of 0.001 mm are more than 4096 per axis in 65536 slices") != std::string::npos);
+}
+
 TEST_CASE("a part that leaves the writable cylinder is refused with both numbers") {
   const model::Printer printer;
   const Writable real = writable(printer, 12.7 / 1.53);
