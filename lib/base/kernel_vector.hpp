@@ -13,6 +13,13 @@ constexpr int vector_floats = 4;
 
 using Vector = float __attribute__((vector_size(vector_floats * 4), may_alias, aligned(4)));
 
+/// The constraint of assembler text that keeps a value in a vector register.
+#if defined(__aarch64__)
+#define VAM_PINNED "+w"
+#else
+#define VAM_PINNED "+x"
+#endif
+
 inline Vector load(const float* from) { return *reinterpret_cast<const Vector*>(from); }
 inline void store(float* to, Vector value) { *reinterpret_cast<Vector*>(to) = value; }
 

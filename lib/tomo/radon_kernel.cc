@@ -2,17 +2,13 @@
 // one vector, then applies it to up to four slabs: no branch, no gather, no index arithmetic in the inner loop.
 #include "tomo/private/radon_kernel.hpp"
 
+#include "base/kernel_vector.hpp"
+
 namespace vam::tomo::VAM_SIMD {
 
 namespace {
 
-#if defined(__AVX512F__)
-constexpr int width = 16;
-#elif defined(__AVX2__)
-constexpr int width = 8;
-#else
-constexpr int width = 4;
-#endif
+constexpr int width = vam::VAM_SIMD::vector_floats;
 using Vector = float __attribute__((vector_size(width * 4), may_alias));
 
 using Bits = int __attribute__((vector_size(width * 4), may_alias));
@@ -36,7 +32,7 @@ inline void tabulate(const Gather& job, float pair, Table& table) {
   const Footprints& f = *job.footprints;
   const float last = job.last;
   float zero = 0;
-  asm("" : "+x"(zero));  // a maximum with a known zero becomes a comparison and a masked move, twice the work
+  asm("" : VAM_PINNED(zero));  // a maximum with a known zero becomes a comparison and a masked move, twice the work
   for (int e = 0; e < pair_entries; ++e) {
     const float start = job.first[e] + pair * f.step[e];
     const int base = static_cast<int>(least(most(start, zero), last));
@@ -89,7 +85,9 @@ inline void apply(const Gather& job, const Table& table, int output, bool odd, i
   }
   // Without this the compiler puts the odd sums off until after the even ones are stored, and spills their operands.
 #pragma GCC unroll 4
-  for (int v = 0; v < registers; ++v) asm volatile("" : "+x"(even_sum[v]), "+x"(odd_sum[v]));
+  for (int v = 0; v < registers; ++v) {
+    asm volatile("" : VAM_PINNED(even_sum[v]), VAM_PINNED(odd_sum[v]));
+  }
 #pragma GCC unroll 4
   for (int v = 0; v < registers; ++v) {
     const int at = lane + v * width;
