@@ -36,6 +36,22 @@ for script in vam-print vam-calibrate-all; do
     grep -q "Fl -${option#--} " "$page" || grep -q "Fl -${option#--}\$" "$page"; report $? "$script: $option is in the manual"
   done
   grep -q "$script" "$VAM_SOURCE/README.md"; report $? "$script: in README"
+
+  for shell in bash zsh fish; do
+    "$VAM_SOURCE/scripts/completion" "$VAM_SOURCE/scripts/$script" $shell >"$script.$shell"
+    for option in display light set home version; do
+      is "$script: $shell completes --$option" "$(grep -cE -- "(--|-l )$option( |\[|\$|')" "$script.$shell")" 1
+    done
+  done
+  ok "$script: bash accepts its completion" bash -n "$script.bash"
+  is "$script: a value, a switch, and what may be repeated" \
+    "$(grep -c "^  '--display\[.*\]:DEVICE:_files'" "$script.zsh") $(grep -c "^  '--home\[.*\.\]' " "$script.zsh") $(grep -c "^  '\*--set" "$script.zsh")" '1 1 1'
+
+  mkdir -p installed/bin installed/share/man/man1  # as packages have it
+  cp "$VAM_SOURCE/scripts/$script" installed/bin
+  gzip -c "$page" >"installed/share/man/man1/$script.1.gz"
+  "installed/bin/$script" --man >"$script.1"
+  same "$script: --man shows a compressed page" "$page" "$script.1"
 done
 
 for page in "$VAM_SOURCE"/man/*.7; do

@@ -1,0 +1,28 @@
+#!/bin/sh
+# What is installed under a user's prefix, and the packages' share of it: each tool with its manual and completions.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+put() { cmake --install "$VAM_BUILD" --prefix "$PWD/$1" ${2:+--component "$2"} >.log/install || report 1 "$1 is installed"; }
+listed() { (cd "$1" && find . -type f | sort); }
+put all
+for component in tools devices documents; do put "$component" "$component"; listed "$component" >>parts; done
+sort parts >sorted
+listed all >whole
+same 'each file is in one component' whole sorted
+
+for tool in $(cd "$VAM_BUILD/bin" && ls) vam-print vam-calibrate-all; do
+  missing=
+  for file in "bin/$tool" "share/man/man1/$tool.1" "share/bash-completion/completions/$tool" \
+    "share/zsh/site-functions/_$tool" "share/fish/vendor_completions.d/$tool.fish"; do
+    [ -s "all/$file" ] || missing="$missing $file"
+  done
+  is "$tool: program, manual, completions" "$missing" ''
+done
+is 'no manual is without a tool' "$(ls all/share/man/man1 | wc -l)" "$(ls all/bin | wc -l)"
+is 'what needs devices is apart' "$(ls devices/bin | tr '\n' ' ')" \
+  'vam-calibrate-all vam-capture vam-devices vam-print vam-sim-camera vam-sim-stage vam-stage '
+ok 'the library for its stage is beside the simulator' test -f "$(devices/bin/vam-sim-stage --shim)"
+aravis=$(for tool in tools/bin/*; do ldd "$tool" | grep -c libaravis; done | sort -u)
+is 'no other tool loads the library of cameras' "$aravis" 0
+
+done_testing
