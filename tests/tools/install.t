@@ -1,5 +1,6 @@
 #!/bin/sh
 # What is installed under a user's prefix, and the packages' share of it: each tool with its manual and completions.
+# debian/ knows the version and the libraries.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 put() { cmake --install "$VAM_BUILD" --prefix "$PWD/$1" ${2:+--component "$2"} >.log/install || report 1 "$1 is installed"; }
@@ -24,5 +25,12 @@ is 'what needs devices is apart' "$(ls devices/bin | tr '\n' ' ')" \
 ok 'the library for its stage is beside the simulator' test -f "$(devices/bin/vam-sim-stage --shim)"
 aravis=$(for tool in tools/bin/*; do ldd "$tool" | grep -c libaravis; done | sort -u)
 is 'no other tool loads the library of cameras' "$aravis" 0
+
+debian=$VAM_SOURCE/debian
+is 'the packages have the version of the tools' "$(sed -n '1s/^vam-tools (\(.*\)) .*/\1/p' "$debian/changelog")" \
+  "$(vam-slice --version | sed -n '1s/^vam-slice \([0-9.]*\).*/\1/p')"
+sed -n "/^packages='/,/^'/p" "$VAM_SOURCE/scripts/setup" | tr ' ' '\n' | grep -E '^(fonts|lib|nlohmann|zlib)' | sort >needed
+sed -n '/^Build-Depends/,/^[A-Z].*:/s/^ \([a-z0-9.+-]*\).*/\1/p' "$debian/control" | grep -E '^(fonts|lib|nlohmann|zlib)' | sort >known
+same 'they are built with the libraries that scripts/setup installs' needed known
 
 done_testing
