@@ -13,9 +13,13 @@ namespace {
 std::string program = "vam";  // NOLINT: one per process
 Talk settings;                // NOLINT: likewise
 
+// What a damaged file holds may be quoted in it; the cause and the remedy stand at the ends.
 void put(const std::string& line) {
+  constexpr std::size_t end = 2048;
   status_line::make_way();
-  std::fprintf(stderr, "%s\n", printable(line).c_str());
+  std::string shown = printable(line);
+  if (shown.size() > 2 * end) shown = shown.substr(0, end) + " ... " + shown.substr(shown.size() - end);
+  std::fprintf(stderr, "%s\n", shown.c_str());
 }
 }  // namespace
 

@@ -47,6 +47,14 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t most = 64;
+  if (text.size() <= most) return "'" + printable(text) + "'";
+  std::size_t end = most;
+  for (; end > most - 4 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80; --end) continue;  // whole characters
+  return "'" + printable(text.substr(0, end)) + "...' (" + std::to_string(text.size()) + " bytes)";
+}
+
 std::string page_text(std::string_view text) {
   std::string shown;
   for (const char c : printable(text)) {

@@ -10,6 +10,9 @@ namespace vam {
 /// it is.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// In quotes, for a message: 'text', printable(); of a longer one than 64 bytes its begin: 'text...' (200000 bytes).
+[[nodiscard]] std::string excerpt(std::string_view text);
+
 /// As text of a page, or as the quoted value of an attribute: printable(), with <, >, &, " and ' as entities.
 [[nodiscard]] std::string page_text(std::string_view text);
 

@@ -59,6 +59,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 1) + 1;
   for (const auto& candidate : candidates) {
+    const auto [less, more] = std::minmax({word.size(), candidate.size()});
+    if (more - less >= best_distance) continue;  // so many letters are missing at least
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) {
       best_distance = distance;

@@ -68,6 +68,12 @@ is 'nothing is left of them' "$(ls -A scratch)" ''
 fails 74 'limited.exr: cannot write' sh -c 'ulimit -f 4; vam-sinogram part.vdb --angles 90 -o limited.exr'
 is 'nothing is left of it' "$(ls -A | grep -c 'limited')" 0
 
+# What a file holds is quoted by its begin; a printer file is no stream.
+python3 -c 'print("a" * 200000 + " = 1")' >long.toml
+fails 65 "long.toml:1: unknown key 'a{64}\.\.\.' \(200000 bytes\)" vam-slice box.off --printer long.toml -o x.vdb
+fails 64 "^vam-slice: x{2000}.* \.\.\. .*not section.key=value" vam-slice box.off --set "$(printf '%0100000d' 0 | tr 0 x)" -o x.vdb
+fails 64 '-: printer settings are not read from standard input; name a file' vam-slice - --printer - -o x.vdb
+
 # Places and intensities that no stack beside a vial has.
 for wrong in row=1e30:'vam:row_mm' pixel=1e9:'vam:pixel_mm' step=1e6:'vam:angle_step_deg'; do
   python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=2 ${wrong%%:*}

@@ -25,7 +25,7 @@ Fields take_fields(Bytes& bytes) {
     if (line.empty()) return fields;
     const std::size_t colon = line.find(": ");
     if (line.starts_with('#') || line.find(":=") != std::string::npos) continue;
-    if (colon == std::string::npos) bytes.fail("its header is damaged: '" + printable(line) + "' is no field");
+    if (colon == std::string::npos) bytes.fail("its header is damaged: " + excerpt(line) + " is no field");
     std::string value = line.substr(colon + 2);
     value.erase(0, std::min(value.find_first_not_of(' '), value.size()));
     value.erase(value.find_last_not_of(' ') + 1);
@@ -92,7 +92,7 @@ constexpr TypeName types[] = {
 void set_type(const Bytes& bytes, const std::string& name, Head& head) {
   const auto* type =
       std::find_if(std::begin(types), std::end(types), [&](const TypeName& t) { return name == t.name; });
-  if (type == std::end(types)) bytes.fail("has values of type '" + printable(name) + "', which are no numbers");
+  if (type == std::end(types)) bytes.fail("has values of type " + excerpt(name) + ", which are no numbers");
   head.kind = type->kind;
   head.bytes = type->bytes;
 }
@@ -105,7 +105,7 @@ std::vector<std::uint64_t> shape_of(const Bytes& bytes, const std::string& text)
   while (at < end && shape.size() < 33) {
     std::uint64_t size = 0;
     const auto [next, problem] = std::from_chars(at, end, size);
-    if (problem != std::errc{}) bytes.fail("its header is damaged: sizes '" + printable(text) + "'");
+    if (problem != std::errc{}) bytes.fail("its header is damaged: sizes " + excerpt(text));
     shape.push_back(size);
     at = std::find_if(next, end, [](char c) { return c != ' '; });
   }
@@ -139,7 +139,7 @@ Head take_nrrd_head(Bytes& bytes) {
   if (encoding == "gzip" || encoding == "gz") {
     bytes.unpack();
   } else if (encoding != "raw") {
-    bytes.fail("has values encoded as '" + printable(encoding) + "'; raw and gzip are read" + remedy);
+    bytes.fail("has values encoded as " + excerpt(encoding) + "; raw and gzip are read" + remedy);
   }
   return head;
 }

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
 
@@ -32,7 +33,7 @@ double unit_mm(const XmlElement& model) {
   for (const auto& [name, mm] : units) {
     if (unit == name) return mm;
   }
-  throw MeshProblem{"unknown 3MF unit '" + std::string(unit) + "'"};
+  throw MeshProblem{"unknown 3MF unit " + excerpt(unit)};
 }
 
 class ModelReader {
@@ -78,8 +79,8 @@ class ModelReader {
           (space != spaces_.end() && std::find(harmless.begin(), harmless.end(), space->second) != harmless.end())) {
         continue;
       }
-      throw MeshProblem{"needs the 3MF extension '" + (space != spaces_.end() ? space->second : prefix) +
-                        "', which is not read; export it as a plain mesh"};
+      throw MeshProblem{"needs the 3MF extension " + excerpt(space != spaces_.end() ? space->second : prefix) +
+                        ", which is not read; export it as a plain mesh"};
     }
   }
 
@@ -124,10 +125,9 @@ class ModelReader {
 
   [[noreturn]] static void wrong(const XmlElement& element, std::string_view attribute) {
     const auto text = element.attribute(attribute);
-    throw MeshProblem{
-        "its <" + std::string(element.name) + "> has " +
-        (text ? std::string(attribute) + " '" + std::string(*text) + "'" : "no " + std::string(attribute)) +
-        "; it is damaged"};
+    throw MeshProblem{"its <" + std::string(element.name) + "> has " +
+                      (text ? std::string(attribute) + " " + excerpt(*text) : "no " + std::string(attribute)) +
+                      "; it is damaged"};
   }
   [[nodiscard]] static double number(const XmlElement& element, std::string_view attribute) {
     const auto value = parse_number(element.attribute(attribute).value_or(""));

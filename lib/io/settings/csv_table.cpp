@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
@@ -54,8 +55,8 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
   const std::string& cell = rows[row][column];
   const auto value = parse_number(cell);
   if (value && std::isfinite(*value)) return *value;
-  throw Error{Fault::data,
-              source + ":" + std::to_string(lines[row]) + ": " + columns[column] + " '" + cell + "' is not a number"};
+  throw Error{Fault::data, source + ":" + std::to_string(lines[row]) + ": " + columns[column] + " " + excerpt(cell) +
+                               " is not a number"};
 }
 
 CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,

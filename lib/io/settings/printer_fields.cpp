@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "model/device_schemes.hpp"
 
@@ -105,7 +106,7 @@ std::string word_objection(const PrinterField& field, const std::string& word) {
   for (const auto& allowed : field.words) {
     if (word == allowed) return "";
   }
-  return "'" + word + "' is not one of " + join(field.words, ", ");
+  return excerpt(word) + " is not one of " + join(field.words, ", ");
 }
 
 // No device is a value, too: a tool that needs one reports it.
@@ -116,7 +117,7 @@ std::string device_objection(const PrinterField& field, const std::string& devic
   if (colon != std::string::npos && std::find(known.begin(), known.end(), device.substr(0, colon)) != known.end()) {
     return "";
   }
-  return "'" + device + "': unknown device scheme; use one of " + join(known, ":, ") + ":";
+  return excerpt(device) + ": unknown device scheme; use one of " + join(known, ":, ") + ":";
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "base/utc.hpp"
 #include "io/settings/calibration_record.hpp"
@@ -130,8 +131,8 @@ void read_section(Printer& printer, const toml::table& table, std::string_view s
     const std::string where = place(subject, key.source());
     const PrinterField* field = find_field(section, key.str());
     if (field == nullptr) {
-      throw Error{Fault::data, where + ": unknown key '" + std::string(key.str()) + "' in [" + std::string(section) +
-                                   "]" + suggestion(section, key.str())};
+      throw Error{Fault::data, where + ": unknown key " + excerpt(key.str()) + " in [" + std::string(section) + "]" +
+                                   suggestion(section, key.str())};
     }
     assign(printer, *field, node, Fault::data, where);
   }
@@ -143,11 +144,11 @@ void read_table(Printer& printer, const toml::table& root, const std::string& su
     const auto names = section_names();
     if (std::find(names.begin(), names.end(), key.str()) == names.end()) {
       const std::string hint = node.is_table() ? suggestion(key.str(), "") : suggestion("", key.str());
-      throw Error{Fault::data, where + ": unknown " + (node.is_table() ? "section" : "key") + " '" +
-                                   std::string(key.str()) + "'" + hint};
+      throw Error{Fault::data,
+                  where + ": unknown " + (node.is_table() ? "section" : "key") + " " + excerpt(key.str()) + hint};
     }
     if (!node.is_table()) {
-      throw Error{Fault::data, where + ": '" + std::string(key.str()) + "' must be a section, not " + type_name(node)};
+      throw Error{Fault::data, where + ": " + excerpt(key.str()) + " must be a section, not " + type_name(node)};
     }
     read_section(printer, *node.as_table(), key.str(), subject);
   }
@@ -234,6 +235,7 @@ std::string settings_file(const std::string& file) {
 }
 
 std::string slurp(const std::string& file) {
+  if (file == "-") throw Error{Fault::usage, "-: printer settings are not read from standard input; name a file"};
   if (std::filesystem::is_directory(file)) throw Error{Fault::no_input, file + ": is a folder, not a printer file"};
   std::ifstream stream(file, std::ios::binary);
   std::string text(most_bytes + 1, '\0');

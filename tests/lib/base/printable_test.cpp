@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
 #include <string_view>
 
 TEST_CASE("control characters are shown, not sent") {
@@ -33,4 +34,13 @@ TEST_CASE("a name in a page is escaped inside its link") {
 
 TEST_CASE("a text in a page is escaped") {
   CHECK(vam::page_text("a < b & \"c\" > 'd'\n") == "a &lt; b &amp; &quot;c&quot; &gt; &#39;d&#39;\\n");
+}
+
+TEST_CASE("a long text is quoted by its begin") {
+  CHECK(vam::excerpt("a\tb") == "'a\\tb'");
+  const std::string whole(64, 'x');
+  CHECK(vam::excerpt(whole) == "'" + whole + "'");
+  CHECK(vam::excerpt(whole + "y") == "'" + whole + "...' (65 bytes)");
+  const std::string cut = std::string(63, 'x') + "\xc3\xa4z";  // within a character
+  CHECK(vam::excerpt(cut) == "'" + std::string(63, 'x') + "...' (66 bytes)");
 }
