@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "base/memory.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/model_part.hpp"
 #include "io/mesh/private/zip_archive.hpp"
@@ -15,7 +16,10 @@ namespace {
 
 constexpr std::uint64_t max_triangles = std::uint64_t{1} << 25;
 constexpr std::uint64_t max_points = std::uint64_t{1} << 26;
-constexpr std::uint64_t max_instances = std::uint64_t{1} << 20;
+constexpr std::uint64_t point_bytes = 24;
+constexpr std::uint64_t triangle_bytes = 68;                    // as a face of a soup and as a triangle
+constexpr std::uint64_t room_bytes = std::uint64_t{160} << 20;  // of what the child may take: apart.hpp
+constexpr std::uint64_t room_ratio = 48;
 constexpr std::uint64_t plenty = std::uint64_t{1} << 40;  // sums end here, before they overflow
 constexpr int max_depth = 64;
 
@@ -31,7 +35,7 @@ std::string without_slash(const std::string& path) { return path.starts_with('/'
 
 class Package {
  public:
-  explicit Package(std::string_view bytes) : archive_(bytes) {
+  explicit Package(std::string_view bytes) : archive_(bytes), room_(room_bytes + room_ratio * bytes.size()) {
     if (archive_.has("_rels/.rels")) {
       root_ = without_slash(model_target([&](const auto& take) { archive_.read("_rels/.rels", take); }));
     }
@@ -44,17 +48,28 @@ class Package {
     const std::vector<Instance>& build = part(root_).build;
     if (build.empty()) throw MeshProblem{"its build has no item; there is nothing to print"};
     for (const Instance& item : build) add(all, expanded(root_, item, 0));
-    if (all.triangles > max_triangles || all.points > max_points || all.instances > max_instances) {
-      throw MeshProblem{"its components expand to " + number(all.instances) + " objects of " + number(all.triangles) +
-                        " triangles and " + number(all.points) + " vertices; up to " + number(max_instances) + ", " +
-                        number(max_triangles) + " and " + number(max_points) + " are read"};
-    }
+    require_room(all);
+    soup_.points.reserve(all.points);
+    soup_.faces.reserve(all.triangles);
     for (const Instance& item : build) place(root_, item, {});
     if (soup_.faces.empty() && all.instances == 0) throw MeshProblem{"its build has supports only, and no part"};
     return std::move(soup_);
   }
 
  private:
+  void require_room(const Expanded& all) const {
+    const std::string expands = "its components expand to " + number(all.instances) + " objects of " +
+                                number(all.triangles) + " triangles and " + number(all.points) + " vertices; ";
+    if (all.triangles > max_triangles || all.points > max_points || all.instances > max_instances) {
+      throw MeshProblem{expands + "up to " + number(max_instances) + ", " + number(max_triangles) + " and " +
+                        number(max_points) + " are read"};
+    }
+    const std::uint64_t needed = all.triangles * triangle_bytes + all.points * point_bytes;
+    if (needed <= room_) return;
+    throw MeshProblem{expands + "they need " + in_gib(static_cast<double>(needed)) +
+                      " of memory, and those of a file of " + "its size may take " +
+                      in_gib(static_cast<double>(room_)) + "; save it as a plain mesh (STL)"};
+  }
   static std::string number(std::uint64_t count) { return count >= plenty ? "more than 10^12" : std::to_string(count); }
 
   const ModelPart& part(const std::string& name) {
@@ -122,6 +137,7 @@ class Package {
   }
 
   ZipArchive archive_;
+  std::uint64_t room_;  // bytes for what the components expand to
   std::string root_;
   std::map<std::string, ModelPart> parts_;
   std::map<std::pair<std::string, unsigned>, Expanded> counted_;

@@ -105,7 +105,11 @@ class ModelReader {
     object_->triangles.push_back({corner(element, "v1"), corner(element, "v2"), corner(element, "v3")});
   }
 
-  [[nodiscard]] Instance instance(const XmlElement& element) const {
+  [[nodiscard]] Instance instance(const XmlElement& element) {
+    if (++instances_ > max_instances) {
+      throw MeshProblem{"has more than " + std::to_string(max_instances) +
+                        " items and components, the most that are read"};
+    }
     Instance made;
     made.part = element.attribute("path").value_or("");
     made.object = number_of_object(element, "objectid");
@@ -155,6 +159,7 @@ class ModelReader {
   int depth_ = 0;
   int object_depth_ = 0;
   std::size_t triangles_ = 0;
+  std::uint64_t instances_ = 0;
   double unit_ = 1;
   bool found_ = false;
 };

@@ -13,6 +13,7 @@ namespace vam::io {
 
 namespace {
 
+constexpr XML_Index longest_tag = XML_Index{1} << 20;
 constexpr char separator = '\n';  // between namespace and name; no name holds one
 
 struct Parsing {
@@ -91,7 +92,14 @@ void parse_xml(const ByteFeed& feed, const XmlEvents& events) {
     throw MeshProblem{"its XML is wrong in line " + std::to_string(XML_GetCurrentLineNumber(parser.get())) + ": " +
                       XML_ErrorString(XML_GetErrorCode(parser.get())) + "; it is truncated or damaged"};
   };
-  feed([&](std::string_view bytes) { parse(bytes, false); });
+  XML_Index fed = 0;
+  feed([&](std::string_view bytes) {
+    parse(bytes, false);
+    fed += count_of(bytes);
+    if (fed - XML_GetCurrentByteIndex(parser.get()) <= longest_tag) return;  // each piece has it read from its begin
+    throw MeshProblem{"its XML has a tag of more than 1 MiB in line " +
+                      std::to_string(XML_GetCurrentLineNumber(parser.get())) + "; it is damaged"};
+  });
   parse("", true);
 }
 

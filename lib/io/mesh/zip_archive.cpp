@@ -10,6 +10,8 @@ namespace vam::io {
 
 namespace {
 
+constexpr std::uint64_t most_unpacked = std::uint64_t{64} << 20;  // and as often what the archive has
+constexpr std::uint64_t most_ratio = 64;
 constexpr zip_flags_t name_flags = ZIP_FL_NOCASE;  // Open Packaging Conventions: names differ by more than case
 
 [[noreturn]] void damaged(const std::string& what, zip_error_t* error) {
@@ -26,7 +28,7 @@ struct CloseZipFile {
 
 void ZipArchive::Close::operator()(zip* archive) const { zip_discard(archive); }
 
-ZipArchive::ZipArchive(std::string_view bytes) {
+ZipArchive::ZipArchive(std::string_view bytes) : left_(most_unpacked + most_ratio * bytes.size()) {
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
@@ -51,13 +53,18 @@ std::string ZipArchive::first_with(std::string_view suffix) const {
   return "";
 }
 
-void ZipArchive::read(const std::string& name, const std::function<void(std::string_view)>& take) const {
+void ZipArchive::read(const std::string& name, const std::function<void(std::string_view)>& take) {
   const std::unique_ptr<zip_file_t, CloseZipFile> file(zip_fopen(archive_.get(), name.c_str(), name_flags));
   if (file == nullptr) damaged(name, zip_get_error(archive_.get()));
   std::vector<char> piece(std::size_t{1} << 16);
   zip_int64_t got = 0;
   while ((got = zip_fread(file.get(), piece.data(), piece.size())) > 0) {
-    take({piece.data(), static_cast<std::size_t>(got)});
+    const auto size = static_cast<std::size_t>(got);
+    if (size > left_) {
+      throw MeshProblem{"unpacks to more than 64 MiB and 64 times its size; it is damaged, or save it as STL"};
+    }
+    left_ -= size;
+    take({piece.data(), size});
   }
   if (got < 0) damaged(name, zip_file_get_error(file.get()));
 }

@@ -16,6 +16,7 @@
 #include "io/settings/resin_record.hpp"
 #include "io/settings/response_file.hpp"
 #include "lib/io/box_mesh.hpp"
+#include "lib/io/cpu_time.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "lib/io/zip_writer.hpp"
 #include "trials.hpp"
@@ -30,17 +31,6 @@ struct Sample {
   std::string bytes;
   std::function<void(const std::string& path)> read;
 };
-
-double cpu_s() {
-  double sum = 0;
-  for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage used{};
-    getrusage(who, &used);
-    sum += static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-           1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-  }
-  return sum;
-}
 
 double most_mib() {  // of this process and the largest child so far
   long most = 0;

@@ -7,6 +7,7 @@
 #include "fault_of.hpp"
 #include "io/mesh/file.hpp"
 #include "lib/io/box_mesh.hpp"
+#include "lib/io/cpu_time.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
 
@@ -127,6 +128,34 @@ TEST_CASE("3MF: rejects unbounded components and non-mesh geometry") {
   CHECK(has(
       refusal(folder, package("<!DOCTYPE model [<!ENTITY a \"aaaa\">]>" + model(object(1, mesh_xml(box())), item(1)))),
       "declares a document type"));
+}
+
+TEST_CASE("3MF: what a small file unpacks and expands to is bounded, and refused with numbers") {
+  const scratch::Folder folder;
+  const auto packed_refusal = [&](const std::string& root) {
+    Zip zip;
+    zip.add_packed("3D/3dmodel.model", root);
+    const std::string bytes = zip.done();
+    const double begun_s = cpu_s();
+    const std::string line = refusal(folder, bytes);
+    CHECK(cpu_s() - begun_s < 2);
+    return line;
+  };
+  const auto items = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += item(1);
+    return text;
+  };
+  const std::string one = object(1, mesh_xml(box()));
+  const std::string name = "name=\"" + std::string(3 << 20, 'x') + "\"";
+  CHECK(
+      has(packed_refusal(model("<object id=\"1\" " + name + "/>", item(1))), "has a tag of more than 1 MiB in line 1"));
+  CHECK(has(packed_refusal(model(one, item(1)) + std::string(70 << 20, ' ')),
+            "unpacks to more than 64 MiB and 64 times"));
+  CHECK(has(packed_refusal(model(one, items(170'000))),
+            "expand to 170000 objects of 2040000 triangles and 1360000 vertices; they need 0.16 GiB of memory, and "
+            "those of a file of its size may take 0.157 GiB; save it as a plain mesh (STL)"));
+  CHECK(has(packed_refusal(model(one, items((1 << 20) + 1))), "has more than 1048576 items and components"));
 }
 
 TEST_CASE("3MF: the unit and the place of the build item count") {

@@ -63,7 +63,8 @@ struct MeshFormat {
 [[nodiscard]] PolygonSoup parse_off(const std::string& bytes);
 
 /// Every build item placed with its components, the model's unit converted to mm. Throws MeshProblem: what the parts
-/// throw, a component loop, more than 2^25 triangles, 2^26 vertices or 2^20 objects in all, a beam lattice.
+/// throw, a component loop, more than 2^25 triangles, 2^26 vertices or 2^20 objects in all, or more than fit in the
+/// memory of the child for a file of its size, a beam lattice.
 [[nodiscard]] PolygonSoup parse_3mf(const std::string& bytes);
 
 }  // namespace vam::io

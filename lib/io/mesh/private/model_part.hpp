@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct Instance {
   ComponentPlacement placement;
 };
 
+inline constexpr std::uint64_t max_instances = std::uint64_t{1} << 20;
+
 struct Object3mf {
   std::vector<std::array<double, 3>> points;  // mm
   std::vector<std::array<int, 3>> triangles;  // indices as the file has them
@@ -42,7 +45,8 @@ struct ModelPart {
 };
 
 /// Throws MeshProblem: not XML, a unit or an extension that is not
-/// known, a number or a reference that is none, more than 2^25 triangles, a document type declaration.
+/// known, a number or a reference that is none, more than 2^25 triangles or max_instances of objects, a document type
+/// declaration.
 [[nodiscard]] ModelPart parse_model_part(const ByteFeed& feed);
 
 /// The target of the first relationship whose type ends in "/3dmodel"; empty when there is none. Throws MeshProblem.

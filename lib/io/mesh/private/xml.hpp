@@ -25,7 +25,8 @@ struct XmlEvents {
 
 using ByteFeed = std::function<void(const std::function<void(std::string_view)>&)>;
 
-/// Throws MeshProblem: not well-formed, a document type declaration (entities); and what the events throw.
+/// Throws MeshProblem: not well-formed, a document type declaration (entities), a tag or comment of more than 1 MiB;
+/// and what the events throw.
 void parse_xml(const ByteFeed& feed, const XmlEvents& events);
 
 }  // namespace vam::io

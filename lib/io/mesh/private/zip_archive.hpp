@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,14 +21,15 @@ class ZipArchive {
   /// The name of the first file that ends in `suffix`; empty when there is none.
   [[nodiscard]] std::string first_with(std::string_view suffix) const;
   /// Passes a file by, unpacked, some 64 KiB at a time; its checksum is held to. Throws MeshProblem: no such file,
-  /// damaged.
-  void read(const std::string& name, const std::function<void(std::string_view)>& take) const;
+  /// damaged, more in all than 64 MiB and 64 times the archive.
+  void read(const std::string& name, const std::function<void(std::string_view)>& take);
 
  private:
   struct Close {
     void operator()(zip* archive) const;
   };
   std::unique_ptr<zip, Close> archive_;
+  std::uint64_t left_;  // bytes that may yet be unpacked
 };
 
 }  // namespace vam::io
