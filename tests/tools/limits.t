@@ -21,6 +21,12 @@ fails 64 '2 inputs are standard input' vam-check - -
 fails 64 '2 inputs are standard input' vam-sdf height - -
 fails 64 '2 inputs are standard input' vam-curethrough model - --target -
 fails 65 'part.vdb: is a volume \(OpenVDB\), not a mesh' vam-slice part.vdb -o x.vdb
+fails 65 'stdin: the mesh is empty' sh -c 'timeout 60 cat /dev/zero | vam-slice - -o x.vdb'
+fails 65 'stdin: not a mesh of a known format' sh -c 'timeout 60 yes | vam-slice - -o x.vdb'
+for device in zero urandom; do
+  fails 66 "/dev/$device: is a device that never ends" vam-slice /dev/$device -o x.vdb
+  fails 66 'stdin: is a device that never ends' sh -c "vam-sdf box.off - -o x.ply </dev/$device"
+done
 
 # Bytes after the last image of a stack, of one with seals and of one that is parsed in a child, in a file and a pipe.
 vam-sinogram part.vdb --angles 8 -o sealed.exr
@@ -82,7 +88,7 @@ done
 python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=22 row=99
 fails 65 'wrong.exr: vam:z_mm of image 21 is 2079, beyond 2000' vam-dose wrong.exr -o x.vdb
 tiny_print tiny.exr
-fails 65 '/dev/zero: longer than the limit of 16 MiB' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
+fails 66 '/dev/zero: is a device that never ends; name a file' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
 python3 "$VAM_SOURCE/tests/tools/exr.py" make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1
 fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam-dose far.exr --printer printer.toml -o x.vdb
 python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 value=1e30

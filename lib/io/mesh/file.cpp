@@ -1,5 +1,6 @@
 #include "io/mesh/file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -7,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/apart.hpp"
@@ -19,6 +21,8 @@ namespace vam::io {
 namespace {
 
 constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30;
+constexpr std::size_t most_corners = std::size_t{1} << 16;  // of a face
+constexpr std::size_t first_look = std::size_t{1} << 20;
 
 // A mark that some editors put before text.
 std::string without_mark(std::string bytes) {
@@ -42,6 +46,35 @@ PolygonSoup parse(const std::string& bytes) {
   // A binary STL has no signature; of no other format is anything left but text.
   if (bytes.find('\0') != std::string::npos) return parse_stl(bytes);
   throw MeshProblem{"not a mesh of a known format (" + mesh_format_names() + ")"};
+}
+
+// A pipe may never end: whether nothing that follows makes these first bytes a mesh. No format begins so, and a binary
+// STL has ended or exceeds all limits.
+bool is_hopeless(const std::string& bytes) {
+  const std::string text = without_mark(bytes);
+  const std::vector<MeshFormat>& formats = mesh_formats();
+  const auto begins = [&](const MeshFormat& format) { return format.recognises(text); };
+  if (std::any_of(formats.begin(), formats.end(), begins)) return false;
+  const std::uint64_t promised = binary_stl_bytes(bytes);
+  return promised < bytes.size() || promised > most_bytes;
+}
+
+std::string bytes_of(const std::string& path) {
+  InputFile file(path);
+  std::string bytes;
+  bool looked = false;
+  for (auto ready = file.peek(); !ready.empty(); ready = file.peek()) {
+    if (bytes.size() + ready.size() > most_bytes) {
+      throw Error{Fault::data, file.name() + ": longer than " + in_gib(static_cast<double>(most_bytes)) +
+                                   ", the most that is read of a mesh"};
+    }
+    bytes.append(ready.data(), ready.size());
+    file.skip(ready.size());
+    if (looked || bytes.size() < first_look) continue;
+    looked = true;
+    if (is_hopeless(bytes)) break;
+  }
+  return without_mark(std::move(bytes));
 }
 
 // The format of a name that is written; standard output is the first one.
@@ -78,6 +111,10 @@ ColouredMesh triangulated(PolygonSoup&& soup) {
     const auto& face = soup.faces[f];
     if (face.size() < 3)
       throw MeshProblem{"face " + std::to_string(f) + " has " + std::to_string(face.size()) + " corners"};
+    if (face.size() > most_corners) {
+      throw MeshProblem{"face " + std::to_string(f) + " has " + std::to_string(face.size()) + " corners; up to " +
+                        std::to_string(most_corners) + " are read; cut it into triangles"};
+    }
     for (const int corner : face) {
       if (corner < 0 || corner >= points) {
         throw MeshProblem{"face " + std::to_string(f) + " uses vertex " + std::to_string(corner) + " of " +
@@ -166,7 +203,7 @@ void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const 
 }
 
 ColouredMesh read_coloured_mesh(const std::string& path) {
-  const std::string bytes = without_mark(read_all(path, Content::binary, most_bytes));
+  const std::string bytes = bytes_of(path);
   const std::string name = input_name(path);
   // These are 50 bytes a triangle and read by code of ours that any bytes will do for; the rest is read apart.
   if (has_binary_stl_size(bytes)) return parsed(bytes, name);

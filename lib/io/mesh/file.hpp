@@ -13,7 +13,7 @@ namespace vam::io {
 /// Reads a mesh; the format is determined by the content, "-" is stdin. Polygons are cut into fans of triangles.
 /// Coordinates are those of the file, 3MF's converted to mm by its unit. Nothing is welded or repaired. Throws Error:
 /// no_input, io, data (unknown format, truncated, no triangle, a vertex that is not finite, a face with an index that
-/// does not exist or with fewer than three corners).
+/// does not exist or with fewer than three corners or more than 65536).
 [[nodiscard]] model::TriangleSoup read_mesh(const std::string& path);
 
 /// The same, with what PLY has of its vertices: colours, and standard uncertainties (scalar_uncertainty, mm). Throws

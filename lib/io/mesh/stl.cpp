@@ -45,8 +45,12 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+std::uint64_t binary_stl_bytes(const std::string& bytes) {
+  return bytes.size() < header_bytes ? 0 : header_bytes + triangle_bytes * triangles_promised(bytes);
+}
+
 bool has_binary_stl_size(const std::string& bytes) {
-  return bytes.size() >= header_bytes && bytes.size() == header_bytes + triangle_bytes * triangles_promised(bytes);
+  return bytes.size() >= header_bytes && bytes.size() == binary_stl_bytes(bytes);
 }
 
 PolygonSoup parse_binary_stl(const std::string& bytes) {
@@ -54,9 +58,9 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
     throw MeshProblem{"not a whole STL file: " + std::to_string(bytes.size()) + " bytes, the header alone has 84"};
   }
   const std::uint64_t count = triangles_promised(bytes);
-  if (bytes.size() < header_bytes + triangle_bytes * count) {
+  if (bytes.size() < binary_stl_bytes(bytes)) {
     throw MeshProblem{"the header promises " + std::to_string(count) + " triangles (" +
-                      std::to_string(header_bytes + triangle_bytes * count) + " bytes) but the file has " +
+                      std::to_string(binary_stl_bytes(bytes)) + " bytes) but the file has " +
                       std::to_string(bytes.size()) + " bytes; it is truncated or no STL"};
   }
   PolygonSoup soup;

@@ -1,8 +1,10 @@
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -19,6 +21,14 @@ namespace {
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 constexpr int pipe_bytes = 1 << 20;
 
+// /dev/zero, full, random and urandom, by the numbers that Linux gives them for good.
+bool never_ends(const struct stat& about) {
+  constexpr unsigned memory_devices = 1;
+  constexpr std::array<unsigned, 4> endless{5, 7, 8, 9};
+  return S_ISCHR(about.st_mode) && major(about.st_rdev) == memory_devices &&
+         std::find(endless.begin(), endless.end(), minor(about.st_rdev)) != endless.end();
+}
+
 }  // namespace
 
 InputFile::InputFile(const std::string& path, Content content) : name_(input_name(path)) {
@@ -30,8 +40,9 @@ InputFile::InputFile(const std::string& path, Content content) : name_(input_nam
     throw Error{Fault::no_input, name_ + ": cannot open: " + std::strerror(problem)};
   }
   const bool terminal = isatty(descriptor_) == 1;
-  if (S_ISDIR(about.st_mode) || (terminal && content == Content::binary)) {
+  if (S_ISDIR(about.st_mode) || never_ends(about) || (terminal && content == Content::binary)) {
     if (descriptor_ > STDIN_FILENO) close(descriptor_);
+    if (never_ends(about)) throw Error{Fault::no_input, name_ + ": is a device that never ends; name a file"};
     if (!terminal) throw Error{Fault::no_input, name_ + ": is a directory; name a file in it"};
     throw Error{Fault::usage, name_ + ": is a terminal and the input is binary; name a file or use a pipe"};
   }

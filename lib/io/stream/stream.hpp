@@ -16,7 +16,7 @@ enum class Content { binary, text };
 /// A file or stdin ("-"), read front to back through a buffer of 1 MiB. Nothing is ever sought, so that a pipe does.
 class InputFile {
  public:
-  /// Throws Error: no_input (cannot open, is a directory), usage (binary from a terminal).
+  /// Throws Error: no_input (cannot open, is a directory, is a device that never ends), usage (binary from a terminal).
   explicit InputFile(const std::string& path, Content content = Content::binary);
   ~InputFile();
   InputFile(const InputFile&) = delete;

@@ -47,7 +47,9 @@ struct MeshFormat {
 [[nodiscard]] PolygonSoup parse_stl(const std::string& bytes);
 /// 84 bytes of header and count, then 50 bytes a triangle. Throws MeshProblem when the size is not that.
 [[nodiscard]] PolygonSoup parse_binary_stl(const std::string& bytes);
-/// True when the size is exactly what the triangle count in the header asks for.
+/// What the triangle count in the header asks for; 0 where there is no header.
+[[nodiscard]] std::uint64_t binary_stl_bytes(const std::string& bytes);
+/// True when that is exactly the size.
 [[nodiscard]] bool has_binary_stl_size(const std::string& bytes);
 
 /// Capitals of ASCII as small letters.
