@@ -39,19 +39,22 @@ void check_ply_property(const std::string& element, const std::string& type, con
   throw MeshProblem{"the PLY coordinate " + name + " is of type " + type + "; float and double are read"};
 }
 
-void check_ply_header(const std::string& bytes) {
+// True where its numbers are text.
+bool check_ply_header(const std::string& bytes) {
   std::string element;
+  bool text = false;
   std::size_t begin = 0;
   for (int line = 0; begin < bytes.size(); ++line) {
     const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
     std::istringstream words(bytes.substr(begin, end - begin));
     begin = end + 1;
-    if (line < 2) continue;  // magic word and format
     std::string keyword;
     std::string first;
     std::string second;
     words >> keyword >> first >> second;
-    if (keyword == "end_header") return;
+    if (line == 1) text = first == "ascii";
+    if (line < 2) continue;  // magic word and format
+    if (keyword == "end_header") return text;
     if (keyword == "property") {
       std::string name = second;
       if (first == "list") words >> name >> name;  // behind the types of count and entries
@@ -91,14 +94,17 @@ PolygonSoup parse_obj(const std::string& bytes) {
 }
 
 PolygonSoup parse_ply(const std::string& bytes) {
-  check_ply_header(bytes);
-  std::istringstream stream(bytes);
+  const bool text = check_ply_header(bytes);
+  std::istringstream stream(text ? bytes + "\n" : bytes);   // a number that ends with the file is whole
+  stream.exceptions(std::ios::failbit | std::ios::badbit);  // CGAL reads all of a list, even behind the end
   CgalSoup soup;
   std::vector<CGAL::IO::Color> of_faces;
   std::vector<CGAL::IO::Color> of_points;
   try {
     if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces, of_faces, of_points))
       give_up("PLY", converted(std::move(soup)));
+  } catch (const std::ios_base::failure&) {
+    give_up("PLY", converted(std::move(soup)));
   } catch (const std::length_error&) {  // a list of fewer than 0 values
     give_up("PLY", converted(std::move(soup)));
   }

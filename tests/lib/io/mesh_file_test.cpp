@@ -14,6 +14,7 @@
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "lib/io/box_mesh.hpp"
+#include "lib/io/cpu_time.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
 
@@ -317,4 +318,29 @@ TEST_CASE("a PLY property without an element is reported") {
   scratch::spill(folder / "a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_heade");
   CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
   CHECK(line.find("has no end_header") != std::string::npos);
+}
+
+TEST_CASE("PLY lists that are longer than the file, and faces of a million corners, are refused soon") {
+  const scratch::Folder folder;
+  const std::string count = little(std::uint32_t{240'000'000});
+  const std::string head =
+      " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property list uint uchar notes\nend_header\n";
+  const double begun_s = cpu_s();
+  CHECK(has(refusal(folder, "ply\nformat binary_little_endian" + head + std::string(12, '\0') + count),
+            "reading stopped after 0 vertices"));
+  CHECK(has(refusal(folder, "ply\nformat ascii" + head + "0 0 0 240000000 7\n"), "reading stopped after 0 vertices"));
+  CHECK(cpu_s() - begun_s < 2);
+  std::string face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
+  for (int i = 0; i < 100'000; ++i) face += " " + std::to_string(i % 3 + 1);
+  CHECK(has(refusal(folder, face + "\n"), "face 0 has 100000 corners; up to 65536 are read; cut it into triangles"));
+}
+
+TEST_CASE("a number that ends with a PLY file is whole") {
+  const scratch::Folder folder;
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nproperty float quality\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0.5";
+  CHECK(read_mesh(folder.write("a", text)).triangles.size() == 1);
 }
