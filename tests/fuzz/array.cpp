@@ -39,6 +39,7 @@ void read_archive(const std::string& file) {
   io::arrays::PackedArray array(file, "", "archive");
   Bytes bytes([&](void* to, std::size_t count) { return array.read(to, count); }, "array");
   const auto head = take_npy_head(bytes);
+  array.require(head);
   read_all({head, std::move(bytes), {0, 1, 2}});
 }
 

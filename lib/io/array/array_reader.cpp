@@ -128,6 +128,7 @@ struct ArrayReader::State {
       arrays::PackedArray array(bytes, options.name, file.name());
       Bytes unpacked([&](void* to, std::size_t wanted) { return array.read(to, wanted); }, file.name());
       const arrays::Head head = take_npy_head(unpacked);
+      array.require(head);
       return send({head, std::move(unpacked), options.axes}, out);
     }
     if (format == Format::tiff) {

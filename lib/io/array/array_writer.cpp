@@ -9,6 +9,7 @@ namespace vam::io {
 static_assert(std::endian::native == std::endian::little, "the header states little-endian");
 
 ArrayWriter::ArrayWriter(const std::string& path, const ArraySize& size) : file_(path) {
+  file_.require_space(1.0 * sizeof(float) * size.images * size.rows * size.columns);
   file_.write(arrays::head_of_floats({size.images, size.rows, size.columns}));
 }
 

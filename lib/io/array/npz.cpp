@@ -56,8 +56,19 @@ PackedArray::PackedArray(std::string_view bytes, const std::string& name, const 
     damaged(file);
   }
   const std::string entry = chosen(names_of(archive_.get()), name, file) + std::string(ending);
+  zip_stat_t about;
+  if (zip_stat(archive_.get(), entry.c_str(), 0, &about) != 0 || (about.valid & ZIP_STAT_SIZE) == 0) damaged(file);
+  size_ = about.size;
   array_.reset(zip_fopen(archive_.get(), entry.c_str(), 0));
   if (array_ == nullptr) damaged(file);
+}
+
+void PackedArray::require(const Head& head) const {
+  const std::uint64_t promised = head.values() * static_cast<std::uint64_t>(head.bytes);
+  if (promised <= size_) return;
+  throw Error{Fault::data, file_ + ": is cut off: its header promises " + std::to_string(promised) +
+                               " bytes, but the archive has " + std::to_string(size_) +
+                               "; the program that wrote it did not finish"};
 }
 
 std::size_t PackedArray::read(void* to, std::size_t size) {

@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "io/stream/private/temporary.hpp"
 #include "io/stream/stream.hpp"
 
@@ -80,6 +82,15 @@ OutputFile::~OutputFile() { discard(); }
 void OutputFile::open_special(const std::string& path) {
   descriptor_ = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_TRUNC);
   if (descriptor_ < 0) fail(Fault::no_output, path, "cannot write", errno);
+}
+
+void OutputFile::require_space(double bytes) const {
+  struct statvfs disk = {};
+  if (is_stream() || fstatvfs(descriptor_, &disk) != 0) return;
+  const double space = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
+  if (bytes <= space) return;
+  throw Error{Fault::io, name_ + ": needs " + in_gib(bytes) + ", but its file system has " + in_gib(space) +
+                             " free; make room, or write to another"};
 }
 
 void OutputFile::write(const void* bytes, std::size_t size) {

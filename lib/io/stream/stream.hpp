@@ -73,6 +73,8 @@ class OutputFile {
   /// Bytes written so far.
   [[nodiscard]] std::uint64_t position() const { return position_; }
 
+  /// For what is written in full whatever it holds. Throws Fault::io where a file of so many bytes does not fit.
+  void require_space(double bytes) const;
   /// Throws Error: io (no space left, closed pipe where SIGPIPE is ignored, ...).
   void write(const void* bytes, std::size_t size);
   void write(std::string_view bytes) { write(bytes.data(), bytes.size()); }

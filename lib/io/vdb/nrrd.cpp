@@ -50,6 +50,7 @@ void write_nrrd(const std::string& path, const SparseVolume& volume) {
   const model::Grid& grid = volume.grid();
   const std::string v = number(grid.voxel_mm);
   OutputFile file(path);
+  file.require_space(1.0 * sizeof(float) * grid.nx * grid.ny * grid.nz);
   file.write(head(volume.history));
   file.write(sizes(grid.nx, grid.ny, grid.nz) + "content: " + printable(volume.name()) + " (" +
              printable(volume.units) + ")\n");
@@ -69,6 +70,7 @@ void write_nrrd(const std::string& path, const SparseVolume& volume) {
 void write_nrrd(const std::string& path, StackReader& stack) {
   const model::StackInfo& info = stack.info();
   OutputFile file(path);
+  file.require_space(1.0 * sizeof(float) * info.width * info.height * info.count);
   file.write(head(info.history));
   file.write(sizes(info.width, info.height, info.count) +
              "content: " + (info.kind == model::Kind::sinogram ? "sinogram (" : "frames (") + printable(info.units) +

@@ -198,6 +198,9 @@ TEST_CASE("archives: the only array, one of several by name") {
   CHECK(read_array(two.done(), {"plan/e", {0, 1, 2}}).values == std::vector<float>{5, 6});
   CHECK(has(error_of([&] { (void)read_array(two.done()); }, Fault::usage), "holds 2 arrays (dose, plan/e); name one"));
   CHECK(has(error_of([&] { (void)read_array(two.done(), {"plan", {0, 1, 2}}); }, Fault::usage), "none is called plan"));
+  samples::Zip cut;  // zeros that pack to almost nothing, and most of them not there
+  cut.add_packed("dose.npy", array_of(dictionary("<f4", "False", "1000, 1000, 1000"), std::string(1 << 20, '\0')));
+  CHECK(has(array_refusal(cut.done()), "is cut off: its header promises 4000000000 bytes, but the archive has 10486"));
   samples::Zip none;
   none.add("notes", "x");
   CHECK(has(array_refusal(none.done()), "without an array"));
@@ -225,4 +228,15 @@ TEST_CASE("what is written is what is read, behind a header of whole lines of 64
     CHECK((arrays::head_of_floats({images, 65536, 65536}).size()) % 64 == 0);
     CHECK((arrays::head_of_floats({images, 10, 1}).size()) == 128);
   }
+}
+
+TEST_CASE("an array that does not fit on the disk is refused before it is written") {
+  const scratch::Folder folder;
+  const std::string line = error_of(
+      [&] {
+        const ArrayWriter writer(folder / "a.npy", {65536, 65536, 65536});
+      },
+      Fault::io);
+  CHECK(has(line, "a.npy: needs 1.05e+06 GiB, but its file system has "));
+  CHECK(folder.count() == 0);
 }

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
+
+#include "io/array/private/array_head.hpp"
 
 struct zip;
 struct zip_file;
@@ -18,6 +21,9 @@ class PackedArray {
   /// (no archive, damaged, no array), usage (several and no name; no array of that name), with the names that are
   /// there.
   PackedArray(std::string_view bytes, const std::string& name, const std::string& file);
+  /// Throws Fault::data where it has fewer bytes than the values take that its header promises; to unpack what is there
+  /// may take minutes.
+  void require(const Head& head) const;
   /// Fewer than `size` only at the end. Throws Fault::data where the archive is damaged.
   std::size_t read(void* to, std::size_t size);
 
@@ -29,6 +35,7 @@ class PackedArray {
   std::string file_;
   std::unique_ptr<zip, Close> archive_;
   std::unique_ptr<zip_file, Close> array_;
+  std::uint64_t size_ = 0;  // bytes, unpacked
 };
 
 }  // namespace vam::io::arrays
