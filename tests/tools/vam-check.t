@@ -86,6 +86,15 @@ for cut in 60 2681; do
   fails 65 "short.toml: is cut off after $cut bytes" vam-check short.toml
 done
 
+# A video is sealed by the checksums of its container, if it has any.
+tiny_print light.exr
+vam-project light.exr --printer printer.toml -o print.mkv 2>.log/err
+is 'a lossless video' "$(vam-check print.mkv | head -n 1)" 'print.mkv: video, sealed'
+{ cat print.mkv; echo more; } >long.mkv
+fails 65 'long.mkv: trailing data after the video, from byte [0-9]+ on; write it again' vam-check long.mkv
+vam-project light.exr --printer printer.toml -o looks.mp4 2>.log/err && mv looks.mp4 looks.mkv
+is 'one without checksums, whatever its name' "$(vam-check looks.mkv | head -n 1)" 'looks.mkv: video, unsealed'
+
 fails 66 'none.exr: cannot open' vam-check none.exr
 : >empty.vdb
 fails 65 'empty.vdb: is empty' vam-check empty.vdb

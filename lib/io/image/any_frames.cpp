@@ -37,6 +37,7 @@ class StackSource : public ImageSource {
   [[nodiscard]] const model::StackInfo& info() const override { return reader_.info(); }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return reader_.about(); }
   bool next(Image& image, model::ImageInfo& about) override { return reader_.next(image, about); }
+  [[nodiscard]] bool is_sealed() const override { return reader_.is_sealed(); }
 
  private:
   StackReader reader_;
@@ -59,6 +60,7 @@ class VideoSource : public ImageSource {
     ++taken_;
     return true;
   }
+  [[nodiscard]] bool is_sealed() const override { return reader_.format().sealed; }
 
  private:
   VideoReader reader_;

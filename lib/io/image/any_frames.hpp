@@ -23,6 +23,8 @@ class ImageSource {
   /// The facts of every image, where they are known before the first is read; else empty.
   [[nodiscard]] virtual const std::vector<model::ImageInfo>& about() const = 0;
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
+  /// Whether all of it has checksums, to which reading holds it.
+  [[nodiscard]] virtual bool is_sealed() const { return false; }
 };
 
 /// type: stack, video or images. Throws Error: no_input, data.

@@ -61,7 +61,8 @@ Sum judged(std::istream& in, std::uint64_t size) {
   return crc32_of(in, size - checksum_bytes) == sealed ? Sum::right : Sum::wrong;
 }
 
-void check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
+// True when they have checksums.
+bool check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
   std::uint64_t first_bare = 0;
   bool has_sums = false;
   while (static_cast<std::uint64_t>(in.tellg()) < end) {
@@ -74,7 +75,7 @@ void check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
     };
     if (!identifier || !size || content > end || *size > end - content) {
       if (has_sums) refuse(at);
-      return;  // of unknown size: a stream, which bears no checksums
+      return false;  // of unknown size: a stream, which bears no checksums
     }
     if (*identifier != filler) {
       const Sum sum = judged(in, *size);
@@ -85,24 +86,30 @@ void check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
     }
     in.seekg(static_cast<std::streamoff>(content + *size));
   }
+  return has_sums;
 }
 
 }  // namespace
 
-void require_whole_matroska(const std::string& path) {
+bool require_whole_matroska(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (number(in, true) != ebml_head) return;
+  if (number(in, true) != ebml_head) return false;
   if (const auto head = number(in, false)) in.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
   if (number(in, true) != segment) throw Error{Fault::data, path + ": the video is truncated in its head"};
   const auto size = number(in, false);
-  if (!size) return;
+  if (!size) return false;
   const std::uint64_t whole = static_cast<std::uint64_t>(in.tellg()) + *size;
   const std::uint64_t there = std::filesystem::file_size(path);
   if (there < whole) {
     throw Error{Fault::data, path + ": the video is truncated: " + std::to_string(there) + " of " +
                                  std::to_string(whole) + " bytes"};
   }
-  check_parts(in, path, whole);
+  const bool sealed = check_parts(in, path, whole);
+  if (sealed && there > whole) {
+    throw Error{Fault::data,
+                path + ": trailing data after the video, from byte " + std::to_string(whole) + " on; write it again"};
+  }
+  return sealed;
 }
 
 }  // namespace vam::io

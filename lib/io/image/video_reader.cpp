@@ -73,7 +73,10 @@ struct VideoReader::State {
     codec.reset(av::api().avcodec_alloc_context3(decoder));
     check(av::api().avcodec_parameters_to_context(codec.get(), found.codecpar), "video decoder");
     check(av::api().avcodec_open2(codec.get(), decoder, nullptr), "video decoder");
-    format = {codec->width, codec->height, bits_of(codec->pix_fmt), av_q2d(found.avg_frame_rate), ""};
+    format.width = codec->width;
+    format.height = codec->height;
+    format.bits = bits_of(codec->pix_fmt);
+    format.fps = av_q2d(found.avg_frame_rate);
     if (format.bits == 0) throw Error{Fault::data, path + ": not a grey video of 8, 10 or 16 bits"};
     const bool steady = container->nb_streams == 1 && av_cmp_q(found.avg_frame_rate, found.r_frame_rate) == 0;
     if (codec->codec_id == AV_CODEC_ID_FFV1 && steady && container->duration > 0) {
@@ -128,10 +131,11 @@ struct VideoReader::State {
 
 VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<State>()) {
   if (!std::filesystem::exists(path)) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(ENOENT)};
-  require_whole_matroska(path);
+  const bool sealed = require_whole_matroska(path);
   av::api().av_log_set_level(AV_LOG_QUIET);
   state_->path = path;
   state_->open();
+  state_->format.sealed = sealed;
 }
 
 VideoReader::~VideoReader() = default;

@@ -41,14 +41,12 @@ std::vector<ProvenanceEntry> inspect_volumes(const std::string& path, bool fast)
   return findings;
 }
 
-// A lossless video has checksums throughout, which opening it and reading its frames hold it to.
 std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType type, bool fast) {
   const auto source = open_images(path, type);
   Image image;
   model::ImageInfo about;
   while (!fast && source->next(image, about)) continue;
-  const bool lossless = type == FileType::video && path.ends_with(".mkv");
-  return {{type == FileType::video ? "video" : "folder of images", lossless, "", source->info().history}};
+  return {{type == FileType::video ? "video" : "folder of images", source->is_sealed(), "", source->info().history}};
 }
 
 std::vector<ProvenanceEntry> inspect_text(const std::string& path) {

@@ -37,8 +37,13 @@ std::string video(const std::string& parts) { return head() + size_of(parts.size
 std::string refusal(const std::string& bytes) {
   const scratch::Folder folder;
   const std::string path = folder.write("a.mkv", bytes);
-  const std::string line = error_of([&] { vam::io::require_whole_matroska(path); }, Fault::data);
+  const std::string line = error_of([&] { (void)vam::io::require_whole_matroska(path); }, Fault::data);
   return line.starts_with(path) ? line.substr(path.size()) : line;
+}
+
+bool has_checksums(const std::string& bytes) {
+  const scratch::Folder folder;
+  return vam::io::require_whole_matroska(folder.write("a.mkv", bytes));
 }
 
 std::string damaged_at(std::size_t byte) {
@@ -99,4 +104,15 @@ TEST_CASE("a Matroska file that is cut, or whose parts exceed it, is refused; ot
   CHECK(refusal(beyond) == damaged_at(head().size() + 2 + summed("one").size()));
   CHECK(refusal("") == "no error");
   CHECK(refusal("ftypisom") == "no error");
+}
+
+TEST_CASE("bytes behind a video whose parts have checksums are refused, and only such a one is said to have them") {
+  const std::string bare = video(element(cluster, "no checksum")), sealed = video(summed("one"));
+  CHECK(has_checksums(sealed));
+  CHECK(refusal(sealed + "x") ==
+        ": trailing data after the video, from byte " + std::to_string(sealed.size()) + " on; write it again");
+  CHECK_FALSE(has_checksums(bare));
+  CHECK(refusal(bare + "x") == "no error");
+  CHECK_FALSE(has_checksums(head() + unknown_size + summed("one")));
+  CHECK_FALSE(has_checksums("ftypisom"));
 }

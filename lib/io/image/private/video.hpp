@@ -16,6 +16,7 @@ struct VideoFormat {
   double fps = 0;       // frames per second
   std::string comment;  // goes into the file's metadata
   bool colour = false;  // H.264 of RgbImages
+  bool sealed = false;  // of one that is read: its container has checksums, and all are right
 };
 
 /// Writes frames of one size. The name chooses the format:
