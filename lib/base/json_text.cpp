@@ -15,4 +15,12 @@ Json parse_json(std::string_view text) {
   return too_deep ? Json(Json::value_t::discarded) : value;
 }
 
+double number_at(const Json& object, const char* key, double otherwise) {
+  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : otherwise;
+}
+
+std::string text_at(const Json& object, const char* key, const std::string& otherwise) {
+  return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : otherwise;
+}
+
 }  // namespace vam

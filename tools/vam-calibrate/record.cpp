@@ -78,8 +78,8 @@ bool is_simulated(const std::string& frames, const Json& facts) {
 std::string stranger(const Json& record, const Json& devices) {
   const Json known = record.value("devices", Json::object());
   for (const auto& [name, device] : devices.items()) {
-    const std::string now = device.value("serial", "");
-    const std::string then = known.value(name, Json::object()).value("serial", now);
+    const std::string now = text_at(device, "serial");
+    const std::string then = known.contains(name) ? text_at(known[name], "serial", now) : now;
     if (then != now)
       return "was measured with the " + name + " " + then + ", but the one in use is " + now + "; run vam-calibrate";
   }

@@ -47,14 +47,6 @@ void each_line(const std::string& file, bool only_tail, const std::function<void
   }
 }
 
-// What another program writes is not always what is expected.
-double number(const Json& line, const char* key, double otherwise) {
-  return line.contains(key) && line[key].is_number() ? line[key].get<double>() : otherwise;
-}
-std::string word(const Json& line, const char* key) {
-  return line.contains(key) && line[key].is_string() ? line[key].get<std::string>() : "";
-}
-
 // vam-print keeps a lock on its events until the last tool has ended.
 bool is_locked(const std::string& file) {
   const int handle = open(file.c_str(), O_RDONLY | O_CLOEXEC);
@@ -100,7 +92,7 @@ void RunFolder::read() {
   read_flips();
   read_records();
   each_line(file("ost.jsonl"), true, [&](const Json& line) {
-    if (line.contains("missing_percent")) progress_.missing_percent = number(line, "missing_percent", 0);
+    if (line.contains("missing_percent")) progress_.missing_percent = number_at(line, "missing_percent", 0);
   });
 }
 
@@ -116,11 +108,11 @@ void RunFolder::read_events() {
   }
   each_line(file("events.jsonl"), false, [&](const Json& line) {
     if (line.value("event", Json()) == "armed") {
-      progress_.turns = number(line, "turns", 0);
-      progress_.from_deg = number(line, "from_deg", 0);
+      progress_.turns = number_at(line, "turns", 0);
+      progress_.from_deg = number_at(line, "from_deg", 0);
     } else if (line.value("event", Json()) == "end") {
-      progress_.outcome = word(line, "outcome");
-      progress_.status = static_cast<int>(number(line, "status", 0));
+      progress_.outcome = text_at(line, "outcome");
+      progress_.status = static_cast<int>(number_at(line, "status", 0));
     }
   });
   progress_.abandoned = !progress_.outcome && progress_.silent_s > silence_s && !is_locked(file("events.jsonl"));
@@ -143,7 +135,7 @@ void RunFolder::read_events() {
 
 void RunFolder::read_angle() {
   each_line(file("angles.jsonl"), true,
-            [&](const Json& line) { progress_.angle_deg = number(line, "angle_deg", progress_.angle_deg); });
+            [&](const Json& line) { progress_.angle_deg = number_at(line, "angle_deg", progress_.angle_deg); });
 }
 
 void RunFolder::read_flips() {
@@ -172,7 +164,8 @@ void RunFolder::read_records() {
   if (!records.is_object()) return;
   for (const auto& [scan, record] : records.items()) {
     if (!record.is_object()) continue;
-    progress_.records.push_back({scan, word(record, "utc"), word(record, "valid_until"), word(record, "status")});
+    progress_.records.push_back(
+        {scan, text_at(record, "utc"), text_at(record, "valid_until"), text_at(record, "status")});
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/log.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/capture_folder.hpp"
@@ -140,7 +141,7 @@ bool ViewSource::next(CameraFrame& frame) {
 }
 
 double ViewSource::pixel_mm() const {
-  if (state_->capture) return Json::parse(state_->capture->head).value("pixel_mm", 0.0);
+  if (state_->capture) return number_at(Json::parse(state_->capture->head), "pixel_mm");
   return state_->stack ? state_->stack->info().pixel_mm : 0;
 }
 

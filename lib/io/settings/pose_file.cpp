@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "base/utc.hpp"
@@ -67,8 +68,8 @@ std::optional<double> wobble_in_force_mm(const model::Calibration& calibration) 
   const auto record = current_record(calibration, "edges");
   if (!record || !record->json->at("values").contains("wobble_mm")) return std::nullopt;
   const Json& wobble = record->json->at("values").at("wobble_mm");
-  const double radius_mm = wobble.value("value", 0.0);
-  return radius_mm > 3 * wobble.value("sigma", 0.0) ? std::optional(radius_mm) : std::nullopt;
+  const double radius_mm = number_at(wobble, "value");
+  return radius_mm > 3 * number_at(wobble, "sigma") ? std::optional(radius_mm) : std::nullopt;
 }
 
 }  // namespace vam::io

@@ -21,3 +21,13 @@ TEST_CASE("a text that is no JSON, or nested beyond 64 levels, is discarded") {
     CHECK(parse_json(text).is_discarded());
   }
 }
+
+TEST_CASE("a number or a text at a key, whatever else may stand there") {
+  const Json object = parse_json("{\"a\": 1.5, \"b\": \"x\", \"c\": [2]}");
+  CHECK(number_at(object, "a") == 1.5);
+  CHECK(text_at(object, "b") == "x");
+  for (const char* key : {"b", "c", "d"}) CHECK(number_at(object, key, -1) == -1);
+  for (const char* key : {"a", "c", "d"}) CHECK(text_at(object, key, "none") == "none");
+  CHECK(number_at(parse_json("[1]"), "a") == 0);
+  CHECK(text_at(parse_json("no JSON"), "a").empty());
+}
