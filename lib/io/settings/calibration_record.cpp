@@ -53,15 +53,15 @@ void make_current(const model::Calibration& calibration, const std::string& scan
 
 std::string hours(double seconds) { return format_number(seconds / 3600, 3) + " h"; }
 
+// A file that a record names lies beside it, and is what was written then: its hash stands in the record.
 std::string beside(const CalibrationRecord& record, const char* file) {
-  return (fs::path(record.path).parent_path() / record.json->at("files").at(file).get<std::string>()).string();
-}
-
-// A table bears no seal of its own.
-std::string table_beside(const CalibrationRecord& record, const char* file) {
-  std::string path = beside(record, file);
+  const std::string name = record.json->at("files").at(file);
+  if (name.empty() || name == ".." || name.find('/') != std::string::npos) {
+    throw Error{Fault::data, record.path + ": its file '" + name + "' is not beside it; run vam-calibrate"};
+  }
+  std::string path = (fs::path(record.path).parent_path() / name).string();
   const Json hashes = record.json->value("sha256", Json::object());
-  const std::string recorded = hashes.value(fs::path(path).filename().string(), "");
+  const std::string recorded = hashes.value(name, "");
   if (const std::string read = recorded.empty() ? recorded : sha256_of(path); read != recorded) {
     throw Error{Fault::data, path + ": changed after it was measured (SHA-256 recorded " + recorded.substr(0, 8) +
                                  ", read " + read.substr(0, 8) + "); run vam-calibrate"};
@@ -98,7 +98,7 @@ constexpr ScanKind scans[] = {
      }},
     {"response", false,
      [](model::Printer& printer, const CalibrationRecord& record) {
-       printer.projector.response = table_beside(record, "response");
+       printer.projector.response = beside(record, "response");
      }},
     {"flat", false,
      [](model::Printer& printer, const CalibrationRecord& record) { printer.camera.flat = beside(record, "flat"); }},

@@ -9,6 +9,7 @@
 #include "base/json.hpp"
 #include "base/utc.hpp"
 #include "fault_of.hpp"
+#include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
 #include "scratch.hpp"
@@ -198,4 +199,47 @@ TEST_CASE("a changed digit in a record, or in its response table, is refused; it
   CHECK(printer.projector.response == table);
   scratch::spill(table, "grey,intensity\n0,0\n255,8.5\n");
   CHECK(has(message_of([&] { apply_records(printer, calibration, now_s); }), "r.csv: changed after it was measured"));
+}
+
+TEST_CASE("the flat field of a record lies beside it and is the one that was measured") {
+  const scratch::Folder folder;
+  const auto calibration = here(folder);
+  const std::string flat = record_path(calibration, "flat", now_s, ".exr");
+  const std::string name = std::filesystem::path(flat).filename().string();
+  scratch::spill(flat, "as measured");
+  const Json facts{{"status", "pass"},
+                   {"values", Json::object()},
+                   {"files", {{"flat", name}}},
+                   {"sha256", {{name, sha256_of(flat)}}}};
+  write_record(calibration, "flat", facts, now_s);
+  const auto refusal = [&] {
+    model::Printer printer;
+    return message_of([&] { apply_records(printer, calibration, now_s + 9); });
+  };
+  model::Printer printer;
+  apply_records(printer, calibration, now_s);
+  CHECK(printer.camera.flat == flat);
+  scratch::spill(flat, "another one");
+  CHECK(has(refusal(), name + ": changed after it was measured (SHA-256 recorded "));
+  double later_s = now_s;
+  for (const std::string outside : {"../flat.exr", "/etc/hostname", "a/flat.exr", "..", ""}) {
+    Json other = facts;
+    other["files"]["flat"] = outside;
+    write_record(calibration, "flat", other, later_s += 1);
+    CHECK(has(refusal(), "current-flat.json: its file '" + outside + "' is not beside it; run vam-calibrate"));
+  }
+}
+
+TEST_CASE("a wobble that is none is not in force") {
+  const auto in_force = [](const Json& wobble) {
+    const scratch::Folder folder;
+    Json facts = edges(500, 12);
+    facts["values"]["wobble_mm"] = wobble;
+    write_record(here(folder), "edges", facts, now_s);
+    return wobble_in_force_mm(here(folder));
+  };
+  CHECK(in_force({{"value", 0.5}, {"sigma", 0.1}}) == 0.5);
+  for (const Json& none : {Json(3), Json("x"), Json({{"value", "0.5"}}), Json({{"value", 0.2}, {"sigma", 0.1}})}) {
+    CHECK_FALSE(in_force(none));
+  }
 }
