@@ -8,7 +8,8 @@ namespace vam {
 class SharedLibrary {
  public:
   /// By its name and ABI version (libX.so.N); it stays to the end of the process. `purpose` is the subject of errors,
-  /// `package` what to install. Throws Fault::absent when it cannot be loaded.
+  /// `package` what to install. Throws Fault::absent when it cannot be loaded,
+  /// Fault::memory when there is no room for it.
   SharedLibrary(const std::string& purpose, const std::string& name, const std::string& package);
 
   /// Sets a pointer to the function of that name. Throws Fault::absent when there is none.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <new>
 #include <numbers>
 #include <stdexcept>
 
@@ -31,6 +32,7 @@ Context context_of(const Surface& surface) { return {cairo().cairo_create(surfac
 
 void require_success(cairo_status_t status) {
   if (status == CAIRO_STATUS_SUCCESS) return;
+  if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
   throw std::runtime_error(std::string("figure: ") + cairo().cairo_status_to_string(status));
 }
 

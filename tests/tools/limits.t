@@ -12,6 +12,17 @@ else
   ok 'and the part is the same' vam-score alone.vdb --grid target --target part.vdb --require 'iou>=1'
   quiet 'also for sinograms' refused vam-sinogram part.vdb --angles 8 -o alone.exr
   quiet 'and stacks' refused vam-resample alone.exr -o resampled.exr
+  fails 71 'figure: needs one thread more than the system gives; raise its limit' refused vam-view part.vdb -o x.png
+fi
+if ! sanitized; then
+  # The libraries that draw end the process where memory or a thread is refused.
+  for mib in 160 200 220 230 240 260; do
+    sh -c "ulimit -v $((mib * 1024)); exec vam-view part.vdb -o bounded.png" 2>bounded; status=$?
+    case "$status $(wc -l <bounded)" in '0 0' | '71 1') report 0 "a figure in $mib MiB of addresses: $status" ;;
+      *) report 1 "a figure in $mib MiB of addresses: $status"; sed 's/^/# /' bounded ;;
+    esac
+  done
+  rm -f bounded*
 fi
 fails 64 '2 inputs are standard input' vam-score - --target -
 fails 64 '2 inputs are standard input' vam-view - --target - -o x.png

@@ -20,7 +20,8 @@
   X(cairo_set_line_join) X(cairo_set_line_width) X(cairo_set_source_rgba) X(cairo_set_source_surface)                 \
   X(cairo_status) X(cairo_status_to_string) X(cairo_stroke) X(cairo_surface_destroy) X(cairo_surface_finish)          \
   X(cairo_surface_flush) X(cairo_surface_mark_dirty) X(cairo_surface_status)                                          \
-  X(cairo_svg_surface_create_for_stream) X(cairo_translate) X(g_object_unref)                                         \
+  X(cairo_svg_surface_create_for_stream) X(cairo_translate) X(g_log_default_handler) X(g_log_set_default_handler)     \
+  X(g_object_unref)                                                                                                   \
   X(pango_cairo_context_set_font_options) X(pango_cairo_font_map_get_default) X(pango_cairo_show_layout)              \
   X(pango_context_set_round_glyph_positions) X(pango_font_description_free) X(pango_font_description_new)             \
   X(pango_font_description_set_absolute_size) X(pango_font_description_set_family) X(pango_font_map_create_context)   \
@@ -36,7 +37,7 @@ struct CairoApi {
 #undef VAM_POINTER
 };
 
-/// The one of this process. Throws Fault::absent when it is not installed.
+/// The one of this process. Throws Fault::absent when it is not installed, Fault::memory when there is no room for it.
 const CairoApi& cairo_api();
 
 }  // namespace vam::plot

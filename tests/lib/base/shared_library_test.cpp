@@ -1,8 +1,10 @@
 #include "base/shared_library.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include "base/error.hpp"
+#include "fault_of.hpp"
 
 using namespace vam;
 
@@ -16,3 +18,18 @@ TEST_CASE("a shared library's functions are found, and what is missing is report
   CHECK_THROWS_WITH_AS(SharedLibrary("video", "libnone.so.1", "libnone1"),
                        "video: libnone.so.1 cannot be loaded; install the package libnone1", Error);
 }
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("a library for which no addresses are left is no missing package") {
+  rlimit usual{};
+  REQUIRE(getrlimit(RLIMIT_AS, &usual) == 0);
+  const rlimit none{1, usual.rlim_max};
+  REQUIRE(setrlimit(RLIMIT_AS, &none) == 0);
+  const std::string line =
+      error_of([] { const SharedLibrary library("figure", "libpangocairo-1.0.so.0", "pango"); }, Fault::memory);
+  setrlimit(RLIMIT_AS, &usual);
+  CHECK(line ==
+        "figure: no memory is left to load libpangocairo-1.0.so.0; allow more (ulimit -v), or close other "
+        "programs");
+}
+#endif
