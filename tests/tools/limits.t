@@ -66,6 +66,9 @@ fails 71 "^vam-sinogram: target: $need" vam-sinogram wide.vdb --angles 8 -o x.ex
 fails 71 "^vam-optimize: wide.vdb: $need" vam-optimize wide.vdb --geometry parallel --method fbp --angles 8 -o x.exr --memory 0.4
 vam-sinogram wide.vdb --angles 2 -o wide.exr
 fails 71 "^vam-dose: wide.exr: $need" vam-dose wide.exr --like wide.vdb -o x.vdb --memory 0.4
+fails 71 '^vam-optimize: part.vdb: needs 0.0156 GiB of memory, but --memory leaves 0 GiB; close other programs' \
+  vam-optimize part.vdb --memory 0.001 -o x.exr
+fails 71 'box.off: needs 0.0156 GiB of memory, but --memory leaves 0 GiB' vam-slice box.off --memory 0.001 -o x.vdb
 mv part.vdb free.vdb
 quiet 'a need that is met' vam-slice box.off --memory=1 --voxel 0.2 -o part.vdb
 same 'the bound is of no consequence, not even for the history' free.vdb part.vdb

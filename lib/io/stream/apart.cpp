@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/memory.hpp"
 #include "io/stream/private/confine.hpp"
 #include "io/stream/private/slots.hpp"
 
@@ -24,8 +24,17 @@ namespace vam::io {
 namespace {
 
 constexpr std::size_t line_limit = 4096;
+constexpr double least_bytes = 1 << 24;  // for the smallest file
+constexpr const char* remedy = "close other programs";
 
-std::string gib(std::uint64_t bytes) { return format_number(static_cast<double>(bytes) / (1 << 30), 3) + " GiB"; }
+// What the child was refused.
+Error out_of_memory(const Foreign& source, const ResourceBounds& bounds) {
+  const std::string all =
+      source.name + ": requires more than " + in_gib(static_cast<double>(bounds.memory_bytes)) + " of memory, ";
+  if (source.bytes == 0) return {Fault::data, all + "all that is left; it is damaged"};
+  if (!bounds.scarce) return {Fault::data, all + "the most for a file of its size; it is damaged"};
+  return {Fault::memory, all + "all that is left; " + remedy + ", or allow more with " + memory_bound_name()};
+}
 
 // The memory and the socket of one reading, and the child until it has been waited for.
 class Child {
@@ -91,8 +100,9 @@ void send_verdict(int socket, int fault, const std::string& line) {
     fault = static_cast<int>(error.fault);
     line = error.what();
   } catch (const std::bad_alloc&) {
-    fault = static_cast<int>(Fault::data);
-    line = source.name + ": requires more than " + gib(bounds.memory_bytes) + " of memory; it is damaged";
+    const Error refused = out_of_memory(source, bounds);
+    fault = static_cast<int>(refused.fault);
+    line = refused.what();
   } catch (const std::exception& error) {
     fault = static_cast<int>(Fault::data);
     line = source.name + ": is damaged: " + error.what();
@@ -128,6 +138,7 @@ void take_verdict(Child& child) {
 struct Apart::State {
   State(Foreign what, const std::function<void(Sender&)>& parse)
       : source(std::move(what)), bounds(bounds_of(source.bytes, source.unpacked)) {
+    require_memory(least_bytes, source.name, remedy);
     const int parent = getpid();
     child.start();
     if (child.process == 0) {

@@ -79,13 +79,13 @@ struct Foreign {
 class Apart {
  public:
   /// Starts parse() there. It must not call parallel_for, nor destroy what does. Throws Fault::memory when no process
-  /// can be made.
+  /// can be made, or less than 16 MiB are left.
   Apart(Foreign source, const std::function<void(Sender&)>& parse);
   ~Apart();
   Apart(const Apart&) = delete;
   Apart& operator=(const Apart&) = delete;
-  /// Runs take() here. Throws the child's Error; Fault::data with one line when the child crashed or met a bound; what
-  /// take() throws.
+  /// Runs take() here. Throws the child's Error; with one line when the child crashed or met a bound Fault::data, or
+  /// Fault::memory where this process has less left than the file may take; what take() throws.
   void take(const std::function<void(Receiver&)>& take);
   /// Passes over what is left. Throws as take() does.
   void finish();

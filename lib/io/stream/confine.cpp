@@ -87,9 +87,11 @@ void filter_calls() {
 }  // namespace
 
 ResourceBounds bounds_of(std::uint64_t file_bytes, std::uint64_t unpacked_bytes) {
-  if (file_bytes == 0) return {memory_left(), 600};
+  const std::uint64_t left = memory_left();
+  if (file_bytes == 0) return {left, 600, false};
   const std::uint64_t unpacked = 64 * file_bytes + unpacked_bytes;
-  return {std::min(256 * mib + unpacked, memory_left()), 10 + unpacked / (64 * mib)};
+  const std::uint64_t wanted = 256 * mib + unpacked;
+  return {std::min(wanted, left), 10 + unpacked / (64 * mib), left < wanted};
 }
 
 void confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept) {

@@ -9,6 +9,7 @@ namespace vam::io {
 struct ResourceBounds {
   std::uint64_t memory_bytes = 0;  // in addition to what the process has
   std::uint64_t cpu_s = 0;
+  bool scarce = false;  // the memory is all that this process has left, not what such a file may take
 };
 
 /// For a file of that size, 0: not known, whose contents may unpack to more.
