@@ -27,5 +27,13 @@ if strace -qq -o .log/trace -e trace=write true 2>.log/err; then
   is 'SIGKILL leaves a temporary file' "$(ls -A | grep -c '^\.vam-')" 1
   quiet 'which the next run there removes' plain vam-slice box.off --voxel 0.2 -o part.vdb
 fi
+# One that has ended and has not been waited for, as in a container without an init.
+sh -c 'true & echo $! >.log/zombie; exec sleep 60' & parent=$!
+await grep -qs '^State:.*Z' /proc/"$(await test -s .log/zombie; cat .log/zombie)"/status
+mkdir ".vam-$(cat .log/zombie)-0" && touch ".vam-$(cat .log/zombie)-0/frame.png"
+mkdir ".vam-$parent-0"
+quiet 'a run beside what a zombie has left' vam-slice box.off --voxel 0.2 -o part.vdb
+is 'removes it, and nothing of one that runs' "$(ls -A | grep '^\.vam-')" ".vam-$parent-0"
+kill $parent; rmdir ".vam-$parent-0"
 is 'nothing else is left' "$(ls -A | grep '^\.vam-')" ''
 done_testing

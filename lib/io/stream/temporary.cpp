@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <mutex>
 #include <set>
@@ -102,6 +103,16 @@ std::string extension_of(const std::string& path) {
   return dot == std::string::npos || dot == 0 || file.size() - dot > 16 ? "" : file.substr(dot);
 }
 
+// A zombie, which has ended and only not been waited for, does not.
+bool runs(int pid) {
+  if (kill(pid, 0) != 0 && errno == ESRCH) return false;
+  std::ifstream facts("/proc/" + std::to_string(pid) + "/stat");
+  std::string line;
+  std::getline(facts, line);
+  const std::size_t name_end = line.rfind(')');  // the name before it may hold anything
+  return name_end == std::string::npos || line.compare(name_end, 3, ") Z") != 0;
+}
+
 // The name is of a process that ended without removing it: none of that number runs here, and none on this machine or
 // another that shares the folder holds its lock. A folder of older files that stepped aside has another form of name.
 bool is_left_over(const fs::path& path) {
@@ -111,7 +122,7 @@ bool is_left_over(const fs::path& path) {
   const std::string name = path.filename().string();
   if (std::sscanf(name.c_str(), ".vam-%d-%u%n", &pid, &count, &read) != 2) return false;
   if (name[read] != '\0' && name[read] != '.') return false;
-  if (pid <= 0 || kill(pid, 0) == 0 || errno != ESRCH) return false;
+  if (pid <= 0 || runs(pid)) return false;
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   const bool free = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
   if (file >= 0) close(file);
