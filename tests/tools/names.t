@@ -29,6 +29,13 @@ touch 'a b.off'
 is 'a changed mesh is' "$(make VOXEL=0.5 $targets | grep '^vam-slice')" 'vam-slice .parts/a+20b.off --voxel 0.5  -o a+20b.vdb'
 make clean >/dev/null
 is 'clean leaves the meshes' "$(ls -A | grep -vc 'off$')" 3
+cp plain.off plain.stl && mkdir .parts
+fails 2 'plain.stl plain.off: each would make plain.vdb; rename all but one' make all
+mv plain.stl 'a b.stl'
+fails 2 'a\+20b.stl a\+20b.off: each would make a\+20b.vdb' make clean
+mv 'a b.stl' "$(printf '%0100d' 0 | sed 's/0/ä/g').stl"
+make all 2>errors >.log/out; is 'a name that is too long when coded ends make' $? 2
+ok 'with the reason' grep -qF '+C3+A4.stl: cannot be linked to from .parts; rename the mesh' errors
 cd ..
 
 done_testing
