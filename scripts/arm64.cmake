@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Cross-builds for 64-bit ARM with Debian's compiler and the libraries of a root that scripts/arm64 makes; what is built
 # runs under qemu.
 set(CMAKE_SYSTEM_NAME Linux)

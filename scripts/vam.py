@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Volumes and stacks of VAM tools as arrays: NumPy's where it is installed, else flat array.array('f').
 
     values, facts = vam.read("part.vdb", "target")     # needs vam-view in the PATH

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often a test of many trials tries: ctest --preset long says more.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Part voxels that no ray reaches.
 #pragma once
 

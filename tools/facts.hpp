@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Facts of volumes and stacks: what their metadata state [formats: Attributes of volumes and prints].
 #pragma once
 

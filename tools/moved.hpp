@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Commands that another program carries out: those that are another tool's by now, whose old spelling works for one
 // release, and those that are a script.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The response of the projector that a tool works for.
 #pragma once
 

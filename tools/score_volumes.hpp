@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A dose in a file scored against the target in another.
 #pragma once
 

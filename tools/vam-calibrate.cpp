@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate: measures the instrument from captured frames and writes calibration records.
 #include <string>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-capture: captures the camera's frames, each with its time and the angle of the stage.
 #include <string>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-check: are files what was written, and what were they made from?
 #include <map>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-convert: data of other programs, and from these tools to others.
 #include "io/stream/file_type.hpp"
 #include "printer.hpp"

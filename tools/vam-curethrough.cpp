@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-curethrough: continuous stereolithography without cure-through [CURE19].
 #include <string>
 

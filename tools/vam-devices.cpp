@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-devices: the devices of this machine, and why some cannot be used.
 #include <algorithm>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-dose: simulates the dose of a print.
 #include <malloc.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-optimize: optimises the projections that print a target.
 #include <algorithm>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-ost: optical scattering tomography, from camera views to the scattering volume of the print.
 #include <cstdio>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-plan: whether and how a part can be printed, in seconds.
 #include "base/json.hpp"
 #include "io/settings/report.hpp"

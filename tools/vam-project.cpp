@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-project: projector frames from sinograms, for files or a screen; one frame per time step of the turning stage.
 #include "base/error.hpp"
 #include "device/open/display.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-report: a print, from part to dose, as one page.
 #include <string>
 #include <vector>

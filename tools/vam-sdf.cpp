@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sdf: deviation of a print from its design.
 #include "cli/app.hpp"
 #include "cli/common.hpp"

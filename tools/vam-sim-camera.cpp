@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sim-camera: a GigE Vision camera that views a simulated vial, on a network address of this machine.
 #include <algorithm>
 #include <cmath>

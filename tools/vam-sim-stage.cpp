@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sim-stage: a PI controller with a rotation stage on a pseudo-terminal.
 #include <algorithm>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sinogram: the projections of a part, plain, filtered or exponential.
 #include <algorithm>
 #include <string>

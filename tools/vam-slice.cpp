@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-slice: voxelises a mesh, numbered images or a shape, with fractional coverage at the surface.
 #include <algorithm>
 #include <optional>

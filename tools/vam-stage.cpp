@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-stage: turns the rotation stage and reports its angle.
 #include <functional>
 #include <map>

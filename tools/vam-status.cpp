@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-status: how far a print is, as a line or as a page.
 #include <unistd.h>
 

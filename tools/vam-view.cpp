@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-view: figures of volumes, stacks, videos, folders, meshes and traces.
 #include <algorithm>
 #include <optional>

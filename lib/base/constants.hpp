@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Angles are degrees outside and radians inside a function; these two constants are the border.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cubic convolution with a = -1/2: values between samples, exact for quadratics [KEYS81].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Errors carry whose fault they are; the fault is the exit status (sysexits, man pages: EXIT STATUS).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A dense image of floats and views of flat memory: the only array types that cross module borders.
 #pragma once
 

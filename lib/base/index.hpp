@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whole numbers from sizes and from real numbers: indices and counts are int, places in large arrays std::size_t.
 #pragma once
 

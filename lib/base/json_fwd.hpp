@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The name of the JSON type, for headers: the type itself, a second of compiling, is in base/json.hpp.
 #pragma once
 

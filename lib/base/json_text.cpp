@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/json_text.hpp"
 
 #include "base/json.hpp"

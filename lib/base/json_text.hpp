@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // JSON out of files and lines that others may have written.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One vector register of floats at the instruction set a kernel file is compiled for. For *_kernel.cc only.
 #pragma once
 

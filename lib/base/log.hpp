@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Warnings and notes on standard error; standard output is for data, and success is silent.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How much memory this process may take: a chosen bound, else what the machine has free.
 #pragma once
 

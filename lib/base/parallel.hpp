@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Threads, only through here. Work items are independent and write to their own place, so results do not depend on
 // the number of threads.
 #pragma once

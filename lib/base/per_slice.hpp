@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A pass, the slices that are optimised together: up to four slabs (64 slices), or the whole grid where light couples
 // slices; and arithmetic slice by slice.
 #pragma once

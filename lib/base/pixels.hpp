@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Images of whole numbers, as files, screens and projectors have them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names come from outside and may hold any byte; a terminal obeys some of them, a page others.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where long work stands: a line on the terminal, or lines of JSON, on stderr (base/log.hpp: Talk).
 #pragma once
 

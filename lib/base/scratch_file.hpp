@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What does not fit into memory: a file without a name that is gone with the process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // SHA-256 (FIPS 180-4), as sha256sum(1) prints it: which bytes a record was made from.
 #pragma once
 

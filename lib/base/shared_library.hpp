@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A shared library that is loaded when it is first needed, so that programs which may never need it start without it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Run-time choice of instruction set. A kernel file lib/<module>/<name>_kernel.cc is compiled once per level with
 // VAM_SIMD set to baseline, avx2 or avx512 and puts its functions in namespace VAM_SIMD; the module's ordinary source
 // picks one by VAM_KERNEL. Kernel files include no standard headers with inline code: a function compiled for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Slab storage: 16 slices side by side, the slice index fastest. Geometry is worked out once per (pixel, angle) and
 // applied to 16 contiguous lanes; this is where the speed comes from.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The last line of the terminal behind stderr, which shows where the work stands.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Times of day that people and records share: UTC, ISO 8601.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Three coordinates and the few operations that meshes need.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One declaration per tool gives the parser, --help, --version, the manual page (--man) and completions
 // (--completion bash|zsh|fish). run() is the only place that catches.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Options that several tools share: one spelling, one help text. None is part of App::job(): of the printer its TOML
 // text is recorded, which is complete.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The files that a tool reads and writes: no input is lost to an output, no stream is used twice.
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The manual page in mdoc(7), clean under mandoc -Tlint: one sentence a line, ASCII, short lines.
 #include <algorithm>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parses what the user gave, checks it as a whole, and runs the tool.
 #include <sys/resource.h>
 

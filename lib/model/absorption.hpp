@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Absorption along a ray [physics §4].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The threshold dose that gives the largest intersection over union [physics §7].
 #pragma once
 

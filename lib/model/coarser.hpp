@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The same bench at half of the resolution: every pixel and voxel is two of the finer ones in each direction.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Conditions on named figures, as in --require 'ver<=0.01,pw>=0'.
 #pragma once
 

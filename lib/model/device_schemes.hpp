@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What device strings may consist of: scheme, place and options. The tables of lib/device/open hold how each is opened,
 // and the compiler compares them with these; what is accepted, help texts, the list in vam-devices(1), the comments of
 // the printer file and tests/tools/devices.t follow.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Counts of dose values with relative resolution 2^-12: a float's leading bits are the bin, so that no range has to be
 // known beforehand and counts of several slices simply add up.
 #pragma once

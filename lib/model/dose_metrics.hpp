@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How well a dose separates part from void: the figures of merit of the field, gathered slice by slice in one pass.
 #pragma once
 

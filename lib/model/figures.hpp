@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of merit by name, in the order of tables, traces and reports.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the voxels of a grid are among those of another.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How high images stand at the rotation axis: window, bath, glass and resin shorten the way of light to it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A mesh as it comes out of a file: points and triangles, with no promise that they are welded, closed or oriented.
 #pragma once
 

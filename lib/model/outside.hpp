@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a print leaves outside the part's box: resin that is lit, too, and may gel.
 #pragma once
 

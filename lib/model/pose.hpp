@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the vial, or the part in it, stands while each frame is shown: off the place that the settings give it.
 #pragma once
 

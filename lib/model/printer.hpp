@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The instrument: plain structs, units in the names, defaults in place.
 // The defaults are the printer of [RAY21].
 #pragma once

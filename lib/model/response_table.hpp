@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measured projector response, as it comes out of a file.
 #pragma once
 

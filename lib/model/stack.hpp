@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a stack of images is about: sinograms (one image a slice) or frames (one image an angle or layer).
 #pragma once
 

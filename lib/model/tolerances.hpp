@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tolerances of the printer's settings, and printers that deviate by them.
 #pragma once
 

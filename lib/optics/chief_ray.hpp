@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Chief rays through the vial in closed form: from a column of the projector (or camera) to a line of the part.
 // Sources: [RAY21 eq 4, RAY21 eq 5, RAY21 eq 6, RAY21 eq 7] for one shell; Bouguer's invariant n b for any number of
 // concentric shells [physics §2]. [OST22 eq 2, OST22 eq 3, OST22 eq 4] are the same. Level rays only, of which the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Flatland movie: projections of one slice smeared across the image, frame by frame, to validate computed axial
 // lithography on a thin layer of resin in the image plane [CAL17 fig 3]. The layer adds the frames up.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Share of the stage angles from which a point is lit, beyond the writable radius [physics §4].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Test images to adjust and measure a projector with, in its own grey levels: no response table is applied.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From sinograms to the frames of a projector: slices by angles become one image per stage angle.
 #pragma once
 

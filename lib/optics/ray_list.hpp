@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rays of one projector row, column by column, as CSV.
 #pragma once
 

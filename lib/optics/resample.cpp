@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Applies a resampling plan: 16 slices side by side, one tile of output columns at a time, so that a tile's input stays
 // in cache.
 #include "optics/resample.hpp"

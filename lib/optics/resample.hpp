@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Resampling between the ideal parallel-beam ("virtual") sinogram and the columns of a real projector or camera.
 // [RAY21 eq 3, OST22 eq 1]; the way back [OST22 eq 5, OST22 eq 6, OST22 eq 7, OST22 eq 8, OST22 eq 9; physics §3].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/private/resample_kernel.hpp"
 
 #include "base/kernel_vector.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The equation of resampling, S_p(x_p, theta) = S_v(x_v, theta + delta) J / T, and its inverse: which input columns and
 // rows make each output column [RAY21 eq 3, OST22 eq 1; physics §3].
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Resampling of a whole stack: the plan for its slices and the metadata of the resulting stack.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Skew chief rays, z(u) = z_0 + u tan epsilon: from a point of the image plane to a line in the resin, exactly in 3-D.
 // Source: Bouguer's invariant for skew rays. Through interfaces whose normals are horizontal n sin(elevation) = s is
 // conserved, so that a ray's plan view is that of a level ray with every index n replaced by sqrt(n^2 - s^2)

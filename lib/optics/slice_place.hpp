@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Position of a part's slice in the projector's image.
 #pragma once
 

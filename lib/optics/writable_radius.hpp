@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Writable radius R_w: how far from the rotation axis a printer can write [physics §2].
 #pragma once
 

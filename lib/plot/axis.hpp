@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Axes of figures: where the ticks are and what they say.
 #pragma once
 

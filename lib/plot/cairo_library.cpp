@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/private/cairo_library.hpp"
 
 #include <sys/mman.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A sheet to draw on: lines, text and images, kept as they are drawn, for pixels of any density or a vector file.
 // Places are in pixels of 1/96 inch from the upper left corner, fractions allowed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Colours for values: even to the eye, so that equal steps of the value look equal.
 #pragma once
 

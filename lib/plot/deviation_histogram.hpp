@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The distances of a print from its design, by area.
 #pragma once
 

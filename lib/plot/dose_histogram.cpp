@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The doses inside and outside the part.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figures of images: one, or a sheet of many, with axes, colour bar and outlines.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/private/insert_sections.hpp"
 
 #include <algorithm>

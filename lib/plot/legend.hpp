@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the lines and colours of a figure mean, in rows beside it, so that nothing is covered.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A page for a browser: one file with its images within, readable without a network. Text from outside is escaped.
 #pragma once
 

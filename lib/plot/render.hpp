@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies as they look from above at an angle, in parallel light.
 #pragma once
 

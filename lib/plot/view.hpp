@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What vam-view shows of each kind of file.
 #pragma once
 

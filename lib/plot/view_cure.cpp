@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where a dose cures the part, where not, and where too much.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two volumes beside each other, and their difference.
 #include "base/error.hpp"
 #include "model/grid_place.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sinograms, frames and images.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/private/view_parts.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the sections of a volume are, and their axes.
 #include <cmath>
 

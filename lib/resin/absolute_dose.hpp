@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Absolute dose: what the relative one, integral I e^{-mu s} dtheta of intensities between 0 and 1, is in mJ/cm3
 // [CAL19 eq 1; physics §4].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Grey levels whose errors cancel in the dose: error diffusion over columns, stage angles and turns.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A resin's working curve: cured thickness = h_a log10(E / E_c), E the exposure at the surface [CURE19 fig 5a;
 // JACO92; physics §14.4].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How long to print: turns and seconds until the dose of one turn, (mu / Omega) integral I e^{-mu s} dtheta
 // [CAL19 eq 1], adds up to the critical dose [physics §4].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How bright and how long to print: whole turns, and light that puts the resin's critical dose within the process
 // window.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A dose against a grey target, which prescribes a dose for every voxel [physics §7].
 #pragma once
 

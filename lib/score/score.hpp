@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Is a dose printable? The field's figures of merit of a dose against its target, as table and JSON.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The verdict on a dose in one line: will it print, with what margin, how long, and from how many voxels
 // these are computed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Adjoint: outputs are pixels, input rows are eight angles. A tile of pixels stays in L2 while all angles pass over it;
 // the stretch of eight angles that it sees is copied side by side first, so that the kernel's rows do not share cache
 // sets.

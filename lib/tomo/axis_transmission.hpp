@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What absorption leaves of parallel light on its way to the axis.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Filtered back-projection, plain and exponential, and the geometry that fits a grid.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ramp filters along detector columns, for whole slabs: the spectrum of a row is a line of the object's [CAL17 eq 2].
 #pragma once
 

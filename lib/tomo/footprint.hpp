@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shadow of a square voxel under parallel rays: a trapezoid, box(wide) * box(narrow) [LF10].
 // For kernels, too: no call, no branch, nothing that another instruction set could share.
 #pragma once

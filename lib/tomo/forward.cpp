@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Forward: outputs are detector bins, input rows are eight rows of pixels. Seen from the bins, a strip of width 1
 // crosses a row of pixels in a trapezoid too, so that the kernel of the adjoint serves again, and no bin is written
 // twice a row. Rays within 45 degrees of the y axis take rows along x, the others rows along y ("major" is the axis

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From slices of a part to the projections to show: project, filter, weight, deal with negative values.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parallel-beam projection A and its exact adjoint A* on slabs of 16 slices, by separable trapezoid footprints
 // [LF10; physics §1]: pixel (i, j) spreads over the at most three detector bins that its shadow covers, with weights
 // that add up to 1 in both directions.

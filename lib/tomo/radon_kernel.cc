@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Compiled once per instruction set (base/simd.hpp). A call builds a table of weights for two outputs and eight rows in
 // one vector, then applies it to up to four slabs: no branch, no gather, no index arithmetic in the inner loop.
 #include "tomo/private/radon_kernel.hpp"

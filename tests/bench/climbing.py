@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Do parts print in rays that climb? Light by vam-optimize, judged by vam-dose and by the deposition oracle.
 
     python3 tests/bench/climbing.py [BUILD [RAYS [NAME...]]]

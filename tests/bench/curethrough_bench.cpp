@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The correction of a part of 1920 x 1080 x 1000 voxels, without reading and writing: the work per slice.
 #include <benchmark/benchmark.h>
 

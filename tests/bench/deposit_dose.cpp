@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // deposit_dose LIGHT.exr DOSE.vdb OUT.vdb (RAYS): the dose of a projector stack by the deposition oracle, on the voxels
 // of vam-dose's DOSE; RAYS x RAYS rays a pixel. Prints as JSON how far DOSE is from it: rms, the root mean square
 // difference over the root mean square dose within 0.95 of the radius that all angles light, and mean, relative; and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A print of a million vertices against a reference of a million triangles: the limit is 10 s on two cores for all of
 // vam-sdf, from alignment to the distance of every vertex.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Speed of files and pipes, in bytes of floats per second. A dense volume is noise: no tile, nothing for a compressor.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>

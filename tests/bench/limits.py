@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Is limited light at least as good as unlimited light that was clipped? Every method, five parts, five limits.
 
     python3 tests/bench/limits.py [BUILD [NAME...]]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Do vam-optimize, vam-dose and vam-score keep to the memory that their manuals say? A gyroid of three voxel sizes.
 
     python3 tests/bench/memory.py [BUILD [VOXEL_MM...]]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One volume from 180 views of 480 x 300 pixels: the limit is 1.0 s on two cores, and 30 frames a second live.
 #include <benchmark/benchmark.h>
 

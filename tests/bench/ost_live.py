@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Does vam-ost --live keep up with a camera? Sends turns of 180 views of 480 x 300 pixels at 30 frames a second.
 
     python3 tests/bench/ost_live.py [BUILD [TURNS [FPS]]]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Does the preview say what the whole run finds? Twenty parts, some of which cannot print.
 
     python3 tests/bench/preview.py [BUILD]

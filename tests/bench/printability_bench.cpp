@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What prints, with which method, and how fast: prints a table. Arguments: parts SIZE, target METHOD, stack, osmo or
 // certify SIZE ITERATIONS; all without.
 #include <algorithm>

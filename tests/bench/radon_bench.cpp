@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Giga-updates a second (pixels x angles x slices / time) of forward and adjoint, 512 x 512, 360 angles.
 //   full: a full turn, where both fold opposite angles into one; the updates counted are those asked for, twice those
 //   done. half: the same number of angles over half a turn, where nothing folds: the kernels' own speed.

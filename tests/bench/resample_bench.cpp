@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Resampling: time for 64 slices of 1024 x 360. Budget: 3 ms a slice and core.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The vial's pair: voxels x angles x slices per second, N = 256, 360 angles, rays that stay level and rays that climb.
 #include <benchmark/benchmark.h>
 

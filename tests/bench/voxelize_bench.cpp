@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Repairing and voxelizing a mesh of a million triangles at 512^3: the limit is 3 s on two cores for both together.
 #include <benchmark/benchmark.h>
 

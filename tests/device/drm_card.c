@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A graphics card for LD_PRELOAD: answers what the kernel would, so that the unmodified libdrm finds /dev/dri/card0 with
 // the screens eDP-1 (on, by CRTC 31), HDMI-A-1 (64 x 48 at 60 Hz, off) and HDMI-A-2 (nothing plugged in).
 // $FAKE_DRM is a folder: "log" receives a JSON line for every image with the vertical blank at which it is on, "memory"

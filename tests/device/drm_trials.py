@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Judges vam-project on a graphics card by the card's own log (drm_card.c), in a folder with part.exr and printer.toml,
 and card/ for images. usage: drm_trials.py images FRAMES FLIPS   what was shown is what FLIPS (the tool's log) lists, of the PNGs
               drm_trials.py ends TRIALS CARD.so     black in time after every end of the tool; prints a table"""

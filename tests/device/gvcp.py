@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A GigE Vision client of a few lines, after the control protocol of the standard (GigE Vision: GVCP and the
 bootstrap registers), without Aravis. usage: gvcp.py ADDRESS. Prints what a camera that nobody has set up
 says of itself as JSON."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """How far the frames shown were from the angle of the stage, by the simulator's own log.
 usage: print_judge.py TRUTH FLIPS [LATENCY_MS]; frames are those of 3600 a turn at 60 Hz and 25 deg/s, their light
 comes so long after the flip (0). Prints JSON."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Kills vam-print, or one of its tools, in the middle of a print, again and again: by the memory of a virtual screen and
 the logs of a simulated relay and stage, how long until the light is off, the relay open and the stage at a standstill. First on a machine that has nothing
 else to do, then beside busy loops. usage: print_trials.py TRIALS, in a folder with frames.exr and printer.toml. Prints a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Ends vam-project in every way a program can end while an image is on, again and again, and reads from the memory of
 a virtual screen when it was black. usage: project_trials.py TRIALS, in a folder with part.exr and printer.toml. Prints a
 table; exit status 1 when one trial took too long."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Ends a tool that shows light behind a dead-man relay, again and again, and lets the simulated relay's log say when it
 opened. usage: relay_trials.py TRIALS. Prints a table; exit status 1 when one trial took longer than the relay states.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The image on an Xvfb screen: now from its memory-mapped file (Xvfb -fbdir), which tells how late it is, without
 asking the X server; to watch it by the X server of $DISPLAY, which never shows half an update.
 usage: screen.py FILE now                 prints "black" or the number of lit pixels

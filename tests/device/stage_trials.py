@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Ends vam-stage spin in every way a program can end, again and again, and lets the simulator's own log say when the
 stage stood. usage: stage_trials.py TRIALS PROTOCOL (gcs, grbl, zaber). Prints a table; exit status 1 when one trial took too long.
 

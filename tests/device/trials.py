@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Common parts of the safety trials [devices guarantee 1]: ways to end a program, simulator logs, table of results."""
 
 import contextlib

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a program on a machine with a simulated USB device: libusb in it is the real one, umockdev stands for the kernel
 // and the simulators of lib/device for the hardware. usage: umockdev-wrapper usb_host DEVICE LOG PROGRAM ARGS...
 // DEVICE: tic:, dlpc350: or dlpc900:, the last two with what is wrong with them (lib/sim/controllers/dlp.hpp):

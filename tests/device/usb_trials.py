@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Ends tools that hold USB devices in every way a program can end, again and again, and lets the simulated devices'
 own logs say when the order to be safe reached them. usage: usb_trials.py TRIALS, in a folder with part.exr and
 printer.toml. Prints a table; exit status 1 when one trial took too long."""

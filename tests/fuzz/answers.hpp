@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A serial line whose other end says what it was told to say.
 #pragma once
 

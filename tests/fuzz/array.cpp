@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An array, bare or the only one of an archive, image by image to its end, as the child reads it.
 #include <algorithm>
 #include <cstring>

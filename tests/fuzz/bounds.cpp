@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the bounds of the child do: an allocation of a GiB throws. A sanitizer's `new` would end the program instead.
 #include <cstdlib>
 #include <new>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // All that may be asked and ordered of a stage.
 #pragma once
 

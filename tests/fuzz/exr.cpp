@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A stack out of FUZZ_SOURCE, File or Pipe, image by image to its end, as the child reads it.
 #include "fuzz/fuzz.hpp"
 #include "io/exr/private/stack_parser.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the targets share. An Error is an answer; all else that comes out of a parser, and every signal, is a find.
 #pragma once
 

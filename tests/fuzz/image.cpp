@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An image file, as the child decodes it.
 #include "fuzz/fuzz.hpp"
 #include "io/image/private/decoders.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The manifest in a folder of camera frames.
 #include <filesystem>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One parser of meshes, FUZZ_PARSE, as the child calls it.
 #include "fuzz/fuzz.hpp"
 #include "io/mesh/private/formats.hpp"

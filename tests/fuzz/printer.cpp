@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A printer file, and the settings as they stand in the metadata of stacks.
 #include "fuzz/fuzz.hpp"
 #include "io/settings/printer_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Records in JSON: calibrations, resins, and the logs of prints and captures.
 #include "fuzz/fuzz.hpp"
 #include "io/settings/calibration_record.hpp"

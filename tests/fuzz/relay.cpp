@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The answers of a relay, before and during a print.
 #include "device/safety/relay.hpp"
 

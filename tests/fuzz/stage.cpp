@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The answers of a stage's controller, FUZZ_STAGE, to all that may be asked and ordered.
 #include "device/os/clock.hpp"
 #include "device/stage/gcs_stage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables: a response, poses, and any columns.
 #include "fuzz/fuzz.hpp"
 #include "io/settings/csv_table.hpp"

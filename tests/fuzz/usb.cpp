@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The answers of a device on USB: a Tic, and a DLPC350 or DLPC900 by the first byte.
 #include "device/os/clock.hpp"
 #include "device/port/usb_link.hpp"

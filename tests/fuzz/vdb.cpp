@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Archives out of FUZZ_SOURCE, File or Pipe, as the child reads them; what it sends is received as by its parent.
 #include <sys/socket.h>
 

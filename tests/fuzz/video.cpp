@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a Matroska file says of its own wholeness.
 #include "fuzz/fuzz.hpp"
 #include "io/image/private/matroska.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The main of all unit tests. ctest runs each test case by its name, which it reads from --list-test-cases as a CMake
 // list: a semicolon there would cut it in two names that no test case has, and doctest is content with no test case at
 // all.

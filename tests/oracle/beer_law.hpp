@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Dose of a stereolithographic print by marching through time with Beer's law in physical units: no recursion, no
 // dimensionless numbers, no closed form. Slow and obvious; shares nothing with lib/resin.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a camera beside the bench sees of a turning print: every pixel's ray goes by vector Snell through window, bath,
 // glass and resin, and the light that bodies scatter into it is summed in closed form. And what a real bench adds:
 // absorption, run-out, bubbles that rise, noise, an even background, dirt on the window. Shares nothing with lib.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Synthetic calibration scans with known truth: rays traced by the vector ray tracer, pixels with shot and read noise.
 // Shares nothing with lib/optics or lib/metrology.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Synthetic camera views: every pixel's ray is traced through glass and resin by the vector ray tracer and the
 // scattering density summed along it in small steps. Shares nothing with lib/optics or lib/metrology.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The volume that a cube shares with a convex body, exactly, by cutting the cube with one half space after another.
 #pragma once
 

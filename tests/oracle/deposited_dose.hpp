@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose of a whole print by deposition: every pixel a bundle of rays, each followed by vector Snell's law into the
 // resin and through the voxels, in each of which it leaves its power times the length of its way there. No map is
 // inverted, no density computed, no footprint assumed; quick enough for parts of some million voxels.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Meshes whose volume and inside are known, and the damage that files come with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Test parts as slices of coverage, drawn by sampling: nothing is shared with lib/solid.
 #pragma once
 

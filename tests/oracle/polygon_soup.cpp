@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "oracle/polygon_soup.hpp"
 
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Welding and orienting by CGAL's polygon soup functions: what solid::repair is held against.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose at a point by counting rays: very many rays a column, each leaving its light along its chord through a small
 // disc around the point. No map is inverted and no density is computed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A vector ray tracer for the vial: rays and surfaces in 3-D, Snell's law and Fresnel's equations in vector form, no
 // angles and no invariants. Slow and obvious; shares nothing with lib/optics.
 #pragma once

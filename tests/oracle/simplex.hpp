@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small dense linear program solver: two-phase simplex with Bland's rule. For tests only; nothing is tuned.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose of light that climbs, by deposition: many rays a pixel, each followed by vector Snell's law into the resin
 // and through the voxels in small steps, leaving its power times the length of its way. No map is inverted, no density
 // computed, no footprint assumed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Slow and obvious parallel projection: the area of (unit pixel) intersected with (detector strip of width 1), by
 // clipping the square's corners as a polygon, in double precision.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose around an opaque insert by walking: every ray leaves its light step by step in the voxel it is in, until it
 // steps into the insert. No footprint, no table, no map is inverted.
 #pragma once

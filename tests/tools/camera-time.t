@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Cameras as their makers document them: as delivered, seen by a client that shares nothing with ours; and the times of
 # their frames, by vam-capture, whether they stamp the start, the middle or the end of a long exposure.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The whole chain: files or one pipe give the same voxels and pixels; the number of threads does not matter.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

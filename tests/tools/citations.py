@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Holds what the source cites against the manual pages of section 7. usage: citations.py ROOT; prints what is cited
 but not defined, one a line, and fails if there is any.
 

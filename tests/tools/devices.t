@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every device [devices guarantees 4 and 6]: one user at a time, reported with its pid within a second, free again after kill -9;
 # and under cron a silent standard output, with every event a JSON line with UTC and monotonic time.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Page flips [devices guarantee 1]: black within 100 ms of any end, by the log of a simulated graphics card. VAM_TRIALS a
 # cause (5; 100 under the label "long").
 # In memory: a disk that is busy with others would hold up the log.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Each example of a tool's manual page runs alone, as if pasted into an empty folder. usage: examples.sh TOOL
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 tool=$1

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Multi-part EXR stacks, plain or run-length coded, by the published format alone, for tests: an independent writer and
 reader.
 

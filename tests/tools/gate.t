@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What cannot be printed is refused before light is computed from it, by every tool that does.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Limits of the system: threads refused, two standard inputs, a volume in place of a mesh.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Makefile.example: incremental, parallel, and its check fails when a part will not print.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

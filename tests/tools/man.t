@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Each tool's manual page: the committed one is what the tool prints, and it is clean. The pages of section 7 are clean,
 # and what they refer to is there. Examples are run by examples.sh.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

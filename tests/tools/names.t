@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Names are data: whatever a file is called, no shell runs it, no terminal obeys it, no line breaks at it.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

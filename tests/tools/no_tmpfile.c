@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A file system like NFS or vfat, for LD_PRELOAD: it knows no files without a name, and no second names.
 #define _GNU_SOURCE
 #include <errno.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """NumPy files made and taken apart without NumPy.
 
     npy.py make FILE TYPE SHAPE [ORDER]   the numbers 0, 1, 2, ... mod 101 of that type ('<f4', '>u2'), shape 2,3,4, by

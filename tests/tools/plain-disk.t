@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # On a file system without files that have no name (NFS, vfat) outputs are whole or absent, too, and nothing is left.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sanitized && { echo 'AddressSanitizer insists on coming first'; exit 77; }

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """PNG by the published format alone, for tests: an independent reader.
 
     png.py size FILE                "width height depth channels"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tables of poses, and figures of doses, for tests.
 
     poses.py wobble FRAMES MM [TURNS]   a vial whose axis circles the rotation axis

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A print of a turn of which the script or a tool is killed at a random moment, and its resumption: together they show
 # every frame as long as a whole print does, to one vertical blank. A fifth of VAM_TRIALS kills (10; 100: "long").
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

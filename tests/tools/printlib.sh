@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A print of 20 turns on simulated stage, screen and light engine, to be ended before its time. A test sources this after
 # testlib.sh; screen_up 64 48 comes before launch.
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH

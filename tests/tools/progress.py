@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a terminal shows of commands. usage: progress.py COLUMNS COMMAND [taken]: runs the shell command with standard
 error (and input) a terminal so wide, and prints what is written from each return of the cursor to the next, with $ where
 the row is cleared. taken: another process has the line."""

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-project alone [devices guarantee 1]: a black screen within 100 ms of any end. VAM_TRIALS a cause (5; 100: "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // render_views SHAPE VIEWS.exr [key=value...]: what a camera sees of a shape that stands in glass and resin, as an EXR
 // frame stack, by the oracle's ray tracer. The rig is glass_rig() of synthetic_views.hpp.
 //   columns rows pixel (mm): of the camera    angles: a turn    turns    noise: deviation, in the views' units

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Holds the scan of a flat field, taken live, against the simulated camera's settings.
 usage: scan_judge.py FIELD VIGNETTING SIGMA   "good" or "bad", the part of pixels within 2 sigma, the worst error"""
 

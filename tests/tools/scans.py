@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Folders of images as a camera would take them in a calibration scan, for tests, by formulas of their own.
 
     scans.py sweep DIR axis=511.5 radius=12.7 columns=1024 pitch=8 width=4    a lit line across a vial in air

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Helpers of the end-to-end tests (POSIX sh). A test sources this file, runs in a fresh scratch directory that is
 # removed at the end, prints TAP and ends with done_testing.
 set -u

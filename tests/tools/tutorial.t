@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every command of vam-tutorial(7), vam(7) and the tour of README.md, in order, in one shell and an empty folder each. They
 # write .mkv, by vam-project.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # USB devices through libusb [devices guarantee 1]: the DLPC350 and DLPC900 light engines, by turns, are dark, and the
 # Tic stage receives the stop command, within 100 ms of any end of the tool. VAM_TRIALS a cause (5; 100 under the label "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.

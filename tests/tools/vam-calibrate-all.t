@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Calibration on misaligned simulators: stage, screen and a GigE Vision camera beside a glowing vial,
 # all taken live; the records are held against what the simulators were set to.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The calibration scans on images with known truth: records, current link, refusal.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 scans="python3 $VAM_SOURCE/tests/tools/scans.py"

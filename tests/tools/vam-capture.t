@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-capture: series, resumed folders, marks of lost frames, and bad input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sim='sim:?pace=virtual&lit=0.1&speed=90&noise=0.004'

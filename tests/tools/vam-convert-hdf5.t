@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-convert: HDF5 files, written by h5py. 77 where that is not installed.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-convert: arrays, images and videos of other programs in, arrays out; anybody's projections judged.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-curethrough from end to end: the paper's ladder, an egg shell, measured data, and wrong inputs.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

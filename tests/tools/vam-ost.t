@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-ost: views to volume, threshold, live turns and the stop event; every wrong input. The views are a projector's
 # frames read as a camera's (rays run both ways); tests/lib/metrology judges accuracy with traced rays.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

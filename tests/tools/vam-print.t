@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A whole print on simulators: mesh, frames, stage on a pseudo-terminal, screen, camera; judged by the simulators' logs.
 # In memory: a disk that is busy with others would hold up the screen.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-project by page flips: the real libdrm on a simulated graphics card, whose log is the judge.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 mkdir -p card/dri

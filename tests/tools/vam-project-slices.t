@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-project with the slices of vam-curethrough: a timed sequence, to images, stack, video and screen.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"

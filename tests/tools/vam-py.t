@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # scripts/vam.py: arrays to volumes and stacks and back, with and without NumPy, and a print of one.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

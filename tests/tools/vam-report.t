@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One page from the files of a print: what is on it, that nothing from outside becomes an element, and what a browser
 # makes of it.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-resample end to end: maps, weights, alignment, streams, and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 vam-slice --shape disc-grid --voxel 0.2 -o part.vdb || exit 1

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-sdf: meshes and volumes against each other, verdicts, and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

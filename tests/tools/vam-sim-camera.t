@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-sim-camera and vam-capture's aravis: camera, over GigE Vision on loopback; its log is the reference.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 take="vam-capture --device aravis:127.0.0.1 --binning 6 --fps 20"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 shim=$(vam-sim-stage --shim)

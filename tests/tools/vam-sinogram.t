@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-sinogram end to end: values with their units, filters, absorption, streams, and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # vam-slice: shapes, meshes and images to target volumes; and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

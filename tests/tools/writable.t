@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One writable radius: what vam-slice makes as large as the printer allows, vam-optimize accepts, and both refuse alike.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate axis: the rotation axis in the camera's frames, over a turn.
 #include "metrology/calibrate/axis.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate beam: width by plane, from a bare sensor that is moved along the light, or from the side through resin.
 #include "metrology/calibrate/beam.hpp"
 

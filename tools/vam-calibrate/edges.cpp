@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate edges: where the vial stands, from a sweep of lines through fluorescing resin.
 #include <cmath>
 #include <map>

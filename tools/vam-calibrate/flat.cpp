@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate flat: frames of an even scene become the camera's flat field.
 #include "metrology/calibrate/flat.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate lag: how late the camera's time stamps are, from a bead that turns one way and then the other.
 #include "metrology/calibrate/lag.hpp"
 

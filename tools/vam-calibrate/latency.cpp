@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate latency: from a flip to its light, from a blinking screen.
 #include "metrology/calibrate/latency.hpp"
 

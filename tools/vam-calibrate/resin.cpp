@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate resin: the scattered intensity at which the resin gels, from the volume of a printed standard.
 #include "base/error.hpp"
 #include "base/json.hpp"

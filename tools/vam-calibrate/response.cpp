@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate response: grey level to light, from a ramp of uniform levels.
 #include "metrology/calibrate/response.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The calibration scans: captured frames in, a calibration record out.
 #pragma once
 

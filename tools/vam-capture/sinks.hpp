@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where frames go: an EXR frame stack, a stream of small ones, or a folder that a later capture resumes.
 #pragma once
 

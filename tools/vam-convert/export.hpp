@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes and stacks as arrays of NumPy.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What comes in, image by image, whatever it is kept in.
 #pragma once
 

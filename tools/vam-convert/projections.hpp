@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays, images and videos as a stack of sinograms.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Slices at the heights of a volume's voxels.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projections slice by slice: frames, one a stage angle, are collected first.
 #pragma once
 

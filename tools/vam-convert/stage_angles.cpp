@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-convert/stage_angles.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Several resins for one part: how fast, and how narrow a gap stays open.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Slices that cure the part and nothing else.
 #include <algorithm>
 #include <cmath>

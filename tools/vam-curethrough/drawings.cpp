@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figures after those of [CURE19].
 #include <algorithm>
 #include <array>

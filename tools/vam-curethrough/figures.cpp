@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables and JSON of the cure map.
 #include "vam-curethrough/figures.hpp"
 

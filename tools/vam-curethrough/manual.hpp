@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The manual of vam-curethrough beside its options.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cure by a stack of slices, or by the ordinary slices of a part.
 #include <algorithm>
 #include <memory>

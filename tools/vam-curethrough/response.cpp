@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The projector's grey response from photodiode readings.
 #include <cmath>
 

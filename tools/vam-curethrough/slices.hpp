@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A stack of slices as intensities, whatever it is stored as; read from the first slice on, as often as needed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-curethrough's subcommands: each declares its options and runs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parameter study on a ladder of features.
 #include "resin/curethrough/sweep.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A resin's absorbance height and gelation threshold from cured thicknesses.
 #include "resin/working_curve.hpp"
 

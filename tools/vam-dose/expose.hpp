@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From sinograms to doses of one turn.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The opaque object that a dose is simulated around.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The light that prints have truly given, instead of one turn of all that the sinogram asks for.
 #pragma once
 

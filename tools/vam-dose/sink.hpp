@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Writes doses slice by slice into the volume.
 #pragma once
 

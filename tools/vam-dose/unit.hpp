@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The unit of doses: relative, or mJ/cm3, of a turn or of a whole print.
 #pragma once
 

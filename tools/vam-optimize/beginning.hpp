@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the iteration begins: at a checkpoint, at projections that are given, or at those of coarser voxels.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --checkpoint: the state from which an interrupted run resumes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projections to start from: those of the same part on the same bench at half of the resolution, which start from
 // those at a quarter, and so on. An iteration takes an eighth of the time there, and what is left to the full
 // resolution is fine: nested iteration, as in multigrid methods [BHM00].

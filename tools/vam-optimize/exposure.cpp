@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-optimize/exposure.hpp"
 
 #include "optics/projector_frames.hpp"

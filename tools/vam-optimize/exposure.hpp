@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Exposure of the projections of vam-optimize.
 #pragma once
 

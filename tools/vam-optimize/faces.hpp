@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Level faces that rays that climb cannot print sharply.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --tradeoff: duration against window, as a table or as an image.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What vam-optimize reads: the volumes, and projections to start from.
 #pragma once
 

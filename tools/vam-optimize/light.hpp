@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The beam model of vam-optimize, from printer and options.
 #pragma once
 

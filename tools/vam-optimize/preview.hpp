@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --preview: whether the part will print, for how long and where not, by few iterations on coarse voxels.
 #pragma once
 

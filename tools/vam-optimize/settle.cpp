@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What follows from the options of vam-optimize, and what contradicts itself in them.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The optimisation task, from inputs and options.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What of a scattering volume is the print: where it reaches the isovalue, without what is not of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One run of vam-ost, from views to volumes: their corrections, the axis, the rig.
 #pragma once
 

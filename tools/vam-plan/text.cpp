@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A plan as a table, and as JSON.
 #include "base/text.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-project's live half: a display, a light engine and the stage's angle behind the sink that files have, too.
 #pragma once
 

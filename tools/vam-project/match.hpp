@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whether the sinogram was computed for the printer that is to show it.
 #pragma once
 

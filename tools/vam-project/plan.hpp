@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a live print would be: for people, before it begins.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From the required intensity to the frames of a device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Slices of continuous stereolithography, one after the other in time: each is shown once, for the time in which the
 // platform moves by a slice height.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A sinogram as the light that a turning part needs.
 #pragma once
 

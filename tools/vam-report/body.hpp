@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The part and the print as bodies that can be turned.
 #pragma once
 

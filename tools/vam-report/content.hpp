@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is on the page, from the verdict to the provenance.
 #pragma once
 

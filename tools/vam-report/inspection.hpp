@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reports of vam-sdf on a page: verdict, figures with their uncertainties, histogram.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies that can be turned, one of which is seen at a time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projections as they play, and the sinograms that they come from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sections of meshes as drawings with dimensions.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Meshes on a page: a print that vam-sdf measured, and its design.
 #pragma once
 

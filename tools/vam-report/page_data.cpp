@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-report/page_data.hpp"
 
 #include "base/json.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values for the script of a page, and what the script and the style are.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Images of which one is seen at a time: a slider moves through them.
 #pragma once
 

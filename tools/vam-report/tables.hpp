@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figures, iterations and provenance as tables and curves.
 #pragma once
 

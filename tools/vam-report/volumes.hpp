@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sections of volumes, and a dose judged against its target.
 #pragma once
 

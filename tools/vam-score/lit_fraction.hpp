@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where light can come from: the map of --lit-fraction.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What prints, as a mesh or as points.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The plain form of vam-sdf: print against design.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names of figures in conditions and messages, and where the report has them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What of a print vam-sdf measures separately, and the tolerances: --region and --tolerance.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/error.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sdf trend: what repeated prints do to the figures.
 #include "metrology/compare/trend.hpp"
 

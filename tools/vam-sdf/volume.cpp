@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sdf --volume: how far the print stands outside its design, for the next design.
 #include "base/error.hpp"
 #include "base/memory.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The sinograms of a volume, a pass at a time.
 #pragma once
 

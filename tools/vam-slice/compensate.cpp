@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // vam-slice --compensate: the deviations of prints, taken off the design before it is placed.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --place: the height of the part in the image.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is to be sliced: a mesh, images or a shape, and what it is printed around.
 #pragma once
 

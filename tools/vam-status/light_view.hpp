@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The light of a print, small enough to be drawn every second: what is on the screen, and the dose so far.
 #pragma once
 

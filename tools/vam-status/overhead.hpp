@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The vial from above: the dose so far, turned as the stage has turned it, and the light that comes now.
 #pragma once
 

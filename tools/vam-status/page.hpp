@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The page of a print: one file without scripts of others, images within, that a browser renews by itself.
 #pragma once
 

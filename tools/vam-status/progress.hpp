@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far a print is, by the logs in its run folder.
 #pragma once
 

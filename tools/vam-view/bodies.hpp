@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Meshes, parts and prints as bodies.
 #pragma once
 

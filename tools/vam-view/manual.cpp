@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-view/options.hpp"
 
 namespace vam::view_tool {

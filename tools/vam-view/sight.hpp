@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies in a figure: the surfaces of volumes, seen from one place in one scale.
 #pragma once
 

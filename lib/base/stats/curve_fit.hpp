@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Least squares for measurements: the parameters of a curve, and how well they are known.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measured numbers and what follows from several of them [physics §14.2].
 #pragma once
 

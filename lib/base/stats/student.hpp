@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Student's t distribution: what turns standard errors into confidence intervals.
 #pragma once
 

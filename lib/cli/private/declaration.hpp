@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What App collects: the one declaration from which help, manual and completions are printed.
 #pragma once
 

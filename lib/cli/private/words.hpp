@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to App: the words of a command line, seen by the declaration before they are parsed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GenICam cameras (USB3 Vision, GigE Vision) by Aravis. glib stays in the aravis_ sources.
 #include <arv.h>
 

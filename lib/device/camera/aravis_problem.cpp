@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/camera/private/aravis_problem.hpp"
 
 #include <arv.h>

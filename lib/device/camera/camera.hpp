@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The camera as the tools see it [devices §6]; one backend per file (aravis_camera, v4l2_camera, replay_camera).
 #pragma once
 

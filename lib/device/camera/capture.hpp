@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Taking a series of frames: which of them are kept, at what angle, and what was lost.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A recording as a camera: the same frames again, as fast as they can be read or in step with the recorded times.
 #include <utility>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which moment of an exposure a camera's time stamp names.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Video4Linux2 by its own calls: streaming with memory-mapped buffers.
 #include <linux/videodev2.h>
 #include <sys/mman.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the V4L2 backend asks of the kernel; a test may stand in for it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/camera/private/v4l2_format.hpp"
 
 #include <linux/videodev2.h>

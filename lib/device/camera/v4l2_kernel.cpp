@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The system calls on a video node.
 #include <fcntl.h>
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/open/relay.hpp"
 
 #include "device/open/private/backends.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Device strings: "gcs:/dev/ttyUSB0?baud=115200&address=2" is scheme, place and options.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An angle of the stage at a time, as a line of text: what vam-stage writes, and what the player, the cameras and
 // vam-calibrate read. It needs no device.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Time is injected, so that tests of minutes of motion take milliseconds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One JSON line per event, with UTC and monotonic time, for cron and for a later search for causes.
 #pragma once
 

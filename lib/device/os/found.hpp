@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A device that is there, as vam-devices lists it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Identity reported by a device, and the mark of simulated devices.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // SIGINT, SIGTERM and SIGHUP become an exception at the next wait, so that destructors establish the safe state; the
 // process is then terminated by the same signal. This handles the orderly case; the guardian handles all others.
 #pragma once

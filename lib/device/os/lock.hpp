@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One user per device. The lock is released when its holder ends (flock), however it ends [devices guarantee 4].
 #pragma once
 

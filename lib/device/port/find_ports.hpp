@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stages and light engines on serial ports and on USB, without sending commands.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lines on standard output for the next tool of a pipe.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A line of bytes to a device, with a deadline on everything.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Serial ports by libserialport, its pitfalls handled.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // USB devices that these tools drive: the one table of the ids by which they are opened, found and distinguished.
 #pragma once
 

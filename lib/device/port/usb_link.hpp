@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // USB devices by libusb: vendor control transfers and 64-byte reports, each with a time-out.
 #pragma once
 

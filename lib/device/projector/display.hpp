@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A screen that shows preloaded frames at its vertical blanks: the image input of a projector [devices §4].
 #pragma once
 

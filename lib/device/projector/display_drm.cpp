@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <poll.h>
 #include <unistd.h>
 #include <xf86drm.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // TI DLPC350 (LightCrafter 4500) and DLPC900 (LightCrafter 6500 and 9000) as light engines.
 // Source: TI DLPU010 and DLPU018, "Programmer's Guide"; for the inverted current of the LightCrafter 4500 TI's forum,
 // thread 451589, and what TI's own LightCrafter 4500 GUI sends: 255 less the current, at normal polarity.

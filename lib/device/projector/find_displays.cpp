@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/projector/find_displays.hpp"
 
 #include <fcntl.h>

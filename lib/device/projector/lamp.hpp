@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What lights a print: a light engine, a relay in its supply, or both.
 #pragma once
 

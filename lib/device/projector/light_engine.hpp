@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The light engine of a projector: LEDs, their current, and whether grey is linear [devices §5].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A print's light: at every vertical blank the frame that belongs to the stage's angle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A lamp whose supply leads through a dead-man relay.
 #pragma once
 

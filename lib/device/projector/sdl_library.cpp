@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/projector/private/sdl_library.hpp"
 
 #include "base/shared_library.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The guardian: a child process that brings the devices into their safe state when the tool cannot do so itself.
 // It watches a socket for its end, which the kernel delivers whatever the tool dies of, SIGKILL included, and for
 // heartbeats, which stop when the tool hangs. No part of safety depends on a signal handler [devices §7].

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a guardian can do to a device. An action is JSON, so that it travels through a socket:
 //   {"do": "write", "order": 1, "hex": "18"}   writes the bytes to the handle that came with it, after throwing away
 //                                              what the dead tool had queued there

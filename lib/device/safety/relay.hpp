@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A dead-man relay on the lamp's power: it stays closed while it hears a heartbeat [devices §7].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/safety/stop_order.hpp"
 
 #include "base/json.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The guardian's order to stop a stage: in force from the first motion command until the stage is known to be at rest.
 #pragma once
 

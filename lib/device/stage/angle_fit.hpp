@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The stage's angle as a straight line in time, fitted to its latest samples: what the angle is now and will be at the
 // next flip.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the player learns the angle of the stage from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A PI controller with one rotation stage, e.g. C-863 with M-060.PD [devices §3.1].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A rotation axis driven by GRBL 1.1, one unit per degree [devices §3.3].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // When a stage was at the angle that it answered.
 #pragma once
 

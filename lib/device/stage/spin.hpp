@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What vam-stage does with a stage; first of all the motion of a print: ramp, run-up, whole turns, stop.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rotation stage as the tools see it; one backend per file (gcs_stage, tic_stage, grbl_stage, zaber_stage).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The short commands: home, move, stop, follow, identify, status.
 #include <algorithm>
 #include <cmath>

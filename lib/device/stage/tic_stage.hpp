@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A stepper motor behind a Pololu Tic (T500, T825, T834, T249, 36v4, N825) [devices §3.2].
 #pragma once
 

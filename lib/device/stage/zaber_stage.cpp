@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Source: Zaber ASCII Protocol Manual, firmware 6 and 7 (zaber.com/protocol-manual); for the speed that a motion takes
 // from firmware 7.25 on, the reference of Zaber Motion Library, Axis.moveAbsolute.
 #include "device/stage/zaber_stage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A Zaber rotary stage or controller in Zaber's ASCII protocol, firmware 6 and 7 [devices §3.4].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays of other programs as images one after the other: NumPy's .npy and .npz, HDF5 (DXchange, NXtomo), NRRD and MRC
 // volumes, TIFF of several pages.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays for NumPy: .npy of little-endian floats.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/array/private/mrc_head.hpp"
 
 #include <algorithm>

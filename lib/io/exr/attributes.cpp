@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/exr/private/attributes.hpp"
 
 #include <OpenEXR/ImfDoubleAttribute.h>

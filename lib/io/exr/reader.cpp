@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A stack with seals is read in this process; any other, which some other program has made, in a child.
 #include <optional>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/exr/private/rows.hpp"
 
 #include <Imath/half.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/exr/private/seal_check.hpp"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stacks of images as one standard multi-part scanline OpenEXR file, in a file or through a pipe (FILES in the
 // manuals).
 #pragma once

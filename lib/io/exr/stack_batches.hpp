@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stacks in batches, with reading, computing and writing overlapped: the body of every tool that maps stack to stack.
 #pragma once
 

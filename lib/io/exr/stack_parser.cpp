@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/exr/private/stack_parser.hpp"
 
 #include <poll.h>

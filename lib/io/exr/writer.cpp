@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The multi-part file is put together here and not by Imf::MultiPartOutputFile, which holds the buffers of all parts at
 // once (5,000 parts of ZIP take 1 GB) and seeks back to fill its offset tables: an uncompressed chunk is always 12 +
 // row bytes, so the tables can be sent ahead of the pixels and a pipe carries a valid, complete file.

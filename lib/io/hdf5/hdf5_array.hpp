@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An array of an HDF5 file as images, one after the other: the projections of a DXchange or NXtomo (NeXus) file, or any
 // dataset of numbers.
 #pragma once

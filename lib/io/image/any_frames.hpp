@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stacks, videos and folders of images, read in the same way.
 #pragma once
 

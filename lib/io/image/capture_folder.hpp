@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera's frames as a folder that grows, and that a later capture can go on with: numbered PNG files and
 // manifest.jsonl, a line of JSON a frame behind a head line. A frame is on the disk before its line is.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frames as numbered PNG files in a folder that appears whole.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where projector frames go: a folder of PNG, an EXR stack, a video; a live display is one more.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Image files: grey PNG and TIFF in, PNG of any depth out, folders of numbered images.
 #pragma once
 

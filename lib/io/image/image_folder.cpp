@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Folders of numbered images, in the order of their numbers.
 #include <algorithm>
 #include <cctype>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Movies in colour, for people: H.264 in MP4.
 #pragma once
 

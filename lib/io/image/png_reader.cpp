@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // libpng leaves by longjmp where an image is damaged: what stands between setjmp and its calls owns nothing.
 #include <png.h>
 

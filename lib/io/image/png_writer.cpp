@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PNG from the specification (W3C PNG, second edition): one filter, one zlib stream, text beside the pixels.
 #include <zlib.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A TIFF of several pages as numbers: slices of a volume or projections, of whole numbers or floats.
 #pragma once
 

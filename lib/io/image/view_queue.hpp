@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Views taken in while the tool computes, so that a camera at the other end of the pipe never waits for a volume.
 #pragma once
 

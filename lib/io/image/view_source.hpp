@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Camera views from wherever they are kept: an EXR frame stack (also a live stream of them), a folder of vam-capture or
 // of numbered images, or a video. Frames that a camera delivered in part are left out, each with a warning.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a file was made by, and whether it is still what was written.
 #pragma once
 

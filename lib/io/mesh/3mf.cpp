@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // 3MF: the objects of a package, placed as its build says. What they expand to is counted before it is made.
 #include <algorithm>
 #include <cstdint>

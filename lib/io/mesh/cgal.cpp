@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The text formats and PLY through CGAL. CGAL's readers trust the counts in a header and accept some cut files, so both
 // are examined first.
 #include <CGAL/IO/OBJ.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mesh files: STL, OBJ, PLY, OFF and 3MF in; STL and PLY out.
 #pragma once
 

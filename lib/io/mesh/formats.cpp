@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The table of mesh formats, and how each is recognised by its content.
 #include "io/mesh/private/formats.hpp"
 

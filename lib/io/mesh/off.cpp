@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // OFF as text, an element a line; behind the coordinates and corners may stand normals and colours, which are not read.
 #include <algorithm>
 #include <charconv>

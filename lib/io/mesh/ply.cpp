@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Binary PLY with the per-vertex scalars and colours that MeshLab and CloudCompare show.
 #include <cstdint>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A number of every vertex in a binary PLY file: CGAL reads places and colours only.
 #include <cstdint>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Binary STL, read and written by hand: the format is 50 bytes a triangle, and CGAL's reader welds through a std::map,
 // which takes longer than slicing.
 #include <array>

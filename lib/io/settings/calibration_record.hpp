@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Calibration records: what a scan measured, one immutable JSON file a scan, and a link to the one in force.
 //   cal-INSTRUMENT-SCAN-UTC.json   never written twice; made read-only
 //   current-SCAN.json              a link to one of them, changed in one step

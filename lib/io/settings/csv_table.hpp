@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Small tables of measurements: CSV with a header line, for working curves, photodiode readings and catalogues.
 #pragma once
 

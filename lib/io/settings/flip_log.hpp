@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The flips of a print, from the log of vam-project: what was shown when, and at which stage angle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Logs that grow while a tool runs: one line of JSON per event, on the disk before the next one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables of poses (CSV), and the wobble that a calibration record knows.
 #pragma once
 

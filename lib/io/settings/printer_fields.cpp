@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/private/printer_fields.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The printer file: the instrument's settings as TOML, read strictly.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whether light that was computed for one printer prints in another.
 #pragma once
 

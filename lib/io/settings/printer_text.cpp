@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Printer settings as text: the whole file, and what differs from the defaults.
 #include <toml++/toml.h>
 

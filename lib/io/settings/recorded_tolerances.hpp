@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far a printer may be from its settings, by its calibration records.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --report: measured figures as JSON, for scripts.
 #pragma once
 

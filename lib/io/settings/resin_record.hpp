@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What was measured of a resin, kept in a file for later runs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/response_file.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/sealed_text.hpp"
 
 #include "base/error.hpp"

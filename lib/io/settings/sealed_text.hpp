@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Records and frozen printer files bear a seal, too: io/stream/seal.hpp. A text without one is taken as it is.
 #pragma once
 

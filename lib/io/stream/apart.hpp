@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Foreign bytes are parsed in a sandboxed child: a process that can compute and send what it has read, and nothing
 // else.
 #pragma once

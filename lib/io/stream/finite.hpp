@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // No file that these tools write or accept holds NaN or infinity.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/stream/private/hash_kernel.hpp"
 
 #define XXH_INLINE_ALL  // all of it static, so that the linker mixes no levels

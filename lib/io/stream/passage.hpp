@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Serialisation of the results of a parsing child process, one list of members for writing and reading:
 // pass(Put{out}, facts) there, pass(Get{in}, facts) here.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Seals: hashes by which a file shows that it is what was written. They find bit rot and edits, and are no signature:
 // whoever means to deceive can compute them, too.
 #pragma once

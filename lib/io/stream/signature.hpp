@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a file of another program is, by its first bytes: for messages, which must not call it what it is not.
 #pragma once
 

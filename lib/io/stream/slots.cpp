@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The two ends of what a child sends.
 #include "io/stream/private/slots.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bytes in and out: "-" is stdin or stdout, an output appears under its name only when it is complete.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // For libraries that insist on std::istream and std::ostream. Their streams hide a full disk and a read error unless
 // asked; here every Error passes through, once the stream has exceptions(badbit | failbit).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Checks that the values of a grid are valid for its name before anything is computed from them.
 #pragma once
 

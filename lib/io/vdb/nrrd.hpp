@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // NRRD: raw floats behind a text header, which ParaView, 3D Slicer, ImageJ and numpy read.
 #pragma once
 

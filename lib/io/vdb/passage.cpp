@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A grid's head on its way from the child that reads archives.
 #include "io/vdb/private/passage.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A grid's voxels one leaf (8 x 8 x 8) at a time. An archive holds a tree's topology first and the leaves' values after
 // it, in the order of the tree: so each leaf is read when its turn comes, sent and let go. This runs in the child: it
 // starts no threads, and what would start some to be destroyed stays.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Dense slices in and out of an OpenVDB tree, leaf by leaf (8 x 8 x 8 voxels). A leaf is built aside, in parallel, and
 // inserted into the tree by one thread; going through accessors voxel by voxel takes about 20 times as long.
 #include "io/vdb/vdb.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes as OpenVDB grids in mm, sparse in memory; dense only slab by slab.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gaussian blur of a volume by the beam's point spread and the diffusion of dose, slice by slice [physics §4].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums with the Gaussian of beam and resin along x, y and z of a volume [physics §4].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Horizontal faces that climbing rays blur: which, by how much, and at which height the part would print better.
 #pragma once
 

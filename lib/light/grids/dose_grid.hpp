@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The grid on which the dose of a stack is computed.
 #pragma once
 

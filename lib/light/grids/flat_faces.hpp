@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Horizontal faces of a part, and the height over which rays that climb across them blur the dose.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The grid of all resin that the light of a part reaches: the voxels around it that are constrained and judged.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Poses of a wobbling vial and of a helical print [physics §11].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The operator with the blur of beam and resin inside: the projections then compensate for it.
 #pragma once
 

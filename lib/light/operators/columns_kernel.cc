@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/private/columns_kernel.hpp"
 
 #include "base/kernel_vector.hpp"

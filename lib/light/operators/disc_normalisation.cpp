@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Absorption corrected by the dose that the projections of a uniform disc give [OST22 Methods; physics §5].
 #include <algorithm>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Opaque inserts (overprinting): which voxels are insert, and which are in its shadow.
 #pragma once
 

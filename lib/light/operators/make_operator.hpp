@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Beam models, and the operator of each: parallel, attenuated, shadowed, or the refracted chief rays of the vial.
 #pragma once
 

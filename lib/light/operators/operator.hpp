@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The forward model as a pair of linear maps, A* from projections to dose and its transpose A. Optimisers see only
 // this; a vial, an absorber or an opaque insert is another implementation or a decorator around one.
 #pragma once

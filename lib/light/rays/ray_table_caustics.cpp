@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of the ray table beyond the writable radius, where rays fold into caustics: filled ray by ray, which conserves
 // the power [physics §4].
 #include <algorithm>

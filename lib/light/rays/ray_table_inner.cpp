@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of the ray table within the reach: every point has one ray from each side.
 #include <algorithm>
 #include <cmath>

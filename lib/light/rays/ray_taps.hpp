@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The projector columns and weights that light the voxels of a tile, as the kernels exchange them. Slices lie side by
 // side, 16, 32 or 64 of them: a chunk.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/rays/private/taps_kernel.hpp"
 
 #include "tomo/footprint.hpp"

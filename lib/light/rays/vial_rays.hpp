@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Columns and rows of the projector that light a voxel of the turning vial, and their weights.
 #pragma once
 

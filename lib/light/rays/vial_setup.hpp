@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projector, vial and grid of one chief-ray dose.
 #pragma once
 

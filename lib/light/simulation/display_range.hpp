@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From sinogram values to projected intensity: clipping, full scale and lower bound.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simulation of a volume that does not fit into memory: rows of light in, doses out, block by block.
 #pragma once
 

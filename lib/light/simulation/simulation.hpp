@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose of a stack of sinograms: by chief rays for a projector's stack, by parallel light for a virtual one.
 #pragma once
 

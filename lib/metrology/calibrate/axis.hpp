@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rotation axis in the camera's image, and the radius of the circle on which the vial (or a bead) moves.
 #pragma once
 

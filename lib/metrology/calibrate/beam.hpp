@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The projector's beam: the image of one lit column on a sensor that is moved along the light [RAY21 appendix 3], or of
 // one lit row in fluorescing resin, which a camera at the side sees in all planes at once.
 #pragma once

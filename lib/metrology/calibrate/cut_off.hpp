@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Noise that a camera cuts off at level 0 lifts the mean of dark pixels, but not that of lit ones [physics §10].
 #pragma once
 

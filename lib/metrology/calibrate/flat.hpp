@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The camera's flat field: many frames of an even scene, for vam-ost --flat.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lag of a camera's time stamps: a bead on the stage appears at an angle too large by speed times lag in both
 // directions of rotation, whereas its own phase changes sign [physics §10].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From a frame's vertical blank to its light: a blinking screen, seen by a camera whose frames have times.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/calibrate/recorded_angle_fit.hpp"
 
 #include <algorithm>

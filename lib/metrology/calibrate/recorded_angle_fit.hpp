@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The course of the stage during a turn that has ended, fitted to all of its samples: late replies scatter, and a live
 // prediction can use past samples only.
 #pragma once

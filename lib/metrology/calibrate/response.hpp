@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The projector's response: a ramp of uniform grey levels, read by a camera or a photodiode [CAL17; physics §10].
 #pragma once
 

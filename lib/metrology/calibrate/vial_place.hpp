@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the vial stands in the projector's field: a lit column sweeps across it, and a camera at its side sees
 // fluorescence only while the line crosses resin [RAY21 "Printing procedure", RAY21 eq 9; physics §10].
 #pragma once

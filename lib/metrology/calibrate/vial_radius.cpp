@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/calibrate/private/vial_radius.hpp"
 
 #include "optics/chief_ray.hpp"

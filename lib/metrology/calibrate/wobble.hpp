@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Splits a value by stage angle into constant and once-per-turn parts: a vial whose middle circles the rotation axis is
 // seen beside it at any one angle.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Alignment by chosen faces: 3-2-1 (ISO 5459) [physics §8].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far a print is from its design: statistics of signed distances [OST22 section 3, Table S1].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An embossed print seen by a profilometer, against the contours of its design [RAY21 fig 8].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Planes and cylinders through measured points, by least squares, and how far the points depart from them.
 #pragma once
 

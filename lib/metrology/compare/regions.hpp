@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Faces, bores and walls of a part: what of a print belongs to them, and their tolerances [physics §8].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Levelling a profilometer's image.
 #include <algorithm>
 #include <array>

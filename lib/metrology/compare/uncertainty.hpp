@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The expanded uncertainty of all figures of a print [GUM08; physics §8].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Finding the rotation axis in the views themselves.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The print as a body: connected components at the gelation threshold, and which are noise, bubbles or dirt.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/ost/private/climb_kernel.hpp"
 
 #include "base/kernel_vector.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The print as it stands: overhead projections of the scattering volume, and how much of the design is there.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a real bench adds to the views of a print: an even background, light that flickers, specks that stay where they
 // are, bubbles that pass.
 #pragma once

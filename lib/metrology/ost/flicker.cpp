@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What parallel rays of one direction add up to at a height of a body is the same in all directions [HEL65]. The views'
 // own rays are not parallel: what they add up to changes smoothly over the turn. So neighbouring views are compared
 // with this smooth course, and the course itself is found from the parallel rays that are made of the views [physics

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Flicker: the light of one view is more or less than that of the others [physics §8].
 #pragma once
 

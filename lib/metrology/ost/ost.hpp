@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Optical scattering tomography: camera views of one turn to the scattering density in the vial [OST22 section 2].
 #pragma once
 

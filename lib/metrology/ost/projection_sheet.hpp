@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Overview for the operator: the print and its design, each seen from above and from two sides [OST22 fig 5].
 #pragma once
 

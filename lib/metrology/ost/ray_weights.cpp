@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Weights of the rays of a camera: their length, and what absorption has taken [physics §8].
 #include <cmath>
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Run-out: which heights show it, what it does to the views, and its fit [physics §8].
 #include "metrology/ost/run_out.hpp"
 

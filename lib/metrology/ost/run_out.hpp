@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Run-out: the axis of the vial beside that of the stage, seen in the views themselves.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Live views: the last full turn, and when a new volume is due.
 #pragma once
 

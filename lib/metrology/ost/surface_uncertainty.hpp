@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How well the surface of a reconstructed print is known, from how well its scattering is [physics §8].
 #pragma once
 

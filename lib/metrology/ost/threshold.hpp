@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The gelation threshold I_p from a printed standard cylinder [OST22 section S2].
 #pragma once
 

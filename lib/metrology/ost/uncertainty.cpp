@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The uncertainty of a reconstruction: noise through the same reconstruction [physics §8].
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The noise of camera views, measured in the views themselves.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Camera views of the turning vial, made ready for reconstruction: dark and flat field, binning, rotation about the
 // measured axis [OST22 sections 2.2 and 2.4].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fresnel transmittance T of an interface between two media [physics §2].
 #pragma once
 

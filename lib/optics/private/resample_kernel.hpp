@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The inner loops of resample.cpp on 16 slices side by side, compiled once per instruction set.
 #pragma once
 

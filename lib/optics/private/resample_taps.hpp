@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The taps of one output column of resampling.
 #pragma once
 

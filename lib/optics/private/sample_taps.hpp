@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Interpolation weights of a sample at a fractional position of an even grid.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Accelerated projected gradient: FISTA [BT09] on the one-sided quadratic loss, with the ramp filter as preconditioner
 // and restarts [OC15], from the better of two quick answers.
 #include <algorithm>

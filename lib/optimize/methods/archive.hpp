@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Serialisation of the optimiser's state: one list of fields for writing and reading.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What --method auto stands for: the method with the best results in tests/bench/printability, run until the part
 // prints with a margin, and for a minimum number of iterations, so that easy parts also obtain a wide process window.
 #pragma once

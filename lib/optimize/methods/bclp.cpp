@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Band-constraint Lp norm [BCLP24].
 #include <cmath>
 

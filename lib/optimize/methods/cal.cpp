@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projected gradient with the resin's threshold inside the loop: computed axial lithography [CAL17 fig 2, CAL19 eq 4].
 #include <algorithm>
 

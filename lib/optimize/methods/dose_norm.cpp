@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Background and dose normalisation [OST22 Methods, OST22 fig S6].
 #include <algorithm>
 

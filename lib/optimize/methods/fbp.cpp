@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Filtered back-projection made non-negative: the start of [CAL17], and the baseline of comparisons.
 #include <algorithm>
 

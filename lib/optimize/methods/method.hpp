@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every optimiser has in common. A method is one file, which implements Method and fills in its MethodEntry, and
 // two lines in methods.cpp.
 #pragma once

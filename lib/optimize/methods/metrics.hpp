@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figures of merit of doses, slice by slice.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Object-space model optimisation [OSMO21].
 #include <algorithm>
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Penalty minimisation [PM21].
 #include "optimize/methods/private/descent.hpp"
 #include "optimize/methods/private/loss.hpp"

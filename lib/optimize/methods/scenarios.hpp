@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Forward models of printers that deviate from their settings, applied to the frames of the nominal printer.
 #pragma once
 

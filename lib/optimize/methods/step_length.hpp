@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How long a step may be, from the operator alone.
 #pragma once
 

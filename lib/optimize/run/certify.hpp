@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lower bound on the ratio of void to part dose of any light: a proof by weights on the voxels.
 #pragma once
 

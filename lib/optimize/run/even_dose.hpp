@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose if every pixel is fully lit at every stage angle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The front of duration against window: what the print is at each limit of the intensity while it is raised.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How a run is interrupted and resumes: the projections of finished passes, one record each, then the open pass.
 #pragma once
 

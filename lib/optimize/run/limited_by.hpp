@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which slices decide the exposure that all slices share.
 #pragma once
 

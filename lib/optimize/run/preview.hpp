@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A print in short: few iterations on coarse voxels, and what becomes of them in a printer off its settings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From the projections of a coarser problem to those of a finer one.
 #pragma once
 

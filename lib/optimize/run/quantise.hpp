@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projections in the grey levels that the projector has.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Main iteration loop: step, evaluate, test the stopping criteria.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shortest print: the duration is proportional to the largest intensity, so a pass begins with little and is
 // allowed more when its goal is not met. Projections within a limit are within every higher one, so that nothing is
 // lost; a limit that is lowered costs as many iterations as beginning anew.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of the frames as they are written, in the projector's grey levels.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figures of many slices while they are being optimised, each still at its own scale.
 #pragma once
 

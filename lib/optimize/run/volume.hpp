@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A whole volume, pass by pass in constant memory: distinct slices are packed, optimised, brought to one printing
 // threshold, and handed out in ascending order.
 #pragma once

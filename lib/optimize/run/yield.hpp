@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Yield over deviating printers at one exposure, and the tolerance with the smallest margin: the dose of each printer
 // is computed by its own forward model.
 #pragma once

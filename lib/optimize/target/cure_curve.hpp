@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Response curve M of the resin, degree of cure against dose, in the losses of cal and of the band-constraint norm
 // [BCLP24].
 #pragma once

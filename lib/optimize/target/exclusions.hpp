@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Voxels that inserts exclude from the optimisation.
 #pragma once
 

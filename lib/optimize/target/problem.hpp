@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Target constraints of the voxels of a pass.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Identical slices are computed once: which slice is computed as which job.
 #pragma once
 

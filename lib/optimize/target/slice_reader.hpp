@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The slices of a volume as the optimiser reads them, and the checks at its door.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What of a target its voxels are too coarse for: walls and gaps of which no voxel nearby is wholly part, or wholly
 // void.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Weights and tolerances that are made from the target: those of the void.
 #pragma once
 

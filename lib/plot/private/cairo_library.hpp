@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // cairo and pango, loaded when the first figure is drawn: with fonts, glib and X11 they are 30 libraries, which would
 // take most of the start of every tool that can draw. Their headers say what the functions are; nothing is linked.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An opaque insert in the sections of a volume, and the shadow it throws.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A line of text as pango lays it out, in the sans-serif font of the machine.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the views: what figures of volumes, stacks and doses share.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The slices that give one column of voxels its target dose, solved from the last slice upwards [CURE19 eq 5].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Dose of a continuous (or layer-by-layer) stereolithographic print along one pixel column [CURE19; physics §9].
 // What the light of one slice adds while it is shown is the integral [CURE19 eq 2] of the rate [CURE19 eq 1], its sum
 // over the slices [CURE19 eq 3], without dimensions [CURE19 eq 4], the recursion of dose_at_nodes() [CURE19 eq 5].

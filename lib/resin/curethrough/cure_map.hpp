@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Outcome of a print: correctly cured, cure-through, undercured, and how wrong the height of each feature is
 // [CURE19 fig 2, 4 and 5c].
 #pragma once

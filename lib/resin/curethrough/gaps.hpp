@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How narrow a gap a resin can keep open at a speed: what a catalogue of resins is compared by.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A part as one bit per voxel, each pixel column in one piece, so that both ends of a feature are found from anywhere
 // in the column: 1920 x 1080 x 1000 voxels take 260 MB.
 #pragma once

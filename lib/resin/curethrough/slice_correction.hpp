@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Corrected slices of a whole part, one after the other, in memory for one slice beside the part's bits [CURE19].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose of a whole stack of slices, in printing order. The recursion runs from the last slice up but files are read
 // from the first down, so the stack is read twice: once to know the dose at every 32nd node, once to fill in between.
 // Memory: one image per 32 slices, and 32 more.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parameter study: how much of the height error a correction removes, for a range of assumed full-cure doses and
 // maximum doses [CURE19 fig 5c].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose that a corrected column should have at every node, in closed form [CURE19 fig 3, constraints i-iii].
 //
 // Outside features: the pointwise least dose, max(fall, rise). `fall` decays from 1 at the top edge of the feature

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/bench/log_tail.hpp"
 
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The end of a log that another program writes meanwhile.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a camera beside the vial would see, for simulated cameras: the projector's image as fluorescence in the resin,
 // and the print, which scatters; or an even card in the vial's place. Its rays are traced by vectors, which shares
 // nothing with lib/optics.

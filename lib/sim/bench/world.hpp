@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What happens on the simulated bench, out of the logs that the other simulators and tools write meanwhile.
 #pragma once
 

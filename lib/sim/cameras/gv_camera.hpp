@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated GigE Vision camera on a network address of this machine, by Aravis' fake camera. A real GenICam client
 // opens it by its IP address.
 #pragma once

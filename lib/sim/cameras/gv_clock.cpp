@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/cameras/private/gv_clock.hpp"
 
 #include <chrono>

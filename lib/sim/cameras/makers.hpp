@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GenICam cameras as their makers document them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sources, named beside each behaviour by the name of the command: Texas Instruments' DLPC350 Programmer's Guide
 // (DLPU010) and DLPC900 Programmer's Guide (DLPU018). For what guide and board disagree about: TI forum, thread 451589.
 // Public drivers that send the same bytes: pyCrafter4500 (github.com/SivyerLab/pyCrafter4500).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated DLPC350 or DLPC900, with what may be wrong with one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sources, named beside each behaviour: a number alone is a section of the maker's manual of the C-863.11 (PI MS249E);
 // "errors" is the maker's list of codes, picontrollererrors.h, as public drivers have it (EPICS, epics-modules/motor,
 // motorApp/PIGCS2Src).

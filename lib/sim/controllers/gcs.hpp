@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated PI C-863 with a rotation stage, including its faults.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sources, named beside each behaviour: "Interface", "Jogging", "Commands" and "Configuration" are the pages of GRBL
 // 1.1's wiki (github.com/gnea/grbl/wiki), "limits.c" is its own source.
 #include "sim/controllers/grbl.hpp"

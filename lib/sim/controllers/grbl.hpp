@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated GRBL 1.1 board with a rotation axis on X.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The mechanics of a simulated rotation stage: a stage with inertia behind a speed-limited drive.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simulators are configured by options of their device string: sim:?speed_error=0.01&jitter=5&log=truth.jsonl.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated device behind a pseudo-terminal: to the tools it is a serial port.
 #pragma once
 

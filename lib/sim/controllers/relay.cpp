@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Source of all of it: the firmware that [devices §7] prints.
 #include "sim/controllers/relay.hpp"
 

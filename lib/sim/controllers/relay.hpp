@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated dead-man relay with the firmware of [devices §7].
 #pragma once
 

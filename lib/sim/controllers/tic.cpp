@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sources, named beside each behaviour: Pololu's Tic Stepper Motor Controller User's Guide, chapters "Variable
 // reference" and "Command reference"; codes and offsets also in Pololu's own software
 // (github.com/pololu/pololu-tic-software, include/tic_protocol.h).

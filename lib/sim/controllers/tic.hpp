@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated Pololu Tic with a stage on its motor.
 #pragma once
 

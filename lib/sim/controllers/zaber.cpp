@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sources, named beside each behaviour: "manual" is the Zaber ASCII Protocol Manual of the maker, firmware 6.06 to 7
 // (zaber.com/wiki/Manuals/ASCII_Protocol_Manual, zaber.com/protocol-manual); "library" is the reference of the maker's
 // Zaber Motion Library. The stage is an X-RSW60A: 384 000 microsteps a turn (its data sheet: 0.0009375 deg each).

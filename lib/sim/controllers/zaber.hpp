@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated Zaber rotary stage with its controller, in Zaber's ASCII protocol.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lets libserialport 0.1.1 open a pseudo-terminal, for LD_PRELOAD. The library looks for the port in /sys/class/tty,
 // where pseudo-terminals are not, and asks for modem lines, which they do not have: answer both.
 // TIOCEXCL lasts until a line is closed on both sides, which the simulator's never is: the next user, unless it is root,

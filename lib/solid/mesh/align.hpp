@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Brings a print onto its reference: no start needed, then point-to-plane ICP, optionally with a scale (shrinkage)
 // [CM92; physics §13.3].
 #pragma once

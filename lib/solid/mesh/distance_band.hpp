@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Signed distances to a surface on a grid, where they matter.
 #pragma once
 

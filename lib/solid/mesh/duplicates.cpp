@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles that a mesh has more than once.
 #include <algorithm>
 #include <numeric>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Boxes and affine maps in mm: what meshes and implicit shapes have in common.
 #pragma once
 

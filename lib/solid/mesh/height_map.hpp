@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a profilometer would see of a mesh: its heights from above.
 #pragma once
 

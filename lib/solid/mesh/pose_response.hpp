@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What an alignment answers to small errors of the surface that it aligns.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From a triangle soup to a surface whose inside is on the left: weld, drop, orient; and a record of what was done.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A reference surface that answers "how far, and on which side?".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Solids with volumes in closed form.
 #include "base/error.hpp"
 #include "solid/shapes/private/builders.hpp"

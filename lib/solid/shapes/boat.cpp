@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parts with the difficulties of the papers' prints: thin walls, overhangs and a print around an insert.
 #include <numbers>
 

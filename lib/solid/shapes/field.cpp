@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/shapes/field.hpp"
 
 #include <algorithm>

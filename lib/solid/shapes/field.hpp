@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Solids given by a function: negative inside. What the parametric test parts are made of.
 #pragma once
 

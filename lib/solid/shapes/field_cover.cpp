@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The coverage of voxels by a solid that is a function: boxes of voxels that the surface is clear of are filled whole,
 // others halved, down to the smallest block.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/shapes/private/gyroid_kernel.hpp"
 
 namespace vam::solid::VAM_SIMD {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lattices and the ball in a cage.
 #include <array>
 #include <cmath>

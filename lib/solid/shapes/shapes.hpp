@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parametric test parts, among them those of the papers: no mesh needed.
 #pragma once
 

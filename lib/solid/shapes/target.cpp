@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Test targets: patterns whose dimensions are to be measured in the print.
 #include <vector>
 

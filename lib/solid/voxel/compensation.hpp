@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A print corrects its design: what stood out is taken off the next one, and the other way round.
 #pragma once
 

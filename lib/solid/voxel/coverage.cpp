@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/voxel/private/coverage.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A part and the insert it is printed around: what is taken out of the part, and how the two meet.
 #pragma once
 

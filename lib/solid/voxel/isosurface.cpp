@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/voxel/isosurface.hpp"
 
 #include <openvdb/openvdb.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The surface of what prints: where a volume crosses a threshold.
 #pragma once
 

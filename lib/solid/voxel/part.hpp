@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A part that stands in the printer, whatever it came from, and how it becomes voxels slab by slab.
 #pragma once
 

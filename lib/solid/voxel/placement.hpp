@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where a part stands in the printer: its size, its turn, its place on the axis, and the voxels around it.
 #pragma once
 

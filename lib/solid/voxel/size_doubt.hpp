@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Plausibility warnings on the size of a sliced part.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fractional coverage of voxels by a mesh, exact where the mesh is closed [physics §13.1].
 #pragma once
 

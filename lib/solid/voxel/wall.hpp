@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How thin the walls of a part are, in voxels.
 #pragma once
 

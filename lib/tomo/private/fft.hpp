@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Complex transforms along one row, by FFTW in single precision.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one inner loop of both directions: every output gathers from eight input rows through trapezoid footprints.
 // Adjoint: output = pixel, row = angle, element = detector bin. Forward: output = bin, row = pixel row, element =
 // pixel. Plain structs and pointers only: this header is compiled once per instruction set.

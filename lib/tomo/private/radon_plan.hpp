@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What forward and adjoint share: angles, trapezoids, groups of slabs, rows on their way to the kernel. Not for other
 // modules.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two slabs of 3 x 2 voxels: value 1 + index in the slice + 10 slice, against sums and extremes by hand.
 #include "base/per_slice.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The line of progress on a terminal, which a child of this process writes to.
 #include "base/status_line.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files that a tool reads and writes.
 #include <doctest/doctest.h>
 #include <unistd.h>

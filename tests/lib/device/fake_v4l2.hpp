@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A V4L2 camera behind the system calls that the backend makes, for tests: a counter image, 4 x 2 pixels.
 #pragma once
 

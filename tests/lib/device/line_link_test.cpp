@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/private/line_link.hpp"
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which frame a screen shows: that of the stage's angle while it is on.
 #include <doctest/doctest.h>
 

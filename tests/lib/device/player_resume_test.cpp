@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A print in two parts gives the light of one in whole.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/private/ripple_filter.hpp"
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A stage that turns for ever, at 30 deg/s.
 #pragma once
 

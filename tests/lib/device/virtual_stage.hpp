@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A GCS stage in virtual time, with the simulator's truth in the test's hands.
 #pragma once
 

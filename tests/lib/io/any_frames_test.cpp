@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frames of videos, folders and stacks, read in the same way.
 #include "io/image/any_frames.hpp"
 

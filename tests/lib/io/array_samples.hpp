@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays put together in a test, read back whole.
 #pragma once
 

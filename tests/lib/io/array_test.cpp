@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // NumPy arrays, whose bytes are put together here by the format's description (numpy.lib.format).
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A box whose bytes and volume are known, for the tests of mesh files.
 #pragma once
 

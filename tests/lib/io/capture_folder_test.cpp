@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A folder of camera frames that a later capture goes on with.
 #include "io/image/capture_folder.hpp"
 

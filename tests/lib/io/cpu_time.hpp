@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What reading costs, whatever else the machine does.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stacks for the tests, and OpenEXR's own reader for their judge.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Images, and stacks of other programs, are parsed in a child; what comes out is the same as without one.
 #include <doctest/doctest.h>
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes of other programs, put together here by their formats' descriptions: NRRD (teem), MRC2014, TIFF 6.0.
 #include <doctest/doctest.h>
 #include <zlib.h>

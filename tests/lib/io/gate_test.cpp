@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What cannot be a part, a weight or a dose is refused with file, voxel and remedy before light is computed from it.
 #include "io/vdb/gate.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files, written here by the library itself: what is in them is known without reading them by our own code.
 #include <doctest/doctest.h>
 #include <hdf5.h>

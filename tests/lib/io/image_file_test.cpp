@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image/image_file.hpp"
 
 #include <doctest/doctest.h>

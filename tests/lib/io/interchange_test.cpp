@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The programs that others use on these formats open what is written here.
 #include <doctest/doctest.h>
 

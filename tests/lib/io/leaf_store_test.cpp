@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes beyond what is kept in memory: 39,304 leaves, of which 16,384 keep their values.
 #include <doctest/doctest.h>
 

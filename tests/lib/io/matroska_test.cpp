@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Matroska files put together here by RFC 8794: elements of identifier, size and content.
 #include "io/image/private/matroska.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tolerances from calibration records.
 #include "io/settings/recorded_tolerances.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the tests of files need: a folder that vanishes, the fault that work throws, standard streams led elsewhere.
 #pragma once
 

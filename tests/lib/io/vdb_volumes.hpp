@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes for the tests, and OpenVDB's own reader for their judge.
 #pragma once
 

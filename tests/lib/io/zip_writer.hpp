@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A zip archive of stored and packed files, so that the 3MF reader is judged by bytes of our own.
 #pragma once
 

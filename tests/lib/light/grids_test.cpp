@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The grids of doses and of lit resin.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Doses of whole stacks through the vial's operator, for tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vials that the tests of light shine through.
 #pragma once
 

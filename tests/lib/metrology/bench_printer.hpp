@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The printer of a bench that the oracle renders.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Response, flat field, beam, camera axis and latency: 200 scans of each, and what is refused.
 #include <doctest/doctest.h>
 

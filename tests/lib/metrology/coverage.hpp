@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Is a stated sigma honest? Counts how often the truth lies within 2 sigma.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A dirty bench, seen by an independent renderer: every row has the figure that is right as its bar.
 #include <doctest/doctest.h>
 

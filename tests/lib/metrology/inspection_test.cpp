@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Faces, bores and walls whose form is known, and uncertainties against repeated prints.
 #include "metrology/compare/inspection.hpp"
 

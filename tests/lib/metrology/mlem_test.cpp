@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Statistical refinement of slices.
 #include "metrology/ost/private/mlem.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whole parts through the camera: glass, resin, noise and 4 x 4 binning.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The stated uncertainty of a reconstruction against repeated noisy views of an independent renderer.
 #include <doctest/doctest.h>
 

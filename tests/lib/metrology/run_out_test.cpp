@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Run-out of the vial, seen by an independent renderer: fitted with deviations that hold, and removed.
 #include "metrology/ost/run_out.hpp"
 

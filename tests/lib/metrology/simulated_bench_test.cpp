@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The fits on images of the simulated bench: what the simulator has set is what they find.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Views of a known part in a known rig, rendered by the oracle: every pixel's ray is traced through glass and resin.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How many slices the light of one row crosses.
 #include "optics/crossed_slices.hpp"
 

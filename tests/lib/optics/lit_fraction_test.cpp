@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The share of the stage angles from which a point is lit.
 #include "optics/lit_fraction.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far from the axis a printer writes.
 #include "optics/writable_radius.hpp"
 

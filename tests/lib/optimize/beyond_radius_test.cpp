@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A part beyond the writable radius, judged by rays deposited one by one.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The proof of how good any light could be: held by light that is tried, by the exact optimum, and ray by ray.
 #include "optimize/run/certify.hpp"
 

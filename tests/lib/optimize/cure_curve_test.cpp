@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Response curves in closed form.
 #include "optimize/target/cure_curve.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that must end in time, by a clock that advances as it is asked.
 #include <doctest/doctest.h>
 

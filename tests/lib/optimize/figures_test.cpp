@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How slices become passes and jobs, and their figures those of a volume.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The front of duration against window.
 #include "optimize/run/front.hpp"
 

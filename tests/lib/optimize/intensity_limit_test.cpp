@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bounds on the projected intensity: held in every method, and never worse than clipping.
 #include <doctest/doctest.h>
 

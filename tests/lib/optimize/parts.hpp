@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the optimisers' tests share: parts side by side in one pass, figures out.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the printability bench and its test share: a test part, optimised and then judged by chief rays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projections for printers off their settings: scenarios are what those printers do, and the prints hold.
 #include "optimize/methods/private/robust.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points of the design's surface: where they lie, what their doses cost, and that prints come out to size.
 #include "optimize/methods/private/surface_points.hpp"
 

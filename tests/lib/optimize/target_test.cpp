@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is asked of slices: checks at the door, thin slices, weights, inserts.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Walls and gaps that voxels are too coarse for.
 #include "optimize/target/unresolved.hpp"
 

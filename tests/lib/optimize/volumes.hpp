@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A volume optimised in memory, as vam-optimize does it, and the dose of its projections.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The printers that are drawn for the yield: the part is that of the printer as set.
 #include "optimize/run/yield.hpp"
 

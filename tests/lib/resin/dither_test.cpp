@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Error diffusion into grey levels.
 #include "resin/dither.hpp"
 

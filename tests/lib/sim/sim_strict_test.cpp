@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The simulators against their makers' documents, byte by byte and without our backends: a case for each behaviour that
 // a driver might believe otherwise. The sources are named in lib/sim/controllers.
 #include <doctest/doctest.h>

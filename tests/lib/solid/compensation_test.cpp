@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A print that shrinks and overcures corrects its design, judged by closed distances to the design.
 #include "solid/voxel/compensation.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parts from a stack of images.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where parts land, and which grid holds them.
 #include "solid/voxel/placement.hpp"
 

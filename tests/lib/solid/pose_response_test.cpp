@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What errors of a surface do to the pose of its alignment.
 #include "solid/mesh/pose_response.hpp"
 

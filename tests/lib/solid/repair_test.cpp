@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What repair finds and does, counted on meshes with known damage.
 #include "solid/mesh/repair.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shapes against volumes in closed form, and the catalogue against bad input.
 #include "solid/shapes/shapes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tree against CGAL's, and heights from above against closed forms.
 #include "solid/mesh/private/triangle_tree.hpp"
 

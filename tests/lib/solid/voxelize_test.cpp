@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coverage against exact volumes, and what damage does to it.
 #include "solid/voxel/voxelize.hpp"
 

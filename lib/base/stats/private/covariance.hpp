@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Covariance of fitted parameters where the readings scatter unevenly [MW85].
 #pragma once
 

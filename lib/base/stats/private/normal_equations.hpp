@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Normal equations of least squares and their solution.
 #pragma once
 

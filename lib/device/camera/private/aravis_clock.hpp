@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The clock of a GenICam camera, by its time-stamp latch.
 #pragma once
 

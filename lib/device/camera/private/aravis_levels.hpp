@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What decides how a GenICam camera makes grey levels of light.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Continuous frame numbers and times from the wrapping counters of cameras.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pixels as cameras send them, as grey levels of 8 or 16 bits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GLib's sockets, which find GigE cameras, make a process ignore SIGPIPE for good: a tool whose reader has gone (head)
 // would fail with "Broken pipe" instead of ending quietly.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera's setting is what it reads back as, not what it was set to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera's own clock, read by the host now and then: a time stamp is then a moment of the host's clock, however long
 // its frame takes to arrive.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What decides how a Video4Linux camera makes grey levels of light: levels, exposure and rate, all read back.
 #pragma once
 

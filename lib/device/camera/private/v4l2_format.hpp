@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The pixel formats of a Video4Linux camera that hold grey levels.
 #pragma once
 

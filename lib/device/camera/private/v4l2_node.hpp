@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A video node by its path: what it is asked, and what a refusal means.
 #pragma once
 

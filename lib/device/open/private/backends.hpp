@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A table of backends, one row per scheme: {"gcs", open_gcs}. A scheme that is not in the table cannot be opened.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The command protocol of TI's DLPC350 (LightCrafter 4500) and DLPC900 (6500, 9000) in USB HID reports.
 // Source: TI DLPU010 and DLPU018, "Programmer's Guide".
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An image in a graphics card's memory, which a screen can show.
 #pragma once
 

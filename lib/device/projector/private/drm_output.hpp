@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What of a graphics card's resources one screen needs.
 #pragma once
 

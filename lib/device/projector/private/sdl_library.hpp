@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // SDL, loaded when the screens of a desktop are queried: with X11, Wayland and sound it is 40 libraries. Nothing is
 // linked. SDL.h is included here, and by the two sources that call it through this table: the types of the pointers are
 // taken from its declarations, so that the compiler checks them, and its structures and constants are used in the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Questions and orders in PI's General Command Set 2.0 (C-863, C-663 and relatives).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lines of text from a controller, each awaited for a bounded time.
 #pragma once
 

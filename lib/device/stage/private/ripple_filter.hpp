@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The angle of a stage whose speed ripples with its angle, as that of gears and motors does: a straight line in time
 // and harmonics of the turn, both followed sample by sample.
 #pragma once

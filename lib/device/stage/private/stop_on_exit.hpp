@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stops the stage on the way out of a motion that fails.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: the bytes of an array, front to back, in the process that parses it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: what every format comes down to, the type of its numbers and how they lie.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: an array as images, in the process that parses it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: the header of an MRC2014 file, as electron and X-ray microscopes write them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: the header of a NumPy file (numpy.lib.format, versions 1.0 to 3.0).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: the arrays of a .npz, which is a zip archive of .npy.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: the header of an NRRD file (teem, versions 1 to 5), its values in the same file.
 #pragma once
 

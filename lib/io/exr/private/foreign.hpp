@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the EXR files: stacks of other programs, parsed in a child.
 #pragma once
 

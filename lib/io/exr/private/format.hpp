@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the EXR files: what an OpenEXR file looks like on the wire (openexr.com, "OpenEXR File Layout"), and the
 // bridge to the library, which only ever sees memory. A multi-part scanline file is
 //   magic, version | header, header, ..., 0 | offset table of every part | chunks (part number, y, size, data)

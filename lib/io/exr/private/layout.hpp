@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The form of a part: its size, channels and chunks, checked before anything is believed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the EXR files: rows of one channel, as they are or by RLE, without OpenEXR, which takes seven times as
 // long for what is mostly dark.
 #pragma once

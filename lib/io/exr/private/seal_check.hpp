@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the EXR files: holds a stack to its seals while it is read. A stack without seals passes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the EXR files: the seals of a stack. Every part bears that of its facts and that of its pixels as they are
 // decoded. On a pipe the pixels' come after the last image, where other programs do not look: seal_mark, a Digest a
 // part, the Digest of these.

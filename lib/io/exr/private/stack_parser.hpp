@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the EXR files: the headers are parsed by OpenEXR from memory, the chunks are taken in the order of the
 // stream, and the pixels of one image at a time are decoded by OpenEXR from memory. So a pipe does, memory is one image
 // whatever the number of parts (Imf::MultiPartInputFile keeps the buffers of every part it has opened), and no size is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the HDF5 files: opens one whose bytes are at hand, as the process that parses it may open none.
 #pragma once
 

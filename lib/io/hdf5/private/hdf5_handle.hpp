@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the HDF5 files: what libhdf5 has opened, closed at the end; and why it did not.
 #pragma once
 

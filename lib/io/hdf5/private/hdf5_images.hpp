@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the HDF5 files: the images of an open dataset in any order of its axes, many read at a time.
 #pragma once
 

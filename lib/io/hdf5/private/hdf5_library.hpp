@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // libhdf5, loaded when the first such file is read: its 40 libraries would take most of the start of a tool that only
 // may read arrays. Its headers say what the functions are; nothing is linked.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the HDF5 files: which datasets one holds, and the one that is meant.
 #pragma once
 

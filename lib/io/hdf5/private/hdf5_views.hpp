@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the HDF5 files: the conventions by which projections are kept, DXchange and NXtomo [formats: Arrays].
 #pragma once
 

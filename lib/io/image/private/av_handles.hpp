@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to video_*.cpp: libav's objects with owners, and its status codes as Errors.
 #pragma once
 

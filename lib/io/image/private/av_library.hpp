@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // libav, loaded when the first video is opened: its 130 libraries would take most of the start of every tool that knows
 // videos. Its headers say what the functions are; nothing is linked.
 #pragma once

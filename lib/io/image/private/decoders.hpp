@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Images of the formats that cameras and slicers write, from memory.
 #pragma once
 

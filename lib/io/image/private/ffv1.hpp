@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the video writer: FFV1 frames of 8 grey bits, by Golomb-Rice codes RFC 9043.
 #pragma once
 

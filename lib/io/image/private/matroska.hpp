@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the video files: what a Matroska file says of its own wholeness.
 #pragma once
 

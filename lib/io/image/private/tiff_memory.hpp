@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the image files: libtiff on bytes in memory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Video: FFV1 in Matroska, lossless, which may be printed from; H.264 in MP4, for looking at.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The table of mesh formats behind read_mesh and write_mesh. A reader turns the bytes of a file into a polygon soup
 // that has not been checked yet. A new format is one row and its reader.
 #pragma once

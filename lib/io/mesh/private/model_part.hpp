@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One model part of a 3MF package: the objects and the build of one XML document.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // XML as it passes by, element by element, through Expat.
 #pragma once
 

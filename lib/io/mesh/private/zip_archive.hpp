@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files inside a zip archive in memory.
 #pragma once
 

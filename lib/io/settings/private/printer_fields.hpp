@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one table of the printer file's keys: it drives parsing, validation and printing.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to apart.cpp: what a child may do.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to seal.cpp: XXH3 for the instruction set of the machine; the result is the same for all.
 #pragma once
 

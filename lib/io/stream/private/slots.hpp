@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to apart.cpp and its two ends: the shared memory and the socket.
 #pragma once
 

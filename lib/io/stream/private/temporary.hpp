@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to output_file.cpp and output_folder.cpp: temporary names that vanish when the process is interrupted.
 #pragma once
 

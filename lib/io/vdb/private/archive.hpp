@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: archives off a file or a pipe, with the errors of these tools.
 #pragma once
 

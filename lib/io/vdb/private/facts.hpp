@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: a grid's facts beside its voxels.
 #pragma once
 

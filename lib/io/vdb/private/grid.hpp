@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: the OpenVDB grid behind a SparseVolume.
 #pragma once
 

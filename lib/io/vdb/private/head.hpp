@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: validation of an archive's header before it is passed to OpenVDB.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: where the values of a tree's leaves are, some in memory and the others in a scratch file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: the messages by which the parsing child process returns volumes. Each begins with its
 // Record.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: the seals of a grid, in its metadata before its voxels: one of what it is, one of its
 // voxels as they are decoded (tiles, then leaves, in the order of the tree).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A and A* of parallel light through resin that absorbs, D = sum F e^{-mu s}, and its exact inverse [physics §4, §5].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Copies columns of light from the sinogram to a tile and back, compiled once per instruction set.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shadow of opaque inserts (overprinting) [CAL19 fig 4]: how far along its ray the light of a pixel reaches.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A and A* of parallel light through clear resin: the matched pair of lib/tomo.
 #pragma once
 

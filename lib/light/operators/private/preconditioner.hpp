@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The ramp filter and the preconditioner P: approximate inverses of A A* for parallel or nearly parallel rays.
 #pragma once
 

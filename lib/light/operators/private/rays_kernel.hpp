@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sums light from the columns of a tile to its voxels and back, compiled once per instruction set.
 #pragma once
 

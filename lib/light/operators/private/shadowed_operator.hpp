@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A and A* of parallel light around an opaque insert (overprinting) [CAL19 fig 4].
 #pragma once
 

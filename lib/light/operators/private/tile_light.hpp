@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The light on a tile of voxel columns at a few stage angles: working memory of the vial operator.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The voxel columns of a slice in tiles, whose light is brought together.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A and A* of the real projector: chief rays that diverge, climb, are refracted by bath, glass and resin, and converge
 // in the vial. Sinograms that are optimised with it need no resampling.
 #pragma once

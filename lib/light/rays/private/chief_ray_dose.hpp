@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose of a level chief ray at a point, T / |J - u ddelta/dx_p| e^{-mu s} [RAY21 eq 8; physics §4], on circles of
 // the laboratory.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Change of the rays of the table where the vial is displaced from the rotation axis [physics §11].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rays through voxels whose pose differs from frame to frame [physics §11].
 #pragma once
 

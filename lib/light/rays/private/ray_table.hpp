@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Table of the rays of the projector through a point of the laboratory, with their strength and density, over polar
 // coordinates of the plan view, made from the chief rays alone. The geometry does not depend on the stage angle, so one
 // table serves every voxel at every angle.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dose of a skew ray at a point, T e^{-mu l} / (|determinant| cos epsilon) [physics §11], at three heights, and the
 // polynomials between these.
 #pragma once

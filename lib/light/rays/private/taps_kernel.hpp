@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Finds the pixels that light a voxel from points of the ray table, compiled once per instruction set.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // State of the simulation: its beam model, whole or block by block.
 #pragma once
 

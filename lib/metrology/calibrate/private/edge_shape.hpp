@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The edges of a vial as a camera beside it sees them, lit by one projector column after the other [physics §10].
 #pragma once
 

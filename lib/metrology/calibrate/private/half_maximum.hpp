@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Edges of a bright object on a dark background, at half maximum, with sub-pixel resolution.
 #pragma once
 

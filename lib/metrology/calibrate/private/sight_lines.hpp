@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The image of a thin luminous sheet in the resin, seen by a camera beside the vial.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The vial's radius from its edges in the projector's field [RAY21 eq 9; physics §10].
 #pragma once
 

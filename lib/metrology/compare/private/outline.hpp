@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to emboss: an outline of points laid onto another that is a field of distances. The middle of an image is
 // (0, 0), x to the right, y up, in mm.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Even angles made of uneven ones, whatever the camera delivered [OST22 section 2.4].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Back-projection along rays that climb [FDK84; physics §8].
 #pragma once
 

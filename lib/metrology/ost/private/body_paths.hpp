@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bodies that rays show, and what rays pass of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bubbles pass through the views. They are distinguished from the print by consistency over the angles: a line is seen
 // twice a turn, from either end, and a bubble is seldom there both times.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Views of a turn, row by row, to what one height shows at every angle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The inner loops of the back-projection along climbing rays; heights are contiguous. Compiled once per instruction
 // set; no standard headers.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An image between its pixels, by cubic convolution [KEYS81].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Camera rows to heights in the resin, by exact rays that climb.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rays that bubbles hide at both ends of their line, restored from the bodies that all rays show.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the turning vial's place does to the views, from lines that are seen from both of their ends.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Statistical refinement of a reconstruction, for noisy views.
 #pragma once
 

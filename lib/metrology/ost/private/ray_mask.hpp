@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Marked rays of the sinograms of one stretch of heights.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projected gradient descent with a step that chooses itself, for any loss that is a sum over voxels.
 #pragma once
 

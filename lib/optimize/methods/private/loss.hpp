@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one-sided loss: every voxel's dose should stay within bounds; inside them there is no penalty [physics §6].
 #pragma once
 

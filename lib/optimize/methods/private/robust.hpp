@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Optimisation of projections that tolerate deviations of the printer.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Restores the previous iterate of slices whose loss has increased.
 #pragma once
 

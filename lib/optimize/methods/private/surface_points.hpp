@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points of the design's surface, whose dose is to be the threshold [physics §6].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bounds and a preconditioner together: two-metric projection [BER82; physics §6].
 #pragma once
 

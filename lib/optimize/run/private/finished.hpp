@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The projections of finished jobs, handed out slice by slice.
 #pragma once
 

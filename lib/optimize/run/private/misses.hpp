@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Location of wrong voxels in a finished print: outside the part's box, and slice by slice.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A pass of a volume: the jobs whose slices are optimised together, packed 16 to a slab.
 #pragma once
 

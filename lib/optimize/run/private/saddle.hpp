@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The least max_V x / min_G x of any light as the saddle of a bilinear form, and its primal-dual iteration.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The doses of a pass, added to the totals of the run.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The scale of what has been optimised: where the printing threshold lies in its doses.
 #pragma once
 

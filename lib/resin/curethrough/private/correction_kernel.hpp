@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One row of one slice of the correction. Plain structs and pointers only: compiled once per instruction set.
 #pragma once
 

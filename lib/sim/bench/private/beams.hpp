@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The projector's chief rays in the resin of a simulated vial, and how an image of it lights them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A chief ray through the bath's window and the vial, in the plane across the axis, for simulated cameras and beams:
 // unit vectors, and Snell's law in vector form at each surface. It shares nothing with lib/optics, which tests
 // judge by this bench.

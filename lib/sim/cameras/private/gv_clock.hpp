@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The clock of a simulated GigE Vision camera, with its latch.
 #pragma once
 

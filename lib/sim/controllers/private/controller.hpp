@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What simulated controllers share: a motor, a line with latency, a log of the truth, and faults.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to align: where to start from when nothing is known of the pose.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Point-to-plane ICP from a given start [CM92; physics §13.3].
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Consistent, then outward orientation of the components of a welded mesh.
 #pragma once
 

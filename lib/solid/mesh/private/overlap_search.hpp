@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Private to align: where a part of a print may lie on the design when moments say nothing.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Who shares an edge with whom in a triangle soup with welded points.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles in a tree of boxes: what closest points and winding numbers walk.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points that are meant to be one become one; triangles that are none, or there twice, go.
 #pragma once
 

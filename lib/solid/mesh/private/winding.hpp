@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The generalised winding number of a triangle soup, also of one with holes: 1 inside, 0 outside, in between near a
 // hole, so that "more than a half" is the best answer to "inside?" [JKS13]. Far triangles are summed as dipoles of a
 // tree, with the next order [BAR18; physics §13.2].

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The solids behind the names of shapes.cpp; values in the order of the catalogue.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The part of a cubic cell that a solid fills, from the field at its corners and its middle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The distance from a gyroid at many points, compiled once per instruction set.
 #pragma once
 

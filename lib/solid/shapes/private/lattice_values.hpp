@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A field at the points of a small cubic lattice.
 #pragma once
 

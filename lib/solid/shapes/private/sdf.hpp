@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Signed distances of simple solids, mm, negative inside. Each is the exact distance, or (corners of intersections) a
 // lower bound of it that vanishes at the surface. Formulas: Quilez, "3D distance functions".
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coverage where the surface is smooth on the scale of several voxels: a quadratic instead of a value per corner.
 #pragma once
 

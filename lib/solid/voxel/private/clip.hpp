@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles cut to voxels: polygons in voxel units, voxel i spanning i ... i + 1 along every axis.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A mesh in voxel units, sorted into layers; the moments of its pieces; rows of sums. Shared by voxelize and its vote.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Inside by the vote of three axes, for meshes with holes; see voxelize.hpp.
 #pragma once
 
