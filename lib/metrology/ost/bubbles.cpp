@@ -153,13 +153,19 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, std::ve
   if (count == 0 || share > most_bubbles) return share;
   take_darker_ends(sinograms, marked);
   std::vector<RayMask> hidden = suspect_rays(marked, width, heights);
-  const BodyPaths bodies(rays, grid, sinograms, 0.5F * least);
-  // Bubbles are seldom alike at both ends of a line: more rays than this are bodies of another density. Twice the
-  // contrast, as the bodies are known to a few per cent.
-  const std::vector<RayMask> above = rays_above(bodies, sinograms, hidden, count / 4, 2 * least);
-  add(above, hidden);
-  add(mirrored(above, width), hidden);
-  limit_to_bodies(bodies, hidden, least, sinograms);
+  const std::vector<Image> seen = sinograms;
+  constexpr int rounds = 2;  // restored rays show the bodies better
+  for (int round = 0; round < rounds; ++round) {
+    const BodyPaths bodies(rays, grid, sinograms, 0.5F * least);
+    if (round == 0) {
+      // Bubbles are seldom alike at both ends of a line: more rays than this are bodies of another density. Twice the
+      // contrast, as the bodies are known to a few per cent.
+      const std::vector<RayMask> above = rays_above(bodies, seen, hidden, count / 4, 2 * least);
+      add(above, hidden);
+      add(mirrored(above, width), hidden);
+    }
+    limit_to_bodies(bodies, hidden, least, seen, sinograms);
+  }
   return share;
 }
 

@@ -124,12 +124,13 @@ std::vector<RayMask> rays_above(const BodyPaths& bodies, const std::vector<Image
 }
 
 void limit_to_bodies(const BodyPaths& bodies, const std::vector<RayMask>& hidden, float least,
-                     std::vector<Image>& sinograms) {
-  const int width = sinograms.front().width;
-  const auto passed = passed_by(bodies, hidden, width, count_of(sinograms));
-  parallel_for(count_of(sinograms), [&](int k) {
-    Image& s = sinograms[k];
-    const Image before = s;
+                     const std::vector<Image>& seen, std::vector<Image>& sinograms) {
+  const int width = seen.front().width;
+  const auto passed = passed_by(bodies, hidden, width, count_of(seen));
+  parallel_for(count_of(seen), [&](int k) {
+    const Image& s = seen[k];
+    Image& out = sinograms[k];
+    out = s;
     const int n = s.height;
     for (int t = 0; t < width; ++t) {
       const std::size_t i = product(k, width) + t;
@@ -137,9 +138,9 @@ void limit_to_bodies(const BodyPaths& bodies, const std::vector<RayMask>& hidden
       const auto limit = [&](int a, float most) {
         const int b = opposite(s, a);
         if (is_in(hidden, b, product(k, width) + mirror)) {
-          most = std::min(most, std::max(0.0F, before(mirror, b) + passed[a](t, k) - passed[b](mirror, k)));
+          most = std::min(most, std::max(0.0F, s(mirror, b) + passed[a](t, k) - passed[b](mirror, k)));
         }
-        if (s(t, a) > most + least) s(t, a) = most;
+        if (s(t, a) > most + least) out(t, a) = most;
       };
       int first = 0;
       while (first < n && is_in(hidden, first, i)) ++first;

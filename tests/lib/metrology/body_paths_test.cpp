@@ -118,7 +118,7 @@ TEST_CASE("bubbles that are alike at both ends of a line are found, and the bodi
     for (auto row = far.begin(); row != far.end(); row += columns) std::reverse(row, row + columns);
     if (!far.empty()) hidden[a] = far;
   }
-  limit_to_bodies(bodies, hidden, least, restored);
+  limit_to_bodies(bodies, hidden, least, bubbly, restored);
   CHECK(largest_difference(bubbly, clean) > 2.9F);
   CHECK(largest_difference(restored, clean) < 2 * least);
   // More of them than are asked for are none.
@@ -135,7 +135,7 @@ TEST_CASE("of a body of lesser density nothing is taken where no bubble is") {
   const BodyPaths bodies(climbing(), grid(), sinograms, 0.15F);
   std::vector<RayMask> hidden(angles);
   for (int a = 30; a < 33; ++a) hidden[a] = RayMask(product(heights, columns), 1);
-  limit_to_bodies(bodies, hidden, 0, sinograms);
+  limit_to_bodies(bodies, hidden, 0, before, sinograms);
   CHECK(largest_difference(sinograms, before) < 0.48F);  // half of its light
 }
 

@@ -16,10 +16,10 @@ namespace vam::metrology {
 [[nodiscard]] std::vector<RayMask> rays_above(const BodyPaths& bodies, const std::vector<Image>& sinograms,
                                               const std::vector<RayMask>& known, std::ptrdiff_t most, float least);
 
-/// Hidden rays become at most what they pass of the bodies plus what the rays of that column before and after, which
-/// are not hidden, differ by from it; and at most the other end of their line plus the difference of what both ends
-/// pass. Those within `least` of it stay.
+/// The rays that are seen, but for hidden ones: those become at most what they pass of the bodies plus what the rays of
+/// that column before and after, which are not hidden, differ by from it; and at most the other end of their line plus
+/// the difference of what both ends pass. Those within `least` of it stay.
 void limit_to_bodies(const BodyPaths& bodies, const std::vector<RayMask>& hidden, float least,
-                     std::vector<Image>& sinograms);
+                     const std::vector<Image>& seen, std::vector<Image>& sinograms);
 
 }  // namespace vam::metrology
