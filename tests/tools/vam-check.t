@@ -24,8 +24,12 @@ is 'the chain names the sinogram' "$(grep -c '^  [0-9a-f]\{16\}  vam-sinogram .*
 is 'another part has a different seal' "$(vam-slice a.off --voxel 0.4 -o b.vdb && vam-check b.vdb | grep -c "$part")" 0
 
 flip sino.exr -500 bad.exr
-fails 65 'bad.exr: image [0-9]* changed after it was written \(sealed [0-9a-f]{8}, read [0-9a-f]{8}\); create it again' vam-check bad.exr
-fails 65 'bad.exr: image [0-9]* changed' vam-resample bad.exr -o frames.exr
+fails 65 'bad.exr: image [0-9]* is damaged: a row of RLE is too short; create it again' vam-check bad.exr
+fails 65 'bad.exr: image [0-9]* is damaged' vam-resample bad.exr -o frames.exr
+vam-sinogram part.vdb --compression none -o plain.exr
+flip plain.exr -500 changed.exr
+fails 65 'changed.exr: image [0-9]* changed after it was written \(sealed [0-9a-f]{8}, read [0-9a-f]{8}\); create it again' vam-check changed.exr
+fails 65 'changed.exr: image [0-9]* changed' vam-resample changed.exr -o frames.exr
 ok '--fast checks headers only' vam-check --fast bad.exr
 python3 - <<'PY'
 data = open('sino.exr', 'rb').read()

@@ -52,6 +52,16 @@ void check_intensity(const Image& image, std::size_t index) {
                            ", more than 1e9, which is no intensity; scale or mend it");
 }
 
+void decode_whole(const Imf::Header& layout, const Chunks& chunks, std::size_t index, Image& image) {
+  try {
+    decode(layout, chunks, image);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& problem) {
+    throw std::runtime_error("image " + std::to_string(index) + " is damaged: " + problem.what() + "; create it again");
+  }
+}
+
 // In the memory of a former image; all of it is decoded anew.
 void take_size(Image& image, const StackInfo& info) {
   image.width = info.width;
@@ -247,7 +257,7 @@ void StackParser::refill(bool alone) {
   const auto decode_one = [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     take_size(ready_[at], info_);
-    decode(layouts_[layout_of_[first + at]].header, taken[at], ready_[at]);
+    decode_whole(layouts_[layout_of_[first + at]].header, taken[at], first + at, ready_[at]);
     check_finite(ready_[at], first + at);
     if (info_.space == model::Space::projector) check_intensity(ready_[at], first + at);
     seals_->note_image(first + at, ready_[at]);
