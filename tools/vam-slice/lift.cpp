@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "light/grids/flat_faces.hpp"
+#include "light/grids/face_blur.hpp"
 
 namespace vam::slice_tool {
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/constants.hpp"
+#include "light/grids/face_blur.hpp"
 
 namespace vam::light {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "light/grids/flat_faces.hpp"
+#include "model/printer.hpp"
 
 namespace vam::light {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "light/grids/face_blur.hpp"
+
 using namespace vam;
 using namespace vam::light;
 
