@@ -9,6 +9,7 @@
 #include "base/stats/median.hpp"
 #include "metrology/ost/private/body_paths.hpp"
 #include "metrology/ost/private/hidden_rays.hpp"
+#include "metrology/ost/private/one_density_body.hpp"
 #include "metrology/ost/private/ray_mask.hpp"
 
 namespace vam::metrology {
@@ -156,7 +157,7 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, std::ve
   const std::vector<Image> seen = sinograms;
   constexpr int rounds = 2;  // restored rays show the bodies better
   for (int round = 0; round < rounds; ++round) {
-    const BodyPaths bodies(rays, grid, sinograms, 0.5F * least);
+    const BodyPaths bodies(rays, one_density_body(rays, grid, sinograms, 0.5F * least));
     if (round == 0) {
       // Bubbles are seldom alike at both ends of a line: more rays than this are bodies of another density. Twice the
       // contrast, as the bodies are known to a few per cent.

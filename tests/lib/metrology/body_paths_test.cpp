@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "metrology/ost/private/hidden_rays.hpp"
+#include "metrology/ost/private/one_density_body.hpp"
 
 using namespace vam;
 using namespace vam::metrology;
@@ -58,6 +59,10 @@ std::vector<Image> sinograms_of(double x_mm, double y_mm, double radius, double 
   return out;
 }
 
+BodyPaths bodies_of(const std::vector<Image>& sinograms, float dark) {
+  return {climbing(), one_density_body(climbing(), grid(), sinograms, dark)};
+}
+
 // The same spot of light at both ends of some lines.
 void add_twin_bubbles(std::vector<Image>& sinograms) {
   for (int a = 20; a < 26; ++a) {
@@ -84,7 +89,7 @@ float largest_difference(const std::vector<Image>& a, const std::vector<Image>& 
 
 TEST_CASE("rays pass of the bodies what made them, at end faces, too") {
   const auto sinograms = sinograms_of(0.4, -0.3, radius_mm, 2);
-  const BodyPaths bodies(climbing(), grid(), sinograms, 0.15F);
+  const BodyPaths bodies = bodies_of(sinograms, 0.15F);
   std::vector<float> passed(heights);
   for (const int a : {0, 17, 60, 95}) {
     for (const int t : {25, 40, 50}) {
@@ -106,7 +111,7 @@ TEST_CASE("bubbles that are alike at both ends of a line are found, and the bodi
   auto bubbly = clean;
   add_twin_bubbles(bubbly);
   constexpr float least = 0.6F;
-  const BodyPaths bodies(climbing(), grid(), bubbly, 0.5F * least);
+  const BodyPaths bodies = bodies_of(bubbly, 0.5F * least);
   const std::vector<RayMask> none(angles);
   const auto above = rays_above(bodies, bubbly, none, 10000, least);
   CHECK(above[22][product(24, columns) + 50] == 1);
@@ -132,7 +137,7 @@ TEST_CASE("of a body of lesser density nothing is taken where no bubble is") {
     for (std::size_t i = 0; i < faint[k].size(); ++i) sinograms[k].values[i] += faint[k].values[i];
   }
   const auto before = sinograms;
-  const BodyPaths bodies(climbing(), grid(), sinograms, 0.15F);
+  const BodyPaths bodies = bodies_of(sinograms, 0.15F);
   std::vector<RayMask> hidden(angles);
   for (int a = 30; a < 33; ++a) hidden[a] = RayMask(product(heights, columns), 1);
   limit_to_bodies(bodies, hidden, 0, before, sinograms);
@@ -154,7 +159,7 @@ TEST_CASE("what bubbles leave beside the print is no body: other rays are dark t
     }
   }
   const auto along = [&](float dark) {
-    const BodyPaths bodies(climbing(), grid(), bubbly, dark);
+    const BodyPaths bodies = bodies_of(bubbly, dark);
     float passed = 0;
     bodies.along(columns / 2 + 30, 0, 24, 1, std::span(&passed, 1));
     return passed;

@@ -1,33 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bodies that rays show, and what rays pass of them.
+// What rays pass of bodies.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "base/aligned_memory.hpp"
-#include "base/image.hpp"
 #include "metrology/ost/private/back_projection.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {
 
-/// The volume of sinograms as bodies of one density, that of most of what they show. Bubbles that were not removed
-/// leave streaks in it, and fainter places in bodies: values from a quarter to three quarters of the density are
-/// stretched to 0 to 1 of it, so that edges, at half, stay where they are.
+/// Bodies that rays pass.
 class BodyPaths {
  public:
-  /// Sinograms of the grid's slices, columns x angles over a turn. A place that is seen through, by rays below `dark`,
-  /// is empty: a bubble is there in few views.
-  BodyPaths(const ClimbingRays& rays, const model::Grid& grid, const std::vector<Image>& sinograms, float dark);
+  BodyPaths(const ClimbingRays& rays, const model::Volume& bodies);
   /// Line integrals along the rays of a column and angle, of heights from slice `first` on, mm times density, by sums
   /// in steps of so many voxels. Beyond the first and last slice bodies are as there.
   void along(int column, int angle, int first, int step, std::span<float> out) const;
 
  private:
-  [[nodiscard]] float density_of(const model::Volume& volume) const;
-  void carve(const std::vector<Image>& sinograms, float dark, float density, model::Volume& volume) const;
-  void keep(const model::Volume& volume, float density);
   void add(double x, double y, double start, double slope, std::span<float> out) const;
 
   ClimbingRays rays_;
