@@ -3,8 +3,8 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 seen() { python3 "$VAM_SOURCE/tests/tools/progress.py" "$@"; }
-work='vam-optimize --iterations 8 --angles 90 part.vdb'  # of some seconds
-vam-slice --shape gyroid --voxel 0.29 -o part.vdb
+work='vam-optimize --iterations 14 --angles 180 part.vdb'  # of some seconds
+vam-slice --shape gyroid --voxel 0.2 -o part.vdb
 
 ok 'on a terminal' seen 100 "$work" ; mv .log/out rows
 grep '^vam-optimize: optimising' rows >drawn
@@ -24,8 +24,8 @@ ok 'the tools of a pipe' seen 80 'vam-sinogram --angles 90 fine.vdb | vam-resamp
 grep -o '^vam-[a-z]*: [a-z]* ' .log/out | uniq >turns
 is 'take turns' "$(sort turns | uniq -d)" ''
 
-vam-slice --shape gyroid --voxel 0.2 --stretch-z 1 -o print.vdb
-ok 'vam-sdf' seen 80 'vam-sdf print.vdb fine.vdb --isovalue 0.5 --volume apart.vdb --volume-voxel 0.06'
+vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 --voxel 0.3 -o box.vdb
+ok 'vam-sdf' seen 80 'vam-sdf box.vdb box.vdb --isovalue 0.5 --align none --volume apart.vdb --volume-voxel 0.03'
 holds 'says that it measures' "$(grep -c '^vam-sdf: measuring distances \[' .log/out) > 0"
 
 ok 'no terminal' sh -c "$work -o x.exr"
