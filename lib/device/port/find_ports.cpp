@@ -91,7 +91,7 @@ void look_at(libusb_device* device, std::vector<Found>& found) {
 
 // Of a port that the user names.
 std::string named_obstacle(const std::string& path) {
-  const std::string obstacle = node_obstacle(path);
+  std::string obstacle = node_obstacle(path);
   struct stat about {};
   if (!obstacle.empty() || stat(path.c_str(), &about) != 0) return obstacle;
   constexpr unsigned memory_devices = 1;  // null, zero, random
