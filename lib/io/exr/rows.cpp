@@ -29,7 +29,8 @@ void undo_runs(std::string_view runs, Bytes to) {
     return count;
   };
   for (auto at = runs.begin(); at != runs.end();) {
-    const int n = static_cast<std::int8_t>(*at++);
+    const int byte = static_cast<std::uint8_t>(*at++);
+    const int n = byte < 128 ? byte : byte - 256;
     if (n < 0) {
       if (runs.end() - at < -n) refuse("a row of RLE ends too early");
       for (const auto end = at + static_cast<std::ptrdiff_t>(room(-n)); at != end; ++at) {

@@ -42,8 +42,9 @@ class SampleLattice {
   static std::size_t index(int i, int j, int k) {
     return flat_index(k, side, j) * side + i;
   }
-  std::array<double, block * block * block> middles_;
-  std::array<double, (block + 1) * (block + 1) * (block + 1)> corners_;
+  static constexpr std::size_t edge = block;
+  std::array<double, edge * edge * edge> middles_;
+  std::array<double, (edge + 1) * (edge + 1) * (edge + 1)> corners_;
 };
 
 class Cover {
