@@ -80,7 +80,8 @@ double halved_fraction(const Field& field, const Point& centre, double edge_mm, 
   auto* point = points.data();
   for (unsigned n = 0; n < 27; ++n) {
     if (is_corner(n) || n == middle_node) continue;
-    *point++ = centre + (edge_mm / 2) * Point{n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0};
+    const unsigned layer = n / 9;
+    *point++ = centre + (edge_mm / 2) * Point{n % 3 - 1.0, n / 3 % 3 - 1.0, layer - 1.0};
   }
   for (unsigned part = 0; part < 8; ++part) *point++ = centre + (edge_mm / 2) * corner_sign(part);
   std::array<double, points.size()> values;
