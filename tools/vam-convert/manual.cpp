@@ -70,14 +70,11 @@ cli::Manual manual() {
         "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample | vam-project --turns 1 -o frames\n"
         "vam-convert frames --geometry vial --like part.vdb | vam-dose --like part.vdb | vam-score --target part.vdb"}},
       {"Memory: one image of an array in C order, and the file for .npz and TIFF, and for HDF5 from a pipe; of HDF5 "
-       "the "
-       "images of a chunk, or an eighth of the memory in another order; the whole of any other array in another "
-       "order, whose first values are "
-       "needed "
-       "last; 4 bytes for each lit pixel of frames that become sinograms; a volume as it is stored.",
+       "the images of a chunk, or an eighth of the memory in another order; the whole of any other array in another "
+       "order, whose first values are needed last; 4 bytes for each lit pixel of frames that become sinograms; a "
+       "volume as it is stored.",
        "An array is parsed in a process of its own (vam-formats(7), DESCRIPTION). Sizes are up to 65536 along an axis "
-       "and "
-       "2^28 an image. Values that are not finite are refused."},
+       "and 2^28 an image. Values that are not finite are refused."},
       {"vam-dose", "vam-project", "vam-score", "vam-view"}};
 }
 

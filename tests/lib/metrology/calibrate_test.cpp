@@ -12,7 +12,6 @@
 #include "metrology/calibrate/flat.hpp"
 #include "metrology/calibrate/lag.hpp"
 #include "metrology/calibrate/latency.hpp"
-#include "metrology/calibrate/private/half_maximum.hpp"
 #include "metrology/calibrate/recorded_angle_fit.hpp"
 #include "metrology/calibrate/response.hpp"
 #include "metrology/calibrate/wobble.hpp"
@@ -248,38 +247,6 @@ TEST_CASE("Latency: 200 blinking screens, 95 % inside 2 sigma") {
   CHECK(message_of([&] { (void)measure_latency(dark); }).find("is not visible") != std::string::npos);
   for (std::size_t n = 0; n < 20; ++n) dark.light[n] = dark.begin_s[n] >= 0.95 ? 90 : 10;  // in step with the flips
   CHECK(message_of([&] { (void)measure_latency(dark); }).find("across a flip") != std::string::npos);
-}
-
-TEST_CASE("Half maximum: between pixels, and only with dark on both sides") {
-  std::vector<double> profile(40);
-  for (int i = 0; i < 40; ++i) profile[i] = 5 + 100 * std::clamp(10.0 - std::abs(i - 20.25), 0.0, 4.0) / 4;
-  const auto extent = half_maximum(profile);
-  REQUIRE(extent);
-  CHECK(extent->middle() == doctest::Approx(20.25));
-  CHECK(extent->width() == doctest::Approx(16));
-  CHECK(extent->centroid == doctest::Approx(20.25));
-  CHECK_FALSE(half_maximum(std::vector<double>(40, 3)));
-  std::vector<double> step(40);
-  for (std::size_t i = 20; i < 40; ++i) step[i] = 1;
-  CHECK_FALSE(half_maximum(step));
-}
-
-TEST_CASE("Half maximum: the centroid of a round top scatters less than half as far as the middle of its edges") {
-  vam::oracle::Random random(29);
-  double of_middle = 0;
-  double of_centroid = 0;
-  for (int run = 0; run < runs; ++run) {
-    const double truth = 100 + part(random);
-    std::vector<double> profile(200);
-    for (int i = 0; i < 200; ++i) {
-      profile[i] = 5 + 100 * std::sqrt(std::max(0.0, 1 - std::pow((i - truth) / 27, 2))) + unit(random);
-    }
-    const auto extent = half_maximum(profile);
-    REQUIRE(extent);
-    of_middle += std::pow(extent->middle() - truth, 2);
-    of_centroid += std::pow(extent->centroid - truth, 2);
-  }
-  CHECK(of_centroid < of_middle / 4);
 }
 
 TEST_CASE("wobble: axis and runout separated from four stage angles") {
