@@ -8,6 +8,7 @@
 #include "lib/meshes.hpp"
 #include "metrology/compare/deviation.hpp"
 #include "solid/mesh/align.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace {
 

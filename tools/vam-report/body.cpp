@@ -11,7 +11,8 @@
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "plot/page.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/geometry.hpp"
+#include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"
 #include "vam-report/layers.hpp"
 
@@ -120,7 +121,7 @@ std::string body_view(const io::SparseVolume& target, const std::optional<Printe
   while (vertices(layers) > most_vertices) layers = layers_of(target, print, ++by);
   if (layers[0].mesh.triangles.empty()) return "";
   for (Layer& layer : layers) tool::unstretch(layer.mesh, target.metadata);
-  const solid::Box design = solid::bounding_box(layers[0].mesh);
+  const solid::Bounds design = solid::bounding_box(layers[0].mesh);
   const Vector3 size = design.high - design.low;
   const std::string mm =
       format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2], 3) + " mm";

@@ -12,7 +12,7 @@
 #include "base/text.hpp"
 #include "plot/canvas.hpp"
 #include "plot/colour_map.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "vam-report/page_data.hpp"
 
 namespace vam::report_tool {
@@ -32,7 +32,7 @@ Rgb colour_of(const Layer& layer, std::size_t vertex) {
   return plot::colour(plot::ColourMap::diverging, 0.5 + 0.5 * layer.values[vertex] / layer.limit);
 }
 
-Json packed(const Layer& layer, const solid::Box& box) {
+Json packed(const Layer& layer, const solid::Bounds& box) {
   std::vector<std::uint16_t> positions;
   std::vector<std::uint8_t> colours;
   std::vector<std::uint32_t> triangles;
@@ -72,14 +72,10 @@ std::string choices(const std::vector<Layer>& layers, const std::string& group) 
   return made + "</div>";
 }
 
-solid::Box box_of(const std::vector<Layer>& layers) {
-  solid::Box box = solid::bounding_box(layers[0].mesh);
+solid::Bounds box_of(const std::vector<Layer>& layers) {
+  solid::Bounds box = solid::bounding_box(layers[0].mesh);
   for (const Layer& layer : layers) {
-    const solid::Box other = solid::bounding_box(layer.mesh);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], other.low[axis]);
-      box.high[axis] = std::max(box.high[axis], other.high[axis]);
-    }
+    box.join(solid::bounding_box(layer.mesh));
   }
   return box;
 }
@@ -87,7 +83,7 @@ solid::Box box_of(const std::vector<Layer>& layers) {
 }  // namespace
 
 std::string layers_view(const std::vector<Layer>& layers, const std::string& group) {
-  const solid::Box box = box_of(layers);
+  const solid::Bounds box = box_of(layers);
   Json packed_layers = Json::array();
   std::string scales;
   for (std::size_t n = 0; n < layers.size(); ++n) {

@@ -7,7 +7,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "plot/page.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "vam-report/meshes.hpp"
 
 namespace vam::report_tool {
@@ -138,7 +138,7 @@ std::string drawing(const std::vector<Outline>& outlines) {
 std::string mesh_sections(const std::vector<ShownMesh>& meshes) {
   if (meshes.empty()) return "";
   constexpr std::array<const char*, 3> names{"x", "y", "z"};
-  const solid::Box box = solid::bounding_box(meshes[0].mesh);
+  const solid::Bounds box = solid::bounding_box(meshes[0].mesh);
   std::string made;
   for (std::size_t axis = 3; axis-- > 0;) {
     const Cut cut{axis, 0.5 * (box.low[axis] + box.high[axis])};

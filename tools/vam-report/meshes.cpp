@@ -10,7 +10,7 @@
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "plot/page.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "vam-report/layers.hpp"
 #include "vam-report/names.hpp"
 

@@ -20,6 +20,7 @@
 #include "plot/deviation_histogram.hpp"
 #include "plot/save.hpp"
 #include "solid/mesh/align.hpp"
+#include "solid/mesh/signed_distance.hpp"
 #include "vam-sdf/figure_names.hpp"
 #include "vam-sdf/options.hpp"
 #include "vam-sdf/pose.hpp"

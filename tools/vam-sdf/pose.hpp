@@ -7,6 +7,7 @@
 #include "metrology/compare/inspection.hpp"
 #include "model/mesh.hpp"
 #include "solid/mesh/align.hpp"
+#include "solid/mesh/signed_distance.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace vam::sdf_tool {

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::sdf_tool {
 

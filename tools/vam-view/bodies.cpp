@@ -9,7 +9,8 @@
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "plot/render.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/geometry.hpp"
+#include "solid/mesh/signed_distance.hpp"
 #include "vam-view/sight.hpp"
 
 namespace vam::view_tool {

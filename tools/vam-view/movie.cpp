@@ -14,6 +14,7 @@
 #include "io/image/movie.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/render.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "vam-view/sight.hpp"
 
 namespace vam::view_tool {

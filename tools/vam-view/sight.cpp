@@ -22,13 +22,9 @@ model::TriangleSoup surface_of(const io::SparseVolume& volume, double level, con
 }
 
 Sight sight_of(const std::vector<const plot::Body*>& bodies) {
-  solid::Box box = solid::bounding_box(bodies.front()->mesh);
+  solid::Bounds box = solid::bounding_box(bodies.front()->mesh);
   for (const plot::Body* body : bodies) {
-    const solid::Box other = solid::bounding_box(body->mesh);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], other.low[axis]);
-      box.high[axis] = std::max(box.high[axis], other.high[axis]);
-    }
+    box.join(solid::bounding_box(body->mesh));
   }
   const Vector3 centre = 0.5 * (box.low + box.high);
   return {centre, air * plot::side_mm(bodies, centre, {})};
@@ -49,7 +45,7 @@ void label(plot::ImageFigure& figure, const Sight& sight, const plot::ViewOption
   figure.title = view.title.value_or(view.name + what);
 }
 
-std::string size_text(const solid::Box& box) {
+std::string size_text(const solid::Bounds& box) {
   const Vector3 size = box.high - box.low;
   return format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2], 3) +
          " mm, z upwards, seen from 25° above";

@@ -10,7 +10,7 @@
 #include "plot/image_figure.hpp"
 #include "plot/render.hpp"
 #include "plot/view.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/geometry.hpp"
 
 namespace vam::view_tool {
 
@@ -33,6 +33,6 @@ void add_panel(plot::ImageFigure& figure, const std::vector<const plot::Body*>& 
 void label(plot::ImageFigure& figure, const Sight& sight, const plot::ViewOptions& view, const std::string& what);
 
 /// "10 x 10 x 10 mm, z upwards, seen from 25° above".
-[[nodiscard]] std::string size_text(const solid::Box& box);
+[[nodiscard]] std::string size_text(const solid::Bounds& box);
 
 }  // namespace vam::view_tool

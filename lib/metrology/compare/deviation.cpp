@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/stats/curve_fit.hpp"
+#include "solid/mesh/geometry.hpp"
 
 namespace vam::metrology {
 

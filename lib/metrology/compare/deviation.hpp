@@ -10,7 +10,8 @@
 
 #include "base/json_fwd.hpp"
 #include "model/mesh.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
+#include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
 

@@ -9,6 +9,7 @@
 #include "base/json_fwd.hpp"
 #include "metrology/compare/deviation.hpp"
 #include "metrology/compare/regions.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::metrology {
 

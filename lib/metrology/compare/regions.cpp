@@ -9,6 +9,8 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "solid/mesh/signed_distance.hpp"
+#include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
 
@@ -35,15 +37,8 @@ const std::vector<KindName>& kinds() {
 constexpr double alike = 0.5;     // cosine of 60 degrees
 constexpr double near_it = 5e-3;  // of the design's largest dimension: meshes of one face differ by their chords
 
-bool contains(const solid::Box& box, const Vector3& p) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (p[a] < box.low[a] || p[a] > box.high[a]) return false;
-  }
-  return true;
-}
-
 bool belongs(const Region& region, double near_mm, const Vector3& point, const Vector3& normal) {
-  if (!region.faces) return contains(region.box, point);
+  if (!region.faces) return region.box.contains(point);
   const solid::Foot foot = region.faces->closest(point);
   return length(foot.point - point) <= near_mm && dot(foot.normal, normal) > alike;
 }

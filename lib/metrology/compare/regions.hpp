@@ -11,6 +11,9 @@
 #include "base/json_fwd.hpp"
 #include "metrology/compare/deviation.hpp"
 #include "metrology/compare/fits.hpp"
+#include "solid/mesh/geometry.hpp"
+#include "solid/mesh/signed_distance.hpp"
+#include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
 
@@ -21,7 +24,7 @@ enum class RegionKind { surface, plane, cylinder, wall };
 struct Region {
   std::string name;
   RegionKind kind = RegionKind::surface;
-  solid::Box box{};
+  solid::Bounds box{};
   std::string faces_file = {};                       // empty: the box
   std::shared_ptr<const solid::Surface> faces = {};  // of faces_file
   std::optional<double> tolerance_mm = {};           // of the figure `within`

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/mesh.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::metrology {
 

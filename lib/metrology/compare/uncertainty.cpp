@@ -13,6 +13,7 @@
 #include "base/progress.hpp"
 #include "base/random.hpp"
 #include "solid/mesh/pose_response.hpp"
+#include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
 

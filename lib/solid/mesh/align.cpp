@@ -7,6 +7,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/icp.hpp"
 #include "solid/mesh/private/overlap_search.hpp"
 
@@ -39,7 +40,7 @@ struct Task {
   const model::TriangleSoup& print;
   const Surface& reference;
   const AlignOptions& options;
-  Box box;
+  Bounds box;
   std::vector<Vector3d> all;   // samples of the print
   std::vector<Vector3d> some;  // fewer
   std::vector<Vector3d> few;

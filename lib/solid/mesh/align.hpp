@@ -8,7 +8,7 @@
 
 #include "base/vector3.hpp"
 #include "model/mesh.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::solid {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "model/grid.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::solid {
 

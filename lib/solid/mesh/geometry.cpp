@@ -5,6 +5,14 @@
 
 namespace vam::solid {
 
+Bounds bounding_box(const model::TriangleSoup& mesh) {
+  Bounds box;
+  for (const auto& triangle : mesh.triangles) {
+    for (const int corner : triangle) box.add(mesh.points[corner]);
+  }
+  return box;
+}
+
 Affine scaling(const Point& s) { return {{Point{s[0], 0, 0}, Point{0, s[1], 0}, Point{0, 0, s[2]}}, {}}; }
 
 namespace {

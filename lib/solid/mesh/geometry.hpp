@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/vector3.hpp"
+#include "model/mesh.hpp"
 
 namespace vam::solid {
 
@@ -25,16 +26,25 @@ struct Bounds {
       high[a] = std::max(high[a], p[a]);
     }
   }
+  void join(const Bounds& other) {
+    add(other.low);
+    add(other.high);
+  }
   [[nodiscard]] Point size() const { return high - low; }
+  [[nodiscard]] double largest_side() const { return std::max({size()[0], size()[1], size()[2]}); }
   [[nodiscard]] Point centre() const { return 0.5 * (low + high); }
   [[nodiscard]] double diagonal() const { return length(size()); }
-  [[nodiscard]] bool contains(const Bounds& other) const {
+  [[nodiscard]] bool contains(const Point& p) const {
     for (std::size_t a = 0; a < 3; ++a) {
-      if (other.low[a] < low[a] || other.high[a] > high[a]) return false;
+      if (p[a] < low[a] || p[a] > high[a]) return false;
     }
     return true;
   }
+  [[nodiscard]] bool contains(const Bounds& other) const { return contains(other.low) && contains(other.high); }
 };
+
+/// Of the corners of all triangles.
+[[nodiscard]] Bounds bounding_box(const model::TriangleSoup& mesh);
 
 /// p -> linear * p + shift.
 struct Affine {

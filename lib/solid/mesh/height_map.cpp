@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/triangle_tree.hpp"
-#include "solid/mesh/surface.hpp"
 
 namespace vam::solid {
 
@@ -47,7 +47,7 @@ void raise(const TriangleCorners& t, HeightMap& map) {
 }  // namespace
 
 HeightMap height_map(const model::TriangleSoup& mesh, double pixel_mm) {
-  const Box box = bounding_box(mesh);
+  const Bounds box = bounding_box(mesh);
   const double width = std::ceil((box.high[0] - box.low[0]) / pixel_mm) + 3;
   const double height = std::ceil((box.high[1] - box.low[1]) / pixel_mm) + 3;
   if (!(width * height <= 1e8)) {

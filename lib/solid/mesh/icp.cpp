@@ -6,6 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "base/stats/median.hpp"
+#include "solid/mesh/surface_samples.hpp"
 
 namespace vam::solid {
 

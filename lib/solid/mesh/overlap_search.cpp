@@ -22,7 +22,7 @@ constexpr double beyond = 0.1;   // of the size, by which points may leave the b
 // Distance to the design on a grid, cut off, as lookups must be quick.
 class DistanceGrid {
  public:
-  DistanceGrid(const Box& box, const Surface& design) : cell_(box.largest_side() / cells_along), most_(2 * cell_) {
+  DistanceGrid(const Bounds& box, const Surface& design) : cell_(box.largest_side() / cells_along), most_(2 * cell_) {
     for (int a = 0; a < 3; ++a) {
       low_[a] = box.low[a] - beyond * box.largest_side();
       n_[a] = ceil_int((box.high[a] - box.low[a] + 2 * beyond * box.largest_side()) / cell_) + 1;
@@ -93,7 +93,7 @@ struct Candidate {
 };
 
 // The best shift of the turned points within the box.
-Candidate best_shift(const std::vector<Vector3d>& print, const Matrix3d& rotation, const Box& box,
+Candidate best_shift(const std::vector<Vector3d>& print, const Matrix3d& rotation, const Bounds& box,
                      const DistanceGrid& distance) {
   constexpr int tried = 48;
   Vector3d low = Vector3d::Constant(1e300);
@@ -134,7 +134,7 @@ Candidate best_shift(const std::vector<Vector3d>& print, const Matrix3d& rotatio
 
 }  // namespace
 
-std::vector<Motion> overlapping_poses(const std::vector<Vector3d>& print, const Box& box, const Surface& design,
+std::vector<Motion> overlapping_poses(const std::vector<Vector3d>& print, const Bounds& box, const Surface& design,
                                       std::size_t count) {
   const DistanceGrid distance(box, design);
   const std::vector<Matrix3d> turns = rotations();

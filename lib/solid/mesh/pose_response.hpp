@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/surface_samples.hpp"
 
 namespace vam::solid {
 

@@ -128,9 +128,9 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
 std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh) {
   std::vector<TriangleCorners> triangles;
   triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    const TriangleCorners c{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
-    const Vector3 normal = cross(c[1] - c[0], c[2] - c[0]);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const TriangleCorners c = corners(mesh, t);
+    const Vector3 normal = twice_area(c);
     if (dot(normal, normal) > 0) triangles.push_back(c);
   }
   return triangles;

@@ -7,7 +7,8 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "solid/mesh/distance_band.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/geometry.hpp"
+#include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 namespace vam::solid {
@@ -23,7 +24,7 @@ double band_of(const model::TriangleSoup& design, double voxel_mm) {
 }  // namespace
 
 model::Grid deviation_grid(const model::TriangleSoup& design, double voxel_mm) {
-  const Box box = bounding_box(design);
+  const Bounds box = bounding_box(design);
   const double pitch = voxel_mm > 0 ? voxel_mm : box.largest_side() / 100;
   const double margin = margin_mm(box.largest_side(), pitch);
   model::Grid grid;

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "lib/meshes.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 using namespace vam;
 

@@ -16,6 +16,7 @@
 #include "metrology/compare/trend.hpp"
 #include "metrology/compare/uncertainty.hpp"
 #include "solid/mesh/align.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

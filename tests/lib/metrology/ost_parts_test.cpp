@@ -7,7 +7,7 @@
 
 #include "lib/metrology/synthetic_views.hpp"
 #include "metrology/ost/ost.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 using namespace vam;

@@ -12,7 +12,7 @@
 #include "metrology/ost/surface_uncertainty.hpp"
 #include "metrology/ost/view_noise.hpp"
 #include "oracle/bench_views.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 using namespace vam;

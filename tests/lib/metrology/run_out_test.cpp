@@ -12,7 +12,7 @@
 #include "metrology/ost/bodies.hpp"
 #include "metrology/ost/ost.hpp"
 #include "oracle/bench_views.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/surface_samples.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 using namespace vam;

@@ -10,7 +10,8 @@
 
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/distance_band.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
+#include "solid/mesh/surface_samples.hpp"
 #include "solid/voxel/isosurface.hpp"
 #include "trials.hpp"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lib/meshes.hpp"
+#include "solid/mesh/surface_samples.hpp"
 
 using namespace vam;
 using namespace vam::solid;

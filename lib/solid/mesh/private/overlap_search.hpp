@@ -4,14 +4,15 @@
 
 #include <vector>
 
+#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/align_starts.hpp"
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::solid {
 
 /// The `count` best of all poses on a grid of rotations and shifts that keep the points within the design's box, by
 /// the mean distance of 48 of them to the design, distances cut off at a twentieth of its size; each rotation once.
-[[nodiscard]] std::vector<Motion> overlapping_poses(const std::vector<Eigen::Vector3d>& print, const Box& box,
+[[nodiscard]] std::vector<Motion> overlapping_poses(const std::vector<Eigen::Vector3d>& print, const Bounds& box,
                                                     const Surface& design, std::size_t count);
 
 }  // namespace vam::solid

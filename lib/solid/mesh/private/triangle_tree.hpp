@@ -11,6 +11,14 @@ namespace vam::solid {
 
 using TriangleCorners = std::array<Vector3, 3>;
 
+[[nodiscard]] inline TriangleCorners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
+}
+
+/// The normal, of which the length is twice the area.
+[[nodiscard]] inline Vector3 twice_area(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
+
 /// A node holds triangles [begin, end); an inner one has children at index + 1 and at `right`, so children follow their
 /// parent and the root is node 0.
 struct TriangleNode {

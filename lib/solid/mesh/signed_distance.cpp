@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/mesh/surface.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 #include <algorithm>
-#include <random>
+#include <cmath>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
@@ -12,13 +12,6 @@
 namespace vam::solid {
 
 namespace {
-
-TriangleCorners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
-}
-
-Vector3 twice_area(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
 // In parallel; `start` is the triangle of the point before, as neighbours in a list are mostly neighbours in space.
 template <class Work>
@@ -75,47 +68,6 @@ std::vector<float> Surface::signed_distances(std::span<const Vector3> points) co
     distances[i] = state_->winding(points[i]) > 0.5 ? -distance : distance;
   });
   return distances;
-}
-
-std::vector<SurfaceSample> sample_surface(const model::TriangleSoup& mesh, int count) {
-  std::vector<double> running(mesh.triangles.size());
-  double total = 0;
-  for (std::size_t i = 0; i < running.size(); ++i) running[i] = total += length(twice_area(corners(mesh, i)));
-  std::vector<SurfaceSample> samples;
-  if (!(total > 0)) return samples;
-  samples.reserve(count);
-  std::mt19937 random(20220613);
-  std::uniform_real_distribution<double> unit(0, 1);
-  std::size_t triangle = 0;
-  for (int s = 0; s < count; ++s) {
-    const double at = (s + unit(random)) / count * total;
-    while (triangle + 1 < running.size() && running[triangle] < at) ++triangle;
-    const TriangleCorners c = corners(mesh, triangle);
-    const Vector3 normal = twice_area(c);
-    const double area = length(normal);
-    if (!(area > 0)) continue;
-    const double root = std::sqrt(unit(random));  // uniform in the triangle
-    const double along = unit(random);
-    const Vector3 point = (1 - root) * c[0] + root * (1 - along) * c[1] + root * along * c[2];
-    samples.push_back({point, (1 / area) * normal, static_cast<int>(triangle)});
-  }
-  return samples;
-}
-
-double Box::largest_side() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
-
-Box bounding_box(const model::TriangleSoup& mesh) {
-  Box box{mesh.points.front(), mesh.points.front()};
-  for (const auto& t : mesh.triangles) {
-    for (const int index : t) {
-      const Vector3& p = mesh.points[index];
-      for (std::size_t d = 0; d < 3; ++d) {
-        box.low[d] = std::min(box.low[d], p[d]);
-        box.high[d] = std::max(box.high[d], p[d]);
-      }
-    }
-  }
-  return box;
 }
 
 }  // namespace vam::solid

@@ -40,23 +40,4 @@ class Surface {
   std::unique_ptr<State> state_;
 };
 
-/// A point spread evenly over a surface, and the unit normal of its triangle.
-struct SurfaceSample {
-  Vector3 point;
-  Vector3 normal;
-  int triangle = 0;  // of the mesh
-};
-
-/// About `count` points, each standing for the same area (vertices would overweight fine triangles): stratified along
-/// the running area, with a seeded position inside the triangle; the same points for the same mesh and count.
-[[nodiscard]] std::vector<SurfaceSample> sample_surface(const model::TriangleSoup& mesh, int count);
-
-/// Axis-aligned box; high - low is the size.
-struct Box {
-  Vector3 low;
-  Vector3 high;
-  [[nodiscard]] double largest_side() const;
-};
-[[nodiscard]] Box bounding_box(const model::TriangleSoup& mesh);
-
 }  // namespace vam::solid
