@@ -13,7 +13,7 @@
 #include "io/vdb/vdb.hpp"
 #include "printer.hpp"
 #include "tomo/fbp.hpp"
-#include "tomo/projections.hpp"
+#include "tomo/negative_values.hpp"
 #include "vam-sinogram/options.hpp"
 #include "vam-sinogram/passes.hpp"
 

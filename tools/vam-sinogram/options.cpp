@@ -2,7 +2,7 @@
 #include "vam-sinogram/options.hpp"
 
 #include "tomo/fbp.hpp"
-#include "tomo/projections.hpp"
+#include "tomo/negative_values.hpp"
 
 namespace vam::sinogram_tool {
 

@@ -14,7 +14,7 @@ namespace vam::sinogram_tool {
 void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& spec,
                    const std::function<void(std::vector<Slab>& sinograms, int count)>& use) {
   const model::Grid& grid = volume.grid();
-  const tomo::Projections projections(spec);
+  const tomo::FilteredProjections projections(spec);
   const int slices = tomo::slabs_a_pass(spec.geometry) * lanes;
   // Two passes of slices that are read, one of them in slabs, and two of sinograms.
   require_memory(
@@ -39,7 +39,7 @@ void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& s
       sinograms.emplace_back(spec.geometry.columns, spec.geometry.angles);
       pack(dense.data() + product(s, grid.slice_size()), std::min(lanes, count - s), images.back());
     }
-    projections.work_out(images, sinograms);
+    projections.apply(images, sinograms);
     use(sinograms, count);
     progress.tick(count);
   }

@@ -8,7 +8,7 @@
 #include "base/image.hpp"
 #include "base/slab.hpp"
 #include "io/vdb/vdb.hpp"
-#include "tomo/projections.hpp"
+#include "tomo/filtered_projections.hpp"
 
 namespace vam::sinogram_tool {
 

@@ -34,7 +34,7 @@ void AttenuatedOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab
 /// way in.
 void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   if (correction_ == Correction::exact) {
-    exact_.work_out(objects, sinograms);
+    exact_.apply(objects, sinograms);
     const auto dose = static_cast<float>(row_angle_rad());
     for_values(sinograms, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) sinograms[s].values[i] *= dose;

@@ -8,7 +8,7 @@
 #include "light/operators/make_operator.hpp"
 #include "light/operators/operator.hpp"
 #include "light/operators/private/preconditioner.hpp"
-#include "tomo/projections.hpp"
+#include "tomo/filtered_projections.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
@@ -41,8 +41,8 @@ class AttenuatedOperator final : public Operator {
   std::vector<float> transmitted_;  // e^{-mu sqrt(R^2 - t^2)}: what is left of the light of a column at the axis' plane
   std::vector<float> amplified_;    // 1 / transmitted
   Preconditioner inverse_;
-  Preconditioner clear_;     // of resin that does not absorb
-  tomo::Projections exact_;  // with weight e^{mu u}, and the light at the wall
+  Preconditioner clear_;             // of resin that does not absorb
+  tomo::FilteredProjections exact_;  // with weight e^{mu u}, and the light at the wall
 };
 
 }  // namespace vam::light

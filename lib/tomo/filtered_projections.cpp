@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tomo/projections.hpp"
+#include "tomo/filtered_projections.hpp"
 
 #include <algorithm>
 
@@ -31,12 +31,12 @@ std::vector<float> column_weights(const ProjectionSpec& spec) {
 
 }  // namespace
 
-Projections::Projections(const ProjectionSpec& spec)
+FilteredProjections::FilteredProjections(const ProjectionSpec& spec)
     : spec_(spec),
       filter_(spec.geometry.columns, matched(spec.filter, spec.geometry)),
       weights_(column_weights(spec)) {}
 
-void Projections::work_out(std::span<const Slab> images, std::span<Slab> sinograms) const {
+void FilteredProjections::apply(std::span<const Slab> images, std::span<Slab> sinograms) const {
   forward(spec_.geometry, images, sinograms);
   for (Slab& sinogram : sinograms) {
     filter_.apply(sinogram);
@@ -47,27 +47,6 @@ void Projections::work_out(std::span<const Slab> images, std::span<Slab> sinogra
       }
     });
   }
-}
-
-float lowest(const Slab& slab) {
-  std::vector<float> rows(slab.height, 0.0F);
-  parallel_for(slab.height, [&](int y) {
-    const float* values = slab.at(0, y);
-    rows[y] = *std::min_element(values, values + std::ptrdiff_t{slab.width} * lanes);
-  });
-  return std::min(0.0F, *std::min_element(rows.begin(), rows.end()));
-}
-
-void raise_and_clip(Slab& slab, float raise, float floor) {
-  parallel_for(slab.height, [&](int y) {
-    float* values = slab.at(0, y);
-    for (int i = 0; i < slab.width * lanes; ++i) values[i] = std::max(values[i] + raise, floor);
-  });
-}
-
-const std::vector<std::string>& negative_names() {
-  static const std::vector<std::string> names{"keep", "clip", "offset"};
-  return names;
 }
 
 int slabs_a_pass(const ParallelGeometry& geometry, std::size_t budget_bytes) {

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From slices of a part to the projections to show: project, filter, weight, deal with negative values.
+// From slices of a part to the projections to show: project, filter, weight.
 #pragma once
 
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::tomo {
-
-/// What is done about negative light [CAL17]: nothing, set to 0, or raised by the lowest value of the whole stack.
-enum class Negative { keep, clip, offset };
 
 struct ProjectionSpec {
   ParallelGeometry geometry;  // alpha_per_px != 0: the exponential transform and its inverse filter
@@ -26,26 +22,17 @@ struct ProjectionSpec {
 /// dose sum over all angles, angle_step_rad * A* g (with weight e^{-alpha u}), is the part again
 /// [physics §4, physics §5].
 /// vam-sinogram writes them, and absorbing light (light::AttenuatedOperator) is inverted by them.
-class Projections {
+class FilteredProjections {
  public:
-  explicit Projections(const ProjectionSpec& spec);
+  explicit FilteredProjections(const ProjectionSpec& spec);
   /// Fills the sinograms. Several slabs a call share the weights.
-  void work_out(std::span<const Slab> images, std::span<Slab> sinograms) const;
+  void apply(std::span<const Slab> images, std::span<Slab> sinograms) const;
 
  private:
   ProjectionSpec spec_;
   Filter filter_;
   std::vector<float> weights_;  // per column
 };
-
-/// The lowest value, at most 0.
-[[nodiscard]] float lowest(const Slab& slab);
-
-/// value = max(value + raise, floor).
-void raise_and_clip(Slab& slab, float raise, float floor);
-
-/// "keep", "clip", "offset" in the order of the enumeration.
-[[nodiscard]] const std::vector<std::string>& negative_names();
 
 /// Slabs a pass, 1 to 4, so that the largest slab of each kind keeps a pass within `budget_bytes`.
 [[nodiscard]] int slabs_a_pass(const ParallelGeometry& geometry, std::size_t budget_bytes = std::size_t{1} << 30);
