@@ -7,8 +7,16 @@ ok 'a part' vam-slice box.off --voxel 0.2 -o part.vdb
 if sanitized || ! strace -f -o /dev/null true 2>/dev/null; then
   echo '# no threads are refused here: sanitized, or no strace'
 else
-  # The library of OpenVDB that writes logs starts four threads before main(); without them it ends the process.
-  refused() { strace -f --seccomp-bpf -o /dev/null -e trace=clone3 -e inject=clone3:error=EAGAIN:when=5+ "$@"; }
+  refused_from() {  # refused_from N COMMAND...: the Nth thread and those that follow
+    from=$1; shift
+    strace -f --seccomp-bpf -o /dev/null -e trace=clone3 -e inject=clone3:error=EAGAIN:when="$from"+ "$@"
+  }
+  refused() { refused_from 5 "$@"; }
+  # The library of OpenVDB that writes logs starts four threads before main(), and cannot do without.
+  for thread in 1 2 3 4; do
+    fails 71 '^vam-slice: needs more threads or memory to start than the system gives; raise its limits' \
+      refused_from $thread vam-slice box.off -o x.vdb
+  done
   quiet 'one thread does, where the system gives no more' refused vam-slice box.off --voxel 0.2 -o alone.vdb
   ok 'and the part is the same' vam-score alone.vdb --grid target --target part.vdb --require 'iou>=1'
   quiet 'also for sinograms' refused vam-sinogram part.vdb --angles 8 -o alone.exr
@@ -16,6 +24,17 @@ else
   fails 71 'figure: needs one thread more than the system gives; raise its limit' refused vam-view part.vdb -o x.png
 fi
 if ! sanitized; then
+  # Where libraries do not fit the system's loader ends with 127; where they fit and cannot start, the tool with 71.
+  lacked=0
+  for mib in 8 $(seq 60 4 120); do
+    sh -c "ulimit -v $((mib * 1024)); exec vam-slice --version" >bounded 2>&1; status=$?
+    case "$status $(wc -l <bounded)" in
+      '71 1') lacked=$((lacked + 1)) ;;
+      '0 1' | '127 1') ;;
+      *) report 1 "a start in $mib MiB of addresses: $status"; sed 's/^/# /' bounded ;;
+    esac
+  done
+  report $((lacked == 0)) "starts in 8 to 120 MiB of addresses: status 71 of $lacked"
   # The libraries that draw end the process where memory or a thread is refused.
   for mib in 160 200 220 230 240 260; do
     sh -c "ulimit -v $((mib * 1024)); exec vam-view part.vdb -o bounded.png" 2>bounded; status=$?
