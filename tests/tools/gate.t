@@ -26,6 +26,10 @@ fails 65 'coverage, 0 to 1' vam-sinogram minus.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-curethrough correct minus.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-score part.vdb --grid target --target minus.vdb
 fails 65 "stdin: grid 'target' occurs twice" sh -c 'cat part.vdb part.vdb | vam-optimize - -o x.exr'
+cat part.vdb part.vdb >two.vdb
+fails 65 "two.vdb: grid 'target' occurs twice; keep one of them, or rename it" vam-sinogram two.vdb -o x.exr
+fails 65 "two.vdb: grid 'target' occurs twice" vam-score two.vdb --grid target --target part.vdb
+fails 65 "two.vdb: grid 'target' occurs twice" vam-curethrough model two.vdb -o x.vdb
 ok 'vam-view still shows it' vam-view minus.vdb -o x.png
 
 done_testing

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/grid.hpp"
 
 namespace vam::io {
@@ -126,7 +127,7 @@ void require_usable(const std::string& path, const std::vector<SparseVolume>& vo
   std::set<std::string> names;
   for (const SparseVolume& volume : volumes) {
     if (promise_of(volume.name(), target) && !names.insert(volume.name()).second) {
-      refuse(path, volume.name(), "occurs twice; keep one of them, or rename it");
+      throw Error{Fault::data, input_name(path) + ": " + occurs_twice(volume.name())};
     }
     require_usable(path, volume, target);
   }

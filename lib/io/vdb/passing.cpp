@@ -153,7 +153,8 @@ class PassingArchive : public openvdb::io::Archive {
  private:
   void pass_floats(const openvdb::io::GridDescriptor& about, std::istream& stream,
                    std::map<std::string, PassingGrid*>& grids) {
-    const bool shown = !wanted_.name || (about.gridName() == *wanted_.name && !found_);
+    const bool shown = !wanted_.name || about.gridName() == *wanted_.name;
+    if (wanted_.name && shown && found_) throw std::runtime_error(occurs_twice(*wanted_.name));
     const auto grid = std::make_shared<PassingGrid>(about.uniqueName(), shown, out_);
     kept_.push_back(grid);
     grids[about.uniqueName()] = grid.get();

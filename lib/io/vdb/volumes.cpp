@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
+#include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/grid.hpp"
 #include "io/vdb/private/passage.hpp"
 #include "io/vdb/vdb.hpp"
@@ -143,12 +144,16 @@ std::vector<VolumeFacts> check_volumes(const std::string& path, bool fast) {
 
 SparseVolume read_volume(const std::string& path, const std::string& name) {
   std::vector<SparseVolume> volumes = read_volumes(path);
+  const std::string subject = input_name(path);
+  SparseVolume* found = nullptr;
   std::string names;
   for (SparseVolume& volume : volumes) {
-    if (volume.name() == name || (name.empty() && volumes.size() == 1)) return std::move(volume);
     names += (names.empty() ? "" : ", ") + volume.name();
+    if (volume.name() != name && !(name.empty() && volumes.size() == 1)) continue;
+    if (found != nullptr) throw Error{Fault::data, subject + ": " + occurs_twice(name)};
+    found = &volume;
   }
-  const std::string subject = input_name(path);
+  if (found != nullptr) return std::move(*found);
   if (name.empty()) throw Error{Fault::data, subject + ": holds several grids (" + names + "); choose one by name"};
   throw Error{Fault::data, subject + ": has no grid '" + name + "'; choose one of " + names};
 }

@@ -4,6 +4,8 @@
 
 #include <openvdb/openvdb.h>
 
+#include <string>
+
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {
@@ -20,5 +22,10 @@ inline constexpr const char* first_key = "vam:first_index";  // of that box, whe
 
 /// Of these what stands before the topology: name, class and metadata.
 [[nodiscard]] VolumeFacts head_of(const openvdb::FloatGrid& sparse);
+
+/// The error of a name that two grids of a file have.
+[[nodiscard]] inline std::string occurs_twice(const std::string& name) {
+  return "grid '" + name + "' occurs twice; keep one of them, or rename it";
+}
 
 }  // namespace vam::io
