@@ -146,6 +146,8 @@ TEST_CASE("TIFF of other programs: grey from either end, colours as luma, what i
   CHECK(levels({1, 2, 8, 2, 3}, "\xff\xff\xff\xff" + std::string(2, '\0')) == Levels{255, 76});
   CHECK(levels({2, 1, 16, 1, 1}, std::string("\1\0\0\x80", 4)) == Levels{1, 0x8000});
   CHECK(levels({2, 1, 16, 0, 1}, std::string("\1\0\0\x80", 4)) == Levels{65534, 0x7fff});
+  CHECK(levels({2, 1, 16, 1, 1, 1, 2}, std::string("\1\0\0\x80", 4)) ==
+        Levels{1, 0x8000});                                                             // one sample is its own plane
   CHECK(levels({2, 1, 16, 1, 2}, std::string("\1\0\5\5\3\0\5\5", 8)) == Levels{1, 3});  // and transparency
   // 0.299, 0.587 and 0.114 of full, in 16 bits.
   const std::string full("\xff\xff"), none(2, '\0');
