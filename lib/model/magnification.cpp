@@ -5,7 +5,7 @@ namespace vam::model {
 
 double shortening_mm(const Printer& printer, double index_resin) {
   const Vial& vial = printer.vial;
-  double sum = printer.bath.index == 1.0 ? 0 : printer.bath.window_mm * (1 - 1 / printer.bath.index);
+  double sum = printer.bath.window_mm * (1 - 1 / printer.bath.index);
   double before = printer.bath.index;
   if (vial.wall_mm > 0) {
     sum += vial.radius_mm * (1 / before - 1 / vial.index_glass);
