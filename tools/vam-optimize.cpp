@@ -62,16 +62,20 @@ void run(const cli::App& app, Options& options) {
   if (options.preview) return preview(printer, in, options);
   const Scene scene = make_scene(in.target.front(), printer, options);
   warn_of(scene, in.target.front(), options);
-  const model::StackInfo info = stack_info(scene, in.target.front(), app, options);
+  const model::StackInfo whole = stack_info(scene, in.target.front(), app, options);
+  const std::optional<model::ImageRange> slices = slices_of(whole, options);
+  const model::StackInfo info = written_info(whole, slices, app, options);
   optimize::VolumeTask task = make_task(scene, in, options);
-  optimize_tool::Beginning beginning(app, printer, info, options);
+  task.slices = slices;
+  const auto light = make_light(scene, options);
+  optimize_tool::require_independent(task, *light);
+  optimize_tool::Beginning beginning(app, printer, whole, options);
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int k, const Image& image) {
-    if (k < info.count) sink.add(image);  // there may be more slices than rows
+    if (k < whole.count) sink.add(image);  // there may be more slices than rows
   };
 
   const std::string subject = io::input_name(options.input);
-  const auto light = make_light(scene, options);
   require_memory_for(scene, task, *light, subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
   beginning.begin(task, in, scene, *light, options);
@@ -81,7 +85,8 @@ void run(const cli::App& app, Options& options) {
     beginning.keep();
     return;
   }
-  if (!options.demands.grey) {  // whose figures are misses, not doses
+  const bool void_piece = slices && outcome.metrics.part == 0;
+  if (!options.demands.grey && !void_piece) {  // whose figures are misses, not doses
     optimize::require_light(outcome, subject, task.source.band_px);
   }
   sink.finish();

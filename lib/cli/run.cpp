@@ -70,7 +70,13 @@ std::string use_of_machine(double seconds) {
 
 bool App::given(const std::string& flag) const { return state_->parser->get_option(flag)->count() > 0; }
 
-std::string App::history() const { return state_->history; }
+std::string App::history() const { return history_without({}); }
+
+std::string App::history_without(const std::vector<std::string>& flags) const {
+  std::string line = state_->tool.manual.name + " " + VAM_VERSION;
+  for (const std::string& word : words_without(state_->tool, state_->words, flags)) line += " " + quoted(word);
+  return line;
+}
 
 // The declaration with those of its subcommands, for printing.
 Declaration App::whole() const {
@@ -160,8 +166,7 @@ void App::parse(int argc, char** argv) {
   set_talk(given.talk);
   bound(given.memory_gib);
   rename_former(tool, words);
-  state_->history = tool.manual.name + " " + VAM_VERSION;
-  for (const auto& word : words) state_->history += " " + quoted(word);
+  state_->words = words;
   require_command(tool, words);
   put_command_first(tool, words);
   if (find_command(tool, words) < 0) {  // an operand may have the name of a command

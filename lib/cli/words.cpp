@@ -188,6 +188,27 @@ void rename_former(const Declaration& tool, std::vector<std::string>& words) {
   rename_values(form, words);
 }
 
+std::vector<std::string> words_without(const Declaration& tool, const std::vector<std::string>& words,
+                                       const std::vector<std::string>& flags) {
+  std::vector<std::string> kept;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--") {
+      kept.insert(kept.end(), words.begin() + static_cast<std::ptrdiff_t>(i), words.end());
+      break;
+    }
+    const bool joined_short = is_option(words[i]) && words[i][1] != '-' && words[i].size() > 2;
+    const std::string flag = joined_short ? words[i].substr(0, 2) : flag_of(words[i]);
+    const Option* option = find_own(tool, flag);
+    const bool has_value_behind = option != nullptr && !option->value_name.empty() && flag == words[i];
+    const bool dropped = option != nullptr && std::find(flags.begin(), flags.end(), long_flag(*option)) != flags.end();
+    if (!dropped) kept.push_back(words[i]);
+    if (!has_value_behind || i + 1 == words.size()) continue;
+    ++i;
+    if (!dropped) kept.push_back(words[i]);
+  }
+  return kept;
+}
+
 std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words, const std::string& unknown) {
   const Declaration& form = form_of(tool, words);
   const bool plain = &form == &tool;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/piece.hpp"
 #include "model/pose.hpp"
 
 namespace vam::model {
@@ -32,6 +33,7 @@ struct StackInfo {
   std::string units = "relative";            // of the pixel values
   std::vector<std::string> history;          // one line per command that touched the data
   std::map<std::string, std::string> extra;  // unknown text attributes, copied through
+  Piece piece;                               // of a larger stack; whole: of none
   Poses poses;                               // of the rows of a sinogram or of the frames; none: nothing is displaced
 };
 

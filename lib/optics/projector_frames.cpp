@@ -268,6 +268,7 @@ model::StackInfo frames_info(const model::StackInfo& sinogram, const FramePlace&
   info.width = place.columns;
   info.height = place.rows;
   info.count = schedule.count;
+  info.piece = {};
   info.pixel_mm = place.pixel_mm;
   const bool upside_down = orientation == "flip-rows" || orientation == "rotate-180";
   info.row_mm = upside_down ? place.pixel_mm : -place.pixel_mm;

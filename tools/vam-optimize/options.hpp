@@ -37,6 +37,7 @@ struct Options {
   std::string init;
   bool coarse_start = false;  // from the same part at half of the resolution
   std::string checkpoint;
+  std::string slices;  // of the stack, that are written; empty: all
   std::string trace;
   optimize::MethodOptions how;
   std::optional<double> max_intensity;

@@ -14,6 +14,7 @@
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"
+#include "slices.hpp"
 #include "vam-optimize/deadline.hpp"
 #include "vam-optimize/options.hpp"
 
@@ -117,6 +118,19 @@ void refuse_beside_preview(const cli::App& app, const Options& options) {
   }
 }
 
+/// What is of the whole part, or depends on the machine.
+void settle_slices(const cli::App& app, Options& options) {
+  if (options.slices.empty()) return;
+  (void)tool::slices_named(options.slices);
+  for (const char* flag : {"--preview", "--budget", "--robust", "--tradeoff", "--certify", "--bits", "--poses",
+                           "--helix", "--wobble-record"}) {
+    if (app.given(flag)) {
+      throw Error{Fault::usage, std::string("--slices: does not apply to ") + flag +
+                                    ", which needs the whole part; omit one of them"};
+    }
+  }
+}
+
 void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
   if (options.void_rule != "met" && (app.given("--void-band") || app.given("--void-weight")))
@@ -198,6 +212,7 @@ void settle(const cli::App& app, Options& options) {
   settle_auto(app, options);
   const optimize::MethodEntry& method = optimize::method_entry(options.method);
   refuse_contradictions(app, options, method);
+  settle_slices(app, options);
   settle_tolerances(app, options);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.how.offset = options.negative == "offset";

@@ -4,11 +4,15 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/per_slice.hpp"
 #include "base/text.hpp"
+#include "io/exr/stack_pieces.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/covered.hpp"
 #include "optimize/target/void_rule.hpp"
 #include "resin/absolute_dose.hpp"
+#include "slices.hpp"
 #include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
@@ -35,6 +39,29 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.history.push_back(app.history());
   info.extra["vam:threshold_dose"] = format_number(options.demands.window.threshold());
   return info;
+}
+
+std::optional<model::ImageRange> slices_of(const model::StackInfo& whole, const Options& options) {
+  if (options.slices.empty()) return std::nullopt;
+  return tool::slices_among(options.slices, whole.count, io::input_name(options.input), slices_per_pass);
+}
+
+model::StackInfo written_info(const model::StackInfo& whole, const std::optional<model::ImageRange>& slices,
+                              const cli::App& app, const Options& options) {
+  if (!slices) return whole;
+  model::StackInfo info = io::cut(whole, *slices, io::input_name(options.input));
+  info.history.back() =
+      app.history_without({"--slices", "--output", "--report", "--trace", "--checkpoint", "--threads"});
+  return info;
+}
+
+void require_independent(const optimize::VolumeTask& task, const light::Operator& light) {
+  if (!task.slices || !optimize::takes_whole(task, light)) return;
+  throw Error{Fault::usage,
+              light.couples_slices()
+                  ? "--slices: rays that climb couple all slices, which are optimised together; omit it, or use level "
+                    "rays (projector.telecentric, --geometry parallel)"
+                  : "--slices: the dose is blurred farther than 16 slices, so all are optimised together; omit it"};
 }
 
 namespace {

@@ -2,6 +2,8 @@
 // The optimisation task, from inputs and options.
 #pragma once
 
+#include <optional>
+
 #include "model/stack.hpp"
 #include "optimize/run/volume.hpp"
 #include "optimize/run/yield.hpp"
@@ -14,6 +16,18 @@ namespace vam::optimize_tool {
 /// Of the projections that come out.
 [[nodiscard]] model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, const cli::App& app,
                                           const Options& options);
+
+/// Those of --slices, in shares of whole passes where it names one; none: all. Throws Fault::data where the stack has
+/// too few.
+[[nodiscard]] std::optional<model::ImageRange> slices_of(const model::StackInfo& whole, const Options& options);
+
+/// Of these slices. The history is that of the whole, so that joined pieces are its stack.
+[[nodiscard]] model::StackInfo written_info(const model::StackInfo& whole,
+                                            const std::optional<model::ImageRange>& slices, const cli::App& app,
+                                            const Options& options);
+
+/// Throws Fault::usage where --slices asks for a part of slices that are all optimised together.
+void require_independent(const optimize::VolumeTask& task, const light::Operator& light);
 
 /// Without its output. Scene, inputs and options must outlive the task. Only options.how is read later, when a pass
 /// begins; all else is copied here.

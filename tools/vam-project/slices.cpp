@@ -117,6 +117,7 @@ Json slice_figures(const Frames& frames, const Options& options, const model::Pr
 
 model::StackInfo facts_of(const SliceStack& stack, double fps, const model::Projector& projector) {
   model::StackInfo info = stack.info;
+  info.piece = {};
   info.pixel_mm = info.row_mm = projector.pixel_mm;
   optics::SlicePlace(stack.name, projector, stack.info).apply(info);
   info.units = "fraction of full intensity";

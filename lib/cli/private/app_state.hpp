@@ -20,9 +20,9 @@ struct App::State {
   CLI::App* parser = nullptr;
   std::unique_ptr<CLI::App> owned;                // the root's parser
   std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
-  std::string history;
-  std::string heading = App::plain_heading;  // of the options that follow
-  bool operand_last = false;                 // what was declared last is an operand
+  std::vector<std::string> words;                 // of the history
+  std::string heading = App::plain_heading;       // of the options that follow
+  bool operand_last = false;                      // what was declared last is an operand
 
   Group& current_group() {
     const auto found = std::find_if(tool.groups.begin(), tool.groups.end(),

@@ -44,6 +44,10 @@ inline constexpr const char* memory_flag = "--memory";
 /// Fault::usage where one is given twice, has no value or one that is not allowed.
 [[nodiscard]] ForAll take_for_all(std::vector<std::string>& words);
 
+/// The words but for these options of the tool, by their long flags, and their values.
+[[nodiscard]] std::vector<std::string> words_without(const Declaration& tool, const std::vector<std::string>& words,
+                                                     const std::vector<std::string>& flags);
+
 /// The line for a word that the tool, or the command that the words name, does not know.
 [[nodiscard]] std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words,
                                        const std::string& unknown);

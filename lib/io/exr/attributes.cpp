@@ -28,6 +28,7 @@ using model::StackInfo;
 
 constexpr std::array kinds = {Kind::sinogram, Kind::frames};
 constexpr const char* poses_name = "vam:poses";
+constexpr const char* piece_name = "vam:piece";
 constexpr double farthest_mm = 2000;  // from the lens's height
 constexpr std::array spaces = {Space::virtual_, Space::projector, Space::camera};
 
@@ -65,6 +66,11 @@ std::vector<std::string> split(const std::string& all) {
   std::istringstream stream(all);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
+}
+
+model::Piece checked_piece(const std::string& text) {
+  if (const auto piece = model::parse_piece(text)) return *piece;
+  throw std::runtime_error(std::string(piece_name) + " is '" + text + "', not like '64:128 of 160'");
 }
 
 }  // namespace
@@ -129,6 +135,7 @@ void set_common(Imf::Header& header, const StackInfo& info) {
   set_number(header, "vam:angle_step_deg", info.angle_step_deg);
   set_text(header, "vam:units", info.units);
   set_text(header, "vam:history", join(info.history));
+  if (!info.piece.whole()) set_text(header, piece_name, model::piece_text(info.piece));
 }
 
 void set_own(Imf::Header& header, const StackInfo& info, int index, const ImageInfo& about) {
@@ -171,10 +178,11 @@ StackInfo stack_info(const Imf::Header& header) {
   info.units = text(header, "vam:units").value_or(info.units);
   info.history = split(text(header, "vam:history").value_or(""));
   if (const auto poses = text(header, poses_name)) info.poses = model::parse_poses(*poses);
+  if (const auto piece = text(header, piece_name)) info.piece = checked_piece(*piece);
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
     const bool ours = name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history" ||
-                      name == poses_name || is_seal_key(name);
+                      name == poses_name || name == piece_name || is_seal_key(name);
     const bool standard = name == "name" || name == "type" || name == "view";
     if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
   }

@@ -27,6 +27,7 @@ void pass_facts(const Pass& pass, StackInfo& info) {
   pass(info.units);
   pass(info.history);
   pass(info.extra);
+  for (int* number : {&info.piece.images.from, &info.piece.images.to, &info.piece.of}) pass(*number);
 }
 
 template <class Pass>
@@ -80,6 +81,10 @@ void send_stacks(StackParser& parser, Sender& out) {
 
 // What a child sends is not believed.
 bool plausible(const StackInfo& info, std::size_t images) {
+  const model::Piece& piece = info.piece;
+  if (!piece.whole() && (model::parse_piece(model::piece_text(piece)) != piece || piece.images.count() != info.count)) {
+    return false;
+  }
   return info.width > 0 && info.width <= max_side && info.height > 0 && info.height <= max_side &&
          std::int64_t{info.width} * info.height <= max_pixels && static_cast<std::size_t>(info.count) == images &&
          (info.kind == model::Kind::sinogram || info.kind == model::Kind::frames) &&

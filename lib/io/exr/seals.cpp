@@ -38,6 +38,7 @@ Digest facts_digest(const model::StackInfo& info, int index, const model::ImageI
     sealer.add(name);
     sealer.add(value);
   }
+  if (!info.piece.whole()) sealer.add(model::piece_text(info.piece));
   sealer.add(about.has_angle ? about.angle_deg : -1e300);
   sealer.add(about.has_time ? about.time_s : -1e300);
   sealer.add(about.has_number ? about.number : -1);

@@ -159,6 +159,10 @@ void StackParser::parse_head() {
                              " images that vam:count announces");
   }
   info_.count = parts;
+  if (!info_.piece.whole() && info_.piece.images.count() != parts) {
+    throw std::runtime_error("holds " + std::to_string(parts) + " images, but vam:piece is '" +
+                             model::piece_text(info_.piece) + "'");
+  }
 
   // The offset tables serve those who seek; here the chunks say themselves what they are.
   for (const std::size_t layout : layout_of_) {

@@ -23,9 +23,10 @@ void Finished::take(std::vector<Image> images) {
     if (job >= jobs_) return;
     const auto found = held_.find(job);
     const std::vector<float>& values = found->second.values;
-    efficiency_.add(values);
-    peaks_.push_back(values.empty() ? 0 : *std::max_element(values.begin(), values.end()));
-    write_(slices_, found->second);
+    const bool asked = asked_.holds(slices_);
+    peaks_.push_back(asked && !values.empty() ? *std::max_element(values.begin(), values.end()) : 0);
+    if (asked) efficiency_.add(values);
+    if (asked) write_(slices_, found->second);
     if (schedule_.last_slice[job] == slices_) held_.erase(found);
   }
 }

@@ -23,10 +23,16 @@ void Ledger::end(const Outcome& outcome) {
 }
 
 void Ledger::add(const model::DoseStatistics& statistics, const model::DoseMetrics& figures, int times) {
+  if (times == 0) return skip();
   total_.merge(statistics, times);
   figures_.add(figures, times);
   min_part_.push_back(figures.part > 0 ? figures.min_part : -1);
   max_void_.push_back(figures.void_ > 0 ? figures.max_void : -1);
+}
+
+void Ledger::skip() {
+  min_part_.push_back(-1);
+  max_void_.push_back(-1);
 }
 
 void Ledger::exchange(Archive& archive) {

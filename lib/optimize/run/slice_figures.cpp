@@ -6,6 +6,7 @@
 namespace vam::optimize {
 
 void SliceFigures::add(const model::DoseMetrics& slice, int times) {
+  if (times == 0) return;
   const double n = times;
   const double part = n * static_cast<double>(slice.part);
   counted_ += n * static_cast<double>(slice.part + slice.void_);

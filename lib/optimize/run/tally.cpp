@@ -12,7 +12,7 @@ namespace {
 void add_outside(std::span<const Slab> dose, const Problem& problem, const Pass& pass, const Jobs& jobs,
                  Ledger& ledger) {
   const OutsideSlices found = outside_part(dose, problem, jobs.part);
-  for (int k = 0; k < count_of(jobs.of_slice); ++k) {
+  for (int k = jobs.asked.from; k < jobs.asked.to; ++k) {
     const int job = jobs.of_slice[k];
     if (job < pass.first || job >= pass.last) continue;
     const bool beside = k >= jobs.part.low[2] && k <= jobs.part.high[2];
@@ -29,7 +29,7 @@ void tally(std::span<const Slab> dose, const Problem& problem, const Pass& pass,
   for (int job = pass.first; job < pass.last; ++job) {
     const int i = job - pass.low;
     ledger.add(whole[i], grey.empty() ? whole[i].metrics() : grey[i], jobs.slices_each[job]);
-    ledger.add_cut(cut[i], jobs.slices_each[job]);
+    if (jobs.slices_each[job] > 0) ledger.add_cut(cut[i], jobs.slices_each[job]);
   }
   if (!problem.demands.grey) add_outside(dose, problem, pass, jobs, ledger);
 }

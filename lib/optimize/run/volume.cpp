@@ -47,7 +47,11 @@ Schedule scheduled(const VolumeTask& task, std::span<const SliceDigest> digests,
 class VolumeRun {
  public:
   VolumeRun(const VolumeTask& task, const light::Operator& light)
-      : task_(task), light_(light), reader_(task.source, light.object()), division_(division_of(task, light)) {
+      : task_(task),
+        light_(light),
+        reader_(task.source, light.object()),
+        division_(division_of(task, light)),
+        asked_(task.slices.value_or(model::ImageRange{0, task.source.slices})) {
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
     for (const SliceDigest& slice : digests) {
@@ -55,7 +59,16 @@ class VolumeRun {
     }
     schedule_ = scheduled(task, digests, light.image(), division_.halo == 0 && !division_.whole);
     times_.assign(schedule_.slice_of_job.size(), 0);
-    for (const int job : schedule_.job_of_slice) ++times_[job];
+    for (int k = asked_.from; k < asked_.to; ++k) ++times_[schedule_.job_of_slice[k]];
+    needed_.assign(times_.size(), false);
+    for (int first = 0; first < jobs();) {
+      const Pass pass = division_.from(first, jobs());
+      const auto own = std::span(times_).subspan(first, pass.last - first);
+      if (std::any_of(own.begin(), own.end(), [](int times) { return times > 0; })) {
+        std::fill(needed_.begin() + first, needed_.begin() + pass.last, true);
+      }
+      first = pass.last;
+    }
   }
 
   VolumeOutcome operator()() {
@@ -65,8 +78,9 @@ class VolumeRun {
       resume(*task_.interruption.from, work);
     } else {
       fix_max_intensity();
+      first_limit_ = outcome_.max_intensity;
     }
-    while (finished_.jobs() < jobs()) {
+    while (skip_others([this] { ledger_.skip(); })) {
       if (!run_pass(division_.from(finished_.jobs(), jobs()), work)) return interrupted();
       work = {};
     }
@@ -74,7 +88,7 @@ class VolumeRun {
     for (std::size_t k = 0; k < outcome_.asked.size(); ++k) {
       outcome_.asked[k].peak = static_cast<double>(finished_.peaks()[k]);
     }
-    outcome_.jobs = jobs();
+    outcome_.jobs = static_cast<int>(std::count_if(times_.begin(), times_.end(), [](int times) { return times > 0; }));
     outcome_.efficiency = finished_.efficiency();
     outcome_.peak_intensity = finished_.peak();
     if (outcome_.even.mean > 0) outcome_.even_intensity = task_.demands.window.threshold() / outcome_.even.mean;
@@ -84,6 +98,13 @@ class VolumeRun {
  private:
   [[nodiscard]] int jobs() const { return count_of(schedule_.slice_of_job); }
   [[nodiscard]] int slice(int job) const { return schedule_.slice_of_job[job]; }
+
+  /// Past the jobs of passes without a slice that is asked for; false where none is left.
+  template <class Each>
+  bool skip_others(const Each& each) {
+    for (; finished_.jobs() < jobs() && !needed_[finished_.jobs()]; finished_.skip()) each();
+    return finished_.jobs() < jobs();
+  }
 
   static VolumeOutcome interrupted() {
     VolumeOutcome outcome;
@@ -149,7 +170,7 @@ class VolumeRun {
     outcome_.eigenvalue = work.method->eigenvalue();
     outcome_.max_intensity = std::max(outcome_.max_intensity, most);  // the brightest pass sets the duration
     if (task_.certify > 0) outcome_.certificate = certify(input.problem, light.blurred(), work.state.g, task_.certify);
-    finish(input.problem, work, pass, light.sharp(), faced);
+    finish(input.problem, work, pass, light.sharp(), most, faced);
     return true;
   }
 
@@ -164,8 +185,8 @@ class VolumeRun {
   }
 
   void begin(Work& work, const Pass& pass, const light::Operator& light) {
-    work.search.max_intensity = outcome_.max_intensity;
-    work.method = task_.make(outcome_.max_intensity);
+    work.search.max_intensity = first_limit_;
+    work.method = task_.make(first_limit_);
     if (!task_.initial) return;
     work.state.g = collapse_images(
         pass, [&](int job) { return task_.initial(slice(job)); }, light);
@@ -199,22 +220,22 @@ class VolumeRun {
     if (!limits.until.empty() && limits.at_least > 0) expected = std::min(expected, limits.at_least);
     while (expected < iteration) expected *= 2;
     const int most = std::max(1, std::min(expected, limits.iterations));
-    progress_.stand(static_cast<long>(pass.first) * most + static_cast<long>(pass.last - pass.first) * iteration,
-                    static_cast<long>(jobs()) * most,
+    const long before = std::count(needed_.begin(), needed_.begin() + pass.first, true);
+    const long all = std::count(needed_.begin(), needed_.end(), true);
+    progress_.stand(before * most + static_cast<long>(pass.last - pass.first) * iteration, all * most,
                     {{"iteration", static_cast<double>(iteration)}, {"VER", figures.ver}, {"PW", figures.pw}});
   }
 
-  /// Takes the finished slices out of the pass.
-  void finish(const Problem& problem, Work& work, const Pass& pass, const light::Operator& light,
+  /// Takes the finished slices out of the pass, whose intensity is at most `most`.
+  void finish(const Problem& problem, Work& work, const Pass& pass, const light::Operator& light, double most,
               const Scenarios* scenarios) {
     Iterate& state = work.state;
     const bool whole = division_.whole;
     if (division_.halo == 0) {  // slices that share dose with other passes are to scale already
-      bring_to_threshold(problem, light, whole ? Together::pass : Together::slice, outcome_.max_intensity, scenarios,
-                         state);
+      bring_to_threshold(problem, light, whole ? Together::pass : Together::slice, most, scenarios, state);
     }
     if (whole) outcome_.surface = work.method->surface_miss(state.dose);
-    tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, times_}, ledger_);
+    tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, asked_, times_}, ledger_);
     if (light_.couples_slices() && !task_.demands.grey) outcome_.wrong = wrong_voxels(state.dose, problem);  // one pass
     hand_out(state, pass, light);
   }
@@ -239,7 +260,8 @@ class VolumeRun {
   /// Finished passes are handed on as if they had just been computed; the open one is taken up.
   void resume(Archive& from, Work& work) {
     exchange(from, mark_);
-    while (auto images = next_finished(from, light_.image(), jobs() - finished_.jobs())) {
+    const auto skip = [this] { skip_others([] {}); };
+    for (skip(); auto images = next_finished(from, light_.image(), jobs() - finished_.jobs()); skip()) {
       if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, *images);
       finished_.take(std::move(*images));
     }
@@ -251,6 +273,7 @@ class VolumeRun {
     ledger_.exchange(archive);
     archive(outcome_.even.mean);
     archive(outcome_.even.largest);
+    archive(first_limit_);
     archive(outcome_.max_intensity);
     exchange(archive, outcome_.front);
     work.search.exchange(archive);
@@ -263,12 +286,15 @@ class VolumeRun {
   const light::Operator& light_;
   SliceReader reader_;
   Division division_;
+  model::ImageRange asked_;  // slices
   RunMark mark_;
   Schedule schedule_;
-  std::vector<int> times_;  // slices that a job stands for
+  std::vector<int> times_;    // slices asked for that a job stands for
+  std::vector<bool> needed_;  // is a job in a pass with one of them?
+  double first_limit_ = 0;    // of the intensity
   Ledger ledger_;
   VolumeOutcome outcome_;  // filled in pass by pass; the ledger has what is of all of them
-  Finished finished_{schedule_, task_.write};
+  Finished finished_{schedule_, asked_, task_.write};
   Progress progress_{task_.title, 0};
 };
 

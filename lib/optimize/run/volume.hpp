@@ -12,6 +12,7 @@
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
 #include "model/outside.hpp"
+#include "model/piece.hpp"
 #include "optimize/run/certify.hpp"
 #include "optimize/run/even_dose.hpp"
 #include "optimize/run/front.hpp"
@@ -31,6 +32,9 @@ struct IntensityLimit {
 struct VolumeTask {
   std::string title = "optimising";  // of the progress
   VolumeSource source;
+  /// The slices that are asked for, by the passes of the whole volume that they belong to, so that their projections
+  /// are those of the whole; none: all. The outcome is theirs.
+  std::optional<model::ImageRange> slices;
   Circle circle;
   model::VoxelBox part;  // its box
   Demands demands;
@@ -47,7 +51,7 @@ struct VolumeTask {
   std::function<std::vector<Scenario>(std::span<const Slab>)> scenarios;
   std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
   std::function<std::unique_ptr<Method>(double max_intensity)> make;
-  std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
+  std::function<void(int k, const Image& image)> write;  // takes the slices in order: columns x angles, fluence
   int certify = 0;  // iterations that prove how good any light could be, after the work; 0: no proof
   Show front;       // fills the outcome's front while the limit is raised; empty: none
   Interruption interruption;
@@ -86,9 +90,10 @@ struct VolumeOutcome {
 /// reaches farther than passes overlap.
 [[nodiscard]] bool takes_whole(const VolumeTask& task, const light::Operator& light);
 
-/// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside
-/// the circle, and when the state to go on from is of another job; Fault::usage when a blur is to be made up for by a
-/// method that does not keep doses to scale.
+/// Slices of a part are optimised only where light and figures leave passes independent. All calls of the task's
+/// functions come from the calling thread. Throws Fault::data when a slice has part outside the circle, and when the
+/// state to go on from is of another job; Fault::usage when a blur is to be made up for by a method that does not keep
+/// doses to scale.
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light);
 
 /// For --report and --trace.

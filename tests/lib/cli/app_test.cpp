@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <optional>
 
 #include "base/error.hpp"
@@ -27,6 +28,18 @@ TEST_CASE("options reach their variables") {
   CHECK(tool.app.history() ==
         std::string("vam-demo ") + VAM_VERSION +
             " part.vdb --voxel 0.1 --angles=90 --rotate -10,20,3.5 --window cosine --half --set a=1 --set b=2");
+}
+
+TEST_CASE("options can be left out of the history, with their values") {
+  const auto without = [](const std::vector<std::string>& words) {
+    Tool tool;
+    CHECK(tool.run(words) == 0);
+    return tool.app.history_without({"--voxel", "--half"})
+        .substr(std::string("vam-demo ").size() + std::strlen(VAM_VERSION));
+  };
+  CHECK(without({"part.vdb", "--voxel", "0.1", "--angles", "90"}) == " part.vdb --angles 90");
+  CHECK(without({"--half", "part.vdb", "--voxel=0.1"}) == " part.vdb");
+  CHECK(without({"--angles", "90", "--half", "--", "part.vdb"}) == " --angles 90 -- part.vdb");
 }
 
 TEST_CASE("a repeatable option takes one value each time and leaves positionals alone") {

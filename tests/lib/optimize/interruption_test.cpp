@@ -81,6 +81,39 @@ TEST_CASE("a run interrupted repeatedly gives the bytes of an uninterrupted one,
   }
 }
 
+TEST_CASE("slices that are asked for have the projections of the whole, interrupted or not") {
+  std::vector<std::vector<float>> slices;
+  for (int k = 0; k < 70; ++k) {  // two passes; the last slices come again
+    slices.push_back(
+        vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * (k % 67); }));
+  }
+  VolumeTask task;
+  task.watch = true;
+  task.limits = {.iterations = 12, .until = {{"pw", ">=", 0.9}}, .patience = 0};
+  task.limit = {.most = 0, .of_even = 1.5};
+  task.raising = {.factor = 1.5, .first = 4, .next = 4};  // the first pass raises the limit of the second
+  task.make = [&](double most) { return make_method("apg", {.max_intensity = most}); };
+  const auto whole = run(slices, task);
+  for (const model::ImageRange asked : {model::ImageRange{0, 3}, {60, 66}, {65, 70}}) {
+    CAPTURE(asked.from);
+    task.slices = asked;
+    const auto some = run(slices, task);
+    REQUIRE(count_of(some.images) == asked.count());
+    bool same = true;
+    for (int k = asked.from; k < asked.to; ++k) {
+      same = same && some.images[k - asked.from].values == whole.images[k].values;
+    }
+    CHECK(same);
+    CHECK(some.outcome.metrics.part > 0);
+    CHECK(some.outcome.metrics.part < whole.outcome.metrics.part);
+    const auto broken = run_in_pieces(slices, task, 3);
+    CHECK(broken.times >= 2);
+    CHECK(broken.result.images.back().values == some.images.back().values);
+    CHECK(report(broken.result.outcome).dump() == report(some.outcome).dump());
+    CHECK(trace_csv(broken.result.outcome.trace) == trace_csv(some.outcome.trace));
+  }
+}
+
 TEST_CASE("the same where a run ends without progress, at its best iterate or its last") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   for (const std::string name : {"apg", "cal", "osmo"}) {

@@ -35,7 +35,7 @@ inline Written run(const std::vector<std::vector<float>>& slices, VolumeTask tas
   };
   if (!task.make) task.make = [](double) { return make_method("dose-norm", {}); };
   task.write = [&](int k, const vam::Image& image) {
-    CHECK(k == static_cast<int>(result.images.size()));
+    CHECK(k == static_cast<int>(result.images.size()) + (task.slices ? task.slices->from : 0));
     result.images.push_back(image);
   };
   result.outcome = optimise(task, light);

@@ -18,6 +18,8 @@ class Ledger {
   void note(int iteration, const SliceFigures& figures);
   /// A pass has ended with the figures it noted last.
   void end(const Outcome& outcome);
+  /// A job that no slice asked for needs.
+  void skip();
   void add_dark(std::int64_t voxels) { dark_part_voxels_ += voxels; }
   /// A slice as it leaves the optimiser, and how often it occurs.
   void add(const model::DoseStatistics& statistics, const model::DoseMetrics& figures, int times);

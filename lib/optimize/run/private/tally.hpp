@@ -5,6 +5,7 @@
 #include <span>
 
 #include "model/outside.hpp"
+#include "model/piece.hpp"
 #include "optimize/run/private/ledger.hpp"
 #include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/pass.hpp"
@@ -15,7 +16,8 @@ namespace vam::optimize {
 struct Jobs {
   const model::VoxelBox& part;       // its box
   std::span<const int> of_slice;     // as in Schedule
-  std::span<const int> slices_each;  // that a job stands for
+  model::ImageRange asked;           // slices that count
+  std::span<const int> slices_each;  // of them, that a job stands for
 };
 
 /// Of the pass's own jobs: what they print and, unless the target is grey, what they leave outside the part's box.

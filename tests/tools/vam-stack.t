@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Pieces of stacks: cut, computed apart, joined to the bytes of the undivided stack.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+vam-slice --shape gyroid:diameter=1.6,height=9 --voxel 0.1 -o part.vdb || exit 1
+vam-sinogram part.vdb --angles 24 -o whole.exr
+n=$(vam-check whole.exr | sed -n 's/.*stack of \([0-9]*\) images.*/\1/p')
+vam-stack whole.exr --slices 0:20 -o a.exr && vam-stack whole.exr --slices "20:$n" -o b.exr
+quiet 'pieces are joined, in any order' vam-stack b.exr a.exr -o joined.exr
+same 'to the undivided stack' whole.exr joined.exr
+is 'a piece is named' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr a.exr vam:piece)" "0:20 of $n"
+ok 'and intact' vam-check a.exr b.exr
+for i in 1 2 3; do vam-stack whole.exr --slices $i/3; done >stream || report 1 'shares are cut'
+vam-stack <stream >piped.exr
+vam-stack <whole.exr >copied.exr
+same 'shares through a pipe are the undivided stack' piped.exr copied.exr
+vam-stack b.exr --slices 30:40 -o c.exr && vam-stack whole.exr --slices 30:40 -o d.exr
+same 'a piece of a piece is a piece of the whole' c.exr d.exr
+for piece in a b; do vam-resample $piece.exr >r$piece.exr 2>/dev/null; done
+vam-stack ra.exr rb.exr >rjoined.exr 2>errors
+ok 'pieces with other histories are refused' grep -q 'differs from ra.exr in its history; join pieces of one stack' errors
+vam-project ra.exr -o frames.exr; is 'frames of a piece are no piece' "$(grep -ac 'vam:piece' frames.exr)" 0
+
+python3 "$VAM_SOURCE/tests/tools/exr.py" make frames.exr kind=frames space=camera width=6 height=5 count=4
+vam-stack frames.exr -o all.exr && vam-stack frames.exr --slices 0:1 -o f1.exr && vam-stack frames.exr --slices 1:4 -o f2.exr
+vam-stack f1.exr f2.exr -o f.exr
+same 'frames are cut and joined, too' all.exr f.exr
+
+# ---- what is no stack together ---------------------------------------------------------------------------------------
+fails 65 "^vam-stack: a.exr: holds images 0:20 of $n; name the other pieces, too, or choose some of these by --slices" vam-stack a.exr -o x.exr
+fails 65 'c.exr: holds images 30:40, but the pieces before it end at 20; the piece in between is missing' vam-stack a.exr c.exr -o x.exr
+fails 65 'c.exr: holds images 30:40, but the pieces before it end at .*; omit one of those that overlap' vam-stack a.exr b.exr c.exr -o x.exr
+fails 65 'whole.exr: is no piece of a stack \(no vam:piece\)' vam-stack a.exr whole.exr -o x.exr
+fails 65 'a.exr: holds images 0:20 of .*, not all of --slices 10:30' vam-stack a.exr --slices 10:30 -o x.exr
+fails 65 "whole.exr: has $n slices, too few for --slices 0:500" vam-stack whole.exr --slices 0:500 -o x.exr
+fails 64 "^vam-stack: --slices: '4' is neither a range FROM:TO" vam-stack none.exr --slices 4 -o x.exr
+fails 64 "'5:5' is neither" vam-stack none.exr --slices 5:5 -o x.exr
+fails 66 'none.exr: cannot open' vam-stack none.exr -o x.exr
+fails 65 "stdin: ends after image 20 of $n; the other pieces are missing" sh -c 'vam-stack <a.exr -o x.exr'
+fails 65 'stdin: .*the piece in between is missing' sh -c 'cat a.exr c.exr | vam-stack -o x.exr'
+fails 65 'another stack follows, which is no piece' sh -c 'cat whole.exr whole.exr | vam-stack -o x.exr'
+vam-sinogram part.vdb --angles 36 -o other.exr && vam-stack other.exr --slices "20:$n" -o ob.exr
+fails 65 'ob.exr: differs from a.exr in its image size' vam-stack a.exr ob.exr -o x.exr
+python3 - <<'PY'
+data = open('a.exr', 'rb').read()
+open('bad.exr', 'wb').write(data.replace(b'0:20 of ', b'0:19 of '))
+open('odd.exr', 'wb').write(data.replace(b'0:20 of ', b'0:20 on '))
+PY
+fails 65 "bad.exr: the header of part 0 changed after it was written" vam-stack bad.exr --slices 0:5 -o x.exr
+fails 65 "odd.exr: vam:piece is '0:20 on $n', not like '64:128 of 160'" vam-stack odd.exr --slices 0:5 -o x.exr
+
+done_testing

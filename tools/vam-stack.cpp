@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// vam-stack: joins pieces of a stack of images, and cuts pieces out.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "io/exr/stack_pieces.hpp"
+#include "io/stream/input_name.hpp"
+#include "slices.hpp"
+
+namespace {
+
+using namespace vam;
+
+struct Options {
+  std::vector<std::string> inputs{"-"};
+  std::string slices;
+  std::string output = "-";
+  io::StackOptions stack;
+};
+
+cli::Manual manual() {
+  return {"vam-stack",
+          "join pieces of a stack of images, or cut a piece out",
+          {"A piece is a stack (sinogram, frames) that holds some successive images of an undivided one and names them "
+           "in the attribute vam:piece, such as '64:128 of 160'. vam-optimize --slices computes pieces of a sinogram, "
+           "on several machines if wanted; vam-stack --slices cuts them out.",
+           "Without --slices vam-stack joins pieces. Files may be named in any order; on standard input pieces follow "
+           "each other in ascending order. They must be pieces of one stack, made by the same command, and none may be "
+           "missing. The result is the undivided stack, with its attributes, seals and history: vam-stack itself adds "
+           "no line to the history, as it changes nothing.",
+           "Pieces are stacks like others: vam-resample, vam-dose and vam-view read them."},
+          {{"Cut a sinogram into two pieces and join them:",
+            "vam-slice --shape gyroid --voxel 0.4 | vam-sinogram -o whole.exr\n"
+            "vam-stack whole.exr --slices 0:10 -o low.exr\n"
+            "vam-stack whole.exr --slices 10:26 -o high.exr\n"
+            "vam-stack high.exr low.exr -o joined.exr\n"
+            "cmp whole.exr joined.exr"},
+           {"Optimise the halves of a part at the same time:",
+            "vam-slice --shape gyroid --voxel 0.4 -o part.vdb\n"
+            "vam-optimize --geometry parallel part.vdb --slices 1/2 -o low.exr &\n"
+            "vam-optimize --geometry parallel part.vdb --slices 2/2 -o high.exr\n"
+            "wait\n"
+            "vam-stack low.exr high.exr -o sinogram.exr"},
+           {"Recompress a stack:",
+            "vam-slice --shape gyroid --voxel 0.4 | vam-sinogram | vam-stack --compression zip -o small.exr"}},
+          {"Memory: 32 images. Speed: that of reading and compressing."},
+          {"vam-optimize", "vam-check"}};
+}
+
+model::ImageRange chosen(const Options& options, const io::StackPieces& in, const std::string& name) {
+  const model::ImageRange& there = in.images();
+  const std::string all = std::to_string(in.info().count);
+  if (options.slices.empty()) {
+    if (there.count() == in.info().count) return there;
+    throw Error{Fault::data, name + ": holds images " + model::range_text(there) + " of " + all +
+                                 "; name the other pieces, too, or choose some of these by --slices"};
+  }
+  const model::ImageRange range = tool::slices_among(options.slices, in.info().count, name);
+  if (range.from >= there.from && range.to <= there.to) return range;
+  throw Error{Fault::data, name + ": holds images " + model::range_text(there) + " of " + all +
+                               ", not all of --slices " + options.slices};
+}
+
+void run(const Options& options) {
+  const std::string name = io::input_name(options.inputs.front());
+  if (!options.slices.empty()) (void)tool::slices_named(options.slices);  // before files are opened
+  io::StackPieces in(options.inputs);
+  const model::ImageRange range = chosen(options, in, name);
+  io::StackWriter out(options.output, io::cut(in.info(), range, name), options.stack);
+  Progress progress("copying", in.images().count());
+  Image image;
+  model::ImageInfo about;
+  for (int index = in.images().from; in.next(image, about); ++index, progress.tick(1)) {
+    if (!range.holds(index)) continue;
+    const bool own = about.has_angle || about.has_time || about.has_number;
+    own ? out.write(image, about) : out.write(image);
+  }
+  out.commit();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::App app(manual());
+  Options options;
+  app.positional("STACK ...", options.inputs, "A stack, or pieces of one (EXR).").reads();
+  cli::add_output(app, options.output).writes_as({".exr"});
+  app.option(
+      "--slices", "SLICES", options.slices,
+      "Write these images of the undivided stack, counted from 0: FROM to TO - 1 as FROM:TO, or the I-th of N equal "
+      "shares as I/N.");
+  cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  cli::add_threads(app);
+  return app.run(argc, argv, [&] { run(options); });
+}
