@@ -49,7 +49,7 @@ cli::Manual manual() {
            {"Recompress a stack:",
             "vam-slice --shape gyroid --voxel 0.4 | vam-sinogram | vam-stack --compression zip -o small.exr"}},
           {"Memory: 32 images. Speed: that of reading and compressing."},
-          {"vam-optimize", "vam-check"}};
+          {"vam-optimize", "vam-check", "vam-batch"}};
 }
 
 model::ImageRange chosen(const Options& options, const io::StackPieces& in, const std::string& name) {

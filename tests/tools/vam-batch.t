@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A queue of parts: what is missing is made, in pieces too, and what fails is named.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+PATH=$VAM_SOURCE/scripts:$PATH
+
+box 3 3 2 >box.off
+vam-slice --print-printer --set projector.telecentric=true -o level.toml
+queue() {  # queue LINE...: parts.tsv, its cells apart by |
+  printf '%s\n' "$@" | tr '|' '\t' >parts.tsv
+}
+optimize='--method dose-norm --angles 12'
+queue 'part|name|printer|slice|optimize|pieces' '# a comment' "box.off|one|level.toml|--voxel 0.2|$optimize|1" '' \
+  "box.off|two|level.toml|--voxel '0.2'|$optimize|2"
+vam-batch --plan parts.tsv >plan
+is '--plan prints the commands' "$(grep -c '^vam-' plan)" 8
+[ ! -e batch ]; report $? 'and makes nothing'
+quiet 'a queue is made' vam-batch --jobs 2 parts.tsv
+is 'a line for each part' "$(cut -f 1 batch/summary.tsv | tr '\n' ' ')" 'name one two '
+is 'with its figures' "$(awk -F '\t' 'NR > 1 && $2 >= 0 && $4 > 0.5' batch/summary.tsv | wc -l)" 2
+vam-optimize batch/two.vdb --method dose-norm --angles 12 --printer level.toml | vam-stack -o whole.exr
+same 'joined pieces are the undivided stack' batch/two.exr whole.exr
+is 'a second run does nothing' "$(vam-batch --plan parts.tsv | grep -c '^vam-')" 0
+rm batch/two.2.exr
+is 'a lost piece is made again' "$(vam-batch --plan parts.tsv | grep '^vam-' | cut -d ' ' -f 1 | tr '\n' ' ')" 'vam-optimize vam-stack vam-dose '
+quiet 'and joined' vam-batch parts.tsv
+same 'in the same bytes' batch/two.exr whole.exr
+sed -i 's/0\.2|/&/; 3s/--angles 12/--angles 10/' parts.tsv
+is 'other settings make one part again' "$(vam-batch --plan parts.tsv | grep '^vam-' | cut -d ' ' -f 1 | tr '\n' ' ')" 'vam-slice vam-optimize vam-dose '
+
+# ---- what fails ------------------------------------------------------------------------------------------------------
+cat >twice <<'SH'
+#!/bin/sh
+# Fails the first time.
+[ -e tried ] || case $1 in vam-dose) touch tried; exit 1 ;; esac
+exec "$@"
+SH
+chmod +x twice
+vam-batch --prefix ./twice parts.tsv 2>errors; is 'what fails is tried again' "$? $([ -e tried ] && echo tried)" '0 tried'
+queue 'part|optimize|slice|name' "box.off|$optimize|--voxel 0.4|good" 'box.off|--angles 0||bad'
+vam-batch --retries 0 parts.tsv 2>errors; is 'a part that fails is named' "$? $(grep -c '^vam-batch: bad: is incomplete' errors)" '1 1'
+[ -s batch/good.json ]; report $? 'the others are made'
+queue 'part|optimize' "box.off|--method 'cal' \$(touch pwned) ; touch pwned & \`touch pwned\`"
+vam-batch --retries 0 parts.tsv >/dev/null 2>&1
+[ ! -e pwned ] && [ ! -e batch/pwned ]; report $? 'no cell is run'
+
+rm -rf batch; mkdir batch batch/log
+fails 64 '^vam-batch: no queue given; see --help' vam-batch
+fails 66 'none.tsv: cannot open it' vam-batch none.tsv
+fails 64 "--jobs: '0' is not a whole number" vam-batch --jobs 0 parts.tsv
+fails 64 "--folder: 'a b' must consist of" vam-batch --folder 'a b' parts.tsv
+fails 64 '--sbatch: requires --slurm' vam-batch --sbatch -n1 parts.tsv
+fails 64 '--slurmy: unknown option' vam-batch --slurmy parts.tsv
+refused() { queue "$3" "$4"; fails "$1" "$2" vam-batch parts.tsv; }  # refused STATUS REGEX LINE LINE
+refused 65 "line 1: 'mesh' is not one of the columns part, name, printer, slice, optimize, pieces" 'mesh' 'box.off'
+refused 65 'line 1: must name the columns, part among them' 'name' 'box'
+refused 65 'line 2: has 2 cells, but the table has 1 columns' 'part' 'box.off|x'
+refused 65 'line 2: has no part' 'part|name' '|x'
+refused 66 'line 2: none.off: cannot open it' 'part' 'none.off'
+refused 65 "line 2: 'a b.off' must consist of letters" 'part' 'a b.off'
+refused 65 "line 2: the name '../x' must" 'part|name' 'box.off|../x'
+refused 65 "line 2: pieces is '0'" 'part|pieces' 'box.off|0'
+refused 65 'line 2: the column slice has an open quote' 'part|slice' "box.off|--voxel '0.2"
+queue 'part' 'box.off' 'box.off'; rm -f batch/box.settings
+vam-batch parts.tsv 2>errors; is 'a name that is taken' "$? $(grep -c "line 3: the name 'box' is taken" errors)" '65 1'
+queue 'part'; fails 65 'has no part; write one per line' vam-batch parts.tsv
+
+if ! command -v sbatch >/dev/null; then
+  fails 69 '--slurm: no sbatch on this machine' vam-batch --slurm parts.tsv
+fi
+done_testing
