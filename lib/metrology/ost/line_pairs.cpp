@@ -147,23 +147,27 @@ Vector times(const Matrix& m, const Vector& v) {
   return out;
 }
 
-// Variances by how much ranges of lines disagree: those of angle, and those of offset, as structures that turn with
-// the part err alike over a whole range. Both, less what both count.
-Vector variances(const Sums& sums, const Matrix& inverse) {
+// Variances by how much ranges of lines, `merged` of them together, disagree: those of angle, and those of offset, as
+// structures that turn with the part err alike over a whole range. Both, less what both count.
+Vector variances(const Sums& sums, const Matrix& inverse, int merged) {
   std::array<Vector, offset_ranges> by_offset{};
   Vector angle{}, offset{}, both{};
   const auto add = [&](const Vector& gradient, Vector& to) {
     const Vector pull = times(inverse, gradient);
     for (int i = 0; i < unknowns; ++i) to[i] += pull[i] * pull[i];
   };
-  for (int a = 0; a < angle_ranges; ++a) {
+  for (int a = 0; a < angle_ranges; a += merged) {
     Vector of_angle{};
-    for (int t = 0; t < offset_ranges; ++t) {
-      for (int i = 0; i < unknowns; ++i) {
-        of_angle[i] += sums.by_both[a][t][i];
-        by_offset[t][i] += sums.by_both[a][t][i];
+    for (int t = 0; t < offset_ranges; t += merged) {
+      Vector cell{};
+      for (int n = 0; n < merged * merged; ++n) {
+        for (int i = 0; i < unknowns; ++i) cell[i] += sums.by_both[a + n / merged][t + n % merged][i];
       }
-      add(sums.by_both[a][t], both);
+      for (int i = 0; i < unknowns; ++i) {
+        of_angle[i] += cell[i];
+        by_offset[t][i] += cell[i];
+      }
+      add(cell, both);
     }
     add(of_angle, angle);
   }
@@ -171,6 +175,16 @@ Vector variances(const Sums& sums, const Matrix& inverse) {
   Vector out{};
   for (int i = 0; i < unknowns; ++i) out[i] = std::max({angle[i] + offset[i] - both[i], angle[i], offset[i]});
   return out;
+}
+
+// The largest of those of narrow and wide ranges: bubbles drift through many narrow ones, and err alike in all of them.
+Vector variances(const Sums& sums, const Matrix& inverse) {
+  Vector most{};
+  for (const int merged : {1, 2, 4}) {
+    const Vector now = variances(sums, inverse, merged);
+    for (int i = 0; i < unknowns; ++i) most[i] = std::max(most[i], now[i]);
+  }
+  return most;
 }
 
 // What the lines on edges differ by between their ends, those that see a motion best.
@@ -250,7 +264,7 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
       fit.sigma[i] = std::sqrt(variance[i]);
       farthest = std::max(farthest, std::abs(move[i]));
     }
-    bound = 2.5 * std::sqrt(sums.square / sums.sight) + 1e-30;
+    bound = 2.5 * stats::median(edge_differences(lines)) / 0.6745 + 1e-30;
     fit.converged = step > 0 && farthest < near_px;
   }
   if (!before.empty()) {
