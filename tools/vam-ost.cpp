@@ -42,7 +42,9 @@ std::vector<std::string> description() {
       "the "
       "vial, by which its axis circles about that of the stage, is fitted to the same pairs of rays and removed where "
       "it "
-      "exceeds what chance does in one of 370 cases and most edges agree with it. Image rows run "
+      "exceeds what chance does in one of 370 cases and most edges agree with it. Resin that absorbs the scattered "
+      "light makes these pairs differ, too: an absorption that is not given and that they show is stated by a warning, "
+      "and no run-out is removed. Image rows run "
       "downwards along the axis; z = 0 "
       "is the row at the height of the lens, camera.axis_row or the middle one.",
       "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "

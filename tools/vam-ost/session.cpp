@@ -143,6 +143,8 @@ Json Session::figures(const model::Volume& volume) const {
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
   json["dirt"] = dirt();
   json["run_out"] = run_out();
+  json["apparent_absorption_per_mm"] = run_out_.absorption_per_mm;
+  json["apparent_absorption_sigma_per_mm"] = run_out_.absorption_sigma_per_mm;
   return json;
 }
 
@@ -199,6 +201,11 @@ void Session::say_axis() const {
          format_number(run_out_.size_sigma_mm(), 2) + " mm, removed");
   } else if (!run_out_.determined && !options_.keep_run_out) {
     note("run-out of the vial: not determined by these views, none removed");
+  }
+  if (run_out_.absorbs()) {
+    warn("the views look as if the resin absorbs the scattered light by " +
+         format_number(run_out_.absorption_per_mm, 2) + " +- " + format_number(run_out_.absorption_sigma_per_mm, 1) +
+         " per mm; measure it at the wavelength of the camera and set camera.absorption_per_mm");
   }
 }
 

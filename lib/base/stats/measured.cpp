@@ -5,11 +5,22 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "base/index.hpp"
 #include "base/stats/student.hpp"
 
 namespace vam::stats {
 
 double few_readings_factor(int freedom) { return stats::student_quantile(0.05, std::max(freedom, 1)) / 1.959964; }
+
+double few_parts_factor(const std::vector<double>& parts) {
+  double sum = 0;
+  double squares = 0;
+  for (const double part : parts) {
+    sum += part;
+    squares += part * part;
+  }
+  return squares > 0 ? few_readings_factor(floor_int(sum * sum / squares)) : 1.0;
+}
 
 Measured weighted_mean(const std::vector<Measured>& parts) {
   double weights = 0;

@@ -30,4 +30,8 @@ struct WeightedLine {
 /// grows.
 [[nodiscard]] double few_readings_factor(int freedom);
 
+/// The same for a variance that is the sum of these parts, each the square of one reading: a few large ones among many
+/// small ones count as few.
+[[nodiscard]] double few_parts_factor(const std::vector<double>& parts);
+
 }  // namespace vam::stats

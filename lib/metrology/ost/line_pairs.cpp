@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <opencv2/core.hpp>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
 
 namespace vam::metrology {
@@ -18,7 +21,7 @@ constexpr int angle_ranges = 24;
 constexpr int offset_ranges = 12;
 
 using Vector = PairVector;
-using Matrix = std::array<Vector, unknowns>;
+using Matrix = cv::Matx<double, unknowns, unknowns>;
 
 // An edge must not be sharper than what the views sample between their angles: beside the axis it moves by
 // pi columns / views from one to the next.
@@ -70,6 +73,27 @@ double difference(const std::vector<Image>& sinograms, int k, int t, int a) {
   return static_cast<double>(s(t, a)) - static_cast<double>(s(s.width - 1 - t, (a + s.height / 2) % s.height));
 }
 
+// What each ray would gain if the light were not absorbed, mu per column: mu M, M the integral of u rho along it. As
+// dP/dtheta = -dM/dt, the views hold it: P is the mean of both ends of a line, and the integral over t is the mean of
+// those from either side.
+Image absorbed(const Image& s) {
+  constexpr int around = 2;  // angles, of the derivative
+  const int n = s.height;
+  const auto line = [&](int t, int a) {
+    const int row = (a + n) % n;
+    return 0.5 * (static_cast<double>(s(t, row)) + static_cast<double>(s(s.width - 1 - t, (row + n / 2) % n)));
+  };
+  Image out(s.width, n);
+  std::vector<double> sum(s.width + 1);
+  for (int a = 0; a < n; ++a) {
+    for (int t = 0; t < s.width; ++t) {
+      sum[t + 1] = sum[t] - (line(t, a + around) - line(t, a - around)) * n / (4 * std::numbers::pi * around);
+    }
+    for (int t = 0; t < s.width; ++t) out(t, a) = static_cast<float>(0.5 * (sum[t] + sum[t + 1] - sum[s.width]));
+  }
+  return out;
+}
+
 /// All that a fit needs of the views after some motion.
 struct Lines {
   std::vector<Image> now;
@@ -115,7 +139,7 @@ void add_height(const Lines& lines, int k, double bound, Sums& sums) {
       Vector gradient{};
       for (int i = 0; i < unknowns; ++i) {
         gradient[i] = weight * row[i] * r;
-        for (int j = 0; j < unknowns; ++j) sums.normal[i][j] += weight * 0.5 * (row[i] * own[j] + own[i] * row[j]);
+        for (int j = 0; j < unknowns; ++j) sums.normal(i, j) += weight * 0.5 * (row[i] * own[j] + own[i] * row[j]);
       }
       const int offset_range = t * offset_ranges / half;
       for (int i = 0; i < unknowns; ++i) {
@@ -126,31 +150,32 @@ void add_height(const Lines& lines, int k, double bound, Sums& sums) {
   }
 }
 
-bool inverted(const Matrix& m, Matrix& inverse) {
-  const auto minor = [&](int r, int c) {
-    const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-    return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
-  };
-  const double determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
-  if (!(determinant > 1e-9 * m[0][0] * m[1][1] * m[2][2])) return false;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) inverse[c][r] = minor(r, c) / determinant;
+// Of the first `count` unknowns; the others stay.
+bool inverted(Matrix m, int count, Matrix& inverse) {
+  double scale = 1;
+  for (int i = count; i < unknowns; ++i) {
+    for (int j = 0; j < unknowns; ++j) m(i, j) = m(j, i) = i == j ? 1.0 : 0.0;
   }
+  for (int i = 0; i < unknowns; ++i) scale *= m(i, i);
+  if (!(cv::determinant(m) > 1e-9 * scale)) return false;
+  inverse = m.inv();
+  for (int i = count; i < unknowns; ++i) inverse(i, i) = 0;
   return true;
 }
 
 Vector times(const Matrix& m, const Vector& v) {
   Vector out{};
   for (int i = 0; i < unknowns; ++i) {
-    for (int j = 0; j < unknowns; ++j) out[i] += m[i][j] * v[j];
+    for (int j = 0; j < unknowns; ++j) out[i] += m(i, j) * v[j];
   }
   return out;
 }
 
 // Variances by how much ranges of lines, `merged` of them together, disagree: those of angle, and those of offset, as
-// structures that turn with the part err alike over a whole range. Both, less what both count.
+// structures that turn with the part err alike over a whole range. Both, less what both count; wider where few pull.
 Vector variances(const Sums& sums, const Matrix& inverse, int merged) {
   std::array<Vector, offset_ranges> by_offset{};
+  std::array<std::vector<double>, unknowns> single;
   Vector angle{}, offset{}, both{};
   const auto add = [&](const Vector& gradient, Vector& to) {
     const Vector pull = times(inverse, gradient);
@@ -167,13 +192,21 @@ Vector variances(const Sums& sums, const Matrix& inverse, int merged) {
         of_angle[i] += cell[i];
         by_offset[t][i] += cell[i];
       }
-      add(cell, both);
+      Vector alone{};
+      add(cell, alone);
+      for (int i = 0; i < unknowns; ++i) {
+        both[i] += alone[i];
+        single[i].push_back(alone[i]);
+      }
     }
     add(of_angle, angle);
   }
   for (const Vector& of_offset : by_offset) add(of_offset, offset);
   Vector out{};
-  for (int i = 0; i < unknowns; ++i) out[i] = std::max({angle[i] + offset[i] - both[i], angle[i], offset[i]});
+  for (int i = 0; i < unknowns; ++i) {
+    const double all = std::max({angle[i] + offset[i] - both[i], angle[i], offset[i]});
+    out[i] = std::pow(stats::few_parts_factor(single[i]), 2) * all;
+  }
   return out;
 }
 
@@ -197,7 +230,7 @@ std::vector<double> edge_differences(const Lines& lines) {
     for (int a = 0; a < s.height; ++a) {
       for (int t = 2; t < s.width / 2; ++t) {
         double sight = 0;
-        for (const auto& by : lines.by) sight += std::pow(difference(by, k, t, a), 2);
+        for (int i = 0; i < pair_motions; ++i) sight += std::pow(difference(lines.by[i], k, t, a), 2);
         sights.push_back(sight);
         differences.push_back(std::abs(difference(lines.now, k, t, a)));
         sum += sight;
@@ -218,9 +251,37 @@ double usual_difference(const std::vector<double>& differences, double most) {
   return sum / static_cast<double>(std::max<std::size_t>(1, differences.size()));
 }
 
+// What views lack that were divided by their intensities: what absorption takes from all rays of an angle alike, the
+// median over the heights.
+void leave_even_light(const std::vector<Image>& sinograms, std::vector<Image>& gain) {
+  parallel_for(gain.front().height, [&](int a) {
+    std::vector<double> shares;
+    for (std::size_t k = 0; k < gain.size(); ++k) {
+      const auto total = [&](const Image& s) { return std::accumulate(s.row(a), s.row(a) + s.width, 0.0); };
+      shares.push_back(total(gain[k]) / total(sinograms[k]));
+    }
+    const auto share = static_cast<float>(stats::median(shares));
+    for (std::size_t k = 0; k < gain.size(); ++k) {
+      for (int t = 0; t < gain[k].width; ++t) gain[k](t, a) -= share * sinograms[k](t, a);
+    }
+  });
+}
+
+// Gives the rays back what is absorbed by so much per column.
+void restore(Lines& lines, double by_absorption, bool even_light) {
+  auto& gain = lines.by[pair_motions];
+  gain.resize(lines.now.size());
+  parallel_for(count_of(lines.now), [&](int k) { gain[k] = absorbed(lines.now[k]); });
+  if (even_light) leave_even_light(lines.now, gain);
+  parallel_for(count_of(lines.now), [&](int k) {
+    Image& s = lines.now[k];
+    for (std::size_t i = 0; i < s.size(); ++i) s.values[i] += static_cast<float>(by_absorption) * gain[k].values[i];
+  });
+}
+
 std::vector<ColumnMotion> motion_of(const Vector& p, const PairBasis& basis) {
   std::vector<ColumnMotion> motion(basis.motion[0].size());
-  for (int i = 0; i < unknowns; ++i) {
+  for (int i = 0; i < pair_motions; ++i) {
     for (std::size_t v = 0; v < motion.size(); ++v) {
       motion[v].shift_px += p[i] * basis.motion[i][v].shift_px;
       motion[v].stretch += p[i] * basis.motion[i][v].stretch;
@@ -231,7 +292,7 @@ std::vector<ColumnMotion> motion_of(const Vector& p, const PairBasis& basis) {
 
 }  // namespace
 
-PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
+PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, int count,
                        const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of) {
   std::vector<Image> blurred = level;
   blur_columns(blurred);
@@ -239,23 +300,22 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
     std::vector<Image> moved = blurred;
     undo_motion(moved, motion_of(value, basis), basis.axis_column);
     Lines lines{sinograms_of(moved), {}};
-    for (int i = 0; i < unknowns; ++i) {
+    for (int i = 0; i < pair_motions; ++i) {
       lines.by[i] = sinograms_of(slopes(moved, basis.motion[i], basis.axis_column));
     }
+    restore(lines, value[pair_motions], basis.even_light);
     return lines;
   };
   PairFit fit;
-  std::vector<double> before;
   double bound = 1e300;
   constexpr int steps = 12;
   constexpr double near_px = 1e-2;  // a last step below this leaves far less
   for (int step = 0; step < steps && !fit.converged; ++step) {
     const Lines lines = lines_after(fit.value);
-    if (step == 0) before = edge_differences(lines);
     Sums sums;
     for (int k = 0; k < count_of(lines.now); ++k) add_height(lines, k, bound, sums);
     Matrix inverse{};
-    if (!inverted(sums.normal, inverse)) return {};
+    if (!inverted(sums.normal, count, inverse)) return {};
     const Vector move = times(inverse, sums.right);
     const Vector variance = variances(sums, inverse);
     double farthest = 0;
@@ -267,11 +327,12 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
     bound = 2.5 * stats::median(edge_differences(lines)) / 0.6745 + 1e-30;
     fit.converged = step > 0 && farthest < near_px;
   }
-  if (!before.empty()) {
-    constexpr double few = 3;
-    const double most = few * stats::median(before);
-    fit.explains = usual_difference(edge_differences(lines_after(fit.value)), most) < usual_difference(before, most);
-  }
+  Vector unmoved{};
+  unmoved[pair_motions] = fit.value[pair_motions];
+  const auto before = edge_differences(lines_after(unmoved));
+  constexpr double few = 3;
+  const double most = few * stats::median(before);
+  fit.explains = usual_difference(edge_differences(lines_after(fit.value)), most) < usual_difference(before, most);
   return fit;
 }
 

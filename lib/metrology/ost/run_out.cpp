@@ -60,15 +60,21 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
   auto level = level_views(views, s.axis, rows);
   const double background = even_background(mean).background;
-  make_steady(level, background, s.flicker(views, angles_deg, background).intensity);
+  const Flicker light = s.flicker(views, angles_deg, background);
+  make_steady(level, background, light.intensity);
   undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
   const double unit_mm = s.eye.camera.pixel_mm;
   const PairBasis basis{{std::vector<ColumnMotion>(views.size(), {1, 0}), s.motion(angles_deg, unit_mm, 0),
                          s.motion(angles_deg, 0, unit_mm)},
-                        s.axis.column};
-  const PairFit fit = fit_line_pairs(level, basis, [&](const std::vector<Image>& moved) {
-    return s.virtual_sinograms(camera_sinograms(moved, turns), heights_mm);
-  });
+                        s.axis.column,
+                        !light.intensity.empty()};
+  const auto fitted = [&](int count) {
+    return fit_line_pairs(level, basis, count, [&](const std::vector<Image>& moved) {
+      return s.virtual_sinograms(camera_sinograms(moved, turns), heights_mm);
+    });
+  };
+  PairFit fit = fitted(pair_unknowns);
+  if (!fit.converged) fit = fitted(pair_motions);  // where bubbles pass
   found.determined = fit.converged;
   found.mm = {s.options.run_out_mm[0] + fit.value[1] * unit_mm, s.options.run_out_mm[1] + fit.value[2] * unit_mm};
   // Both are seen by the same lines; what these say of one alone is little for a standard deviation.
@@ -76,7 +82,11 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   found.sigma_mm = {sigma_mm, sigma_mm};
   found.column = s.axis.column + fit.value[0];
   found.column_sigma = fit.sigma[0];
-  if (found.seen() && !fit.explains) found.determined = false;
+  if (fit.converged) {
+    found.absorption_per_mm = fit.value[pair_motions] / s.grid.voxel_mm;
+    found.absorption_sigma_per_mm = fit.sigma[pair_motions] / s.grid.voxel_mm;
+  }
+  if (found.absorbs() || (found.seen() && !fit.explains)) found.determined = false;
   return found;
 }
 
@@ -91,6 +101,12 @@ double RunOut::size_sigma_mm() const {
 bool RunOut::seen() const {
   constexpr double sigmas = 3.44;  // of two components: as rarely exceeded by chance as 3 by one
   return determined && size_mm() > sigmas * size_sigma_mm();
+}
+
+bool RunOut::absorbs() const {
+  constexpr double least_per_mm = 0.005;  // 5 % over a print of 10 mm
+  constexpr double sigmas = 3;
+  return absorption_per_mm > std::max(least_per_mm, sigmas * absorption_sigma_per_mm);
 }
 
 Json to_json(const RunOut& found) {

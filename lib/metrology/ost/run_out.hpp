@@ -18,11 +18,15 @@ struct RunOut {
   RunOutVector sigma_mm{};
   double column = 0;  // of the stage's axis, found together with it
   double column_sigma = 0;
+  double absorption_per_mm = 0;  // of the scattered light, found together with it; where it is seen, no run-out is
+  double absorption_sigma_per_mm = 0;
 
   [[nodiscard]] double size_mm() const;
   [[nodiscard]] double size_sigma_mm() const;  // along its direction, or of a part where the size is 0
   /// Farther from 0 than chance takes one of 370.
   [[nodiscard]] bool seen() const;
+  /// The scattered light is absorbed by more than chance makes it seem in one of 370 cases, and enough to matter.
+  [[nodiscard]] bool absorbs() const;
 };
 
 [[nodiscard]] Json to_json(const RunOut& found);

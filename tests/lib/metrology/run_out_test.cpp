@@ -230,3 +230,28 @@ TEST_CASE("bubbles that turn with the vial are no run-out") {
   }
   CHECK(pulled > 0);  // the fit alone would have been believed
 }
+
+TEST_CASE("absorption that is not given is no run-out, and is seen") {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    oracle::ViewBench bench = coarse_bench();
+    const auto part = random_part(random);
+    const double noise = 0.005 * (seed % 3);
+    const auto found_at = [&](double absorption_per_mm, double run_out_mm) {
+      bench.absorption_per_mm = absorption_per_mm;
+      bench.run_out_mm = {run_out_mm, 0};
+      oracle::ViewBench clear = bench;
+      clear.absorption_per_mm = 0;
+      return found_in(clear, seen(bench, part, noise, seed), {bench.axis_column, 0});
+    };
+    const RunOut absorbed = found_at(0.1, 0);
+    MESSAGE("absorption ", absorbed.absorption_per_mm, " +- ", absorbed.absorption_sigma_per_mm, " per mm");
+    CHECK(!absorbed.seen());
+    CHECK(absorbed.absorbs());
+    CHECK(std::abs(absorbed.absorption_per_mm - 0.1) < 0.03);  // of what absorption has weakened, to the first order
+    const RunOut clear = found_at(0, 0.1);
+    CHECK(clear.seen());
+    CHECK(!clear.absorbs());
+  }
+}

@@ -12,13 +12,15 @@
 
 namespace vam::metrology {
 
-inline constexpr int pair_unknowns = 3;  // an offset of the axis, and the run-out along x and y of the part, in columns
+inline constexpr int pair_motions = 3;  // an offset of the axis, and the run-out along x and y of the part, in columns
+inline constexpr int pair_unknowns = pair_motions + 1;  // and the absorption of the scattered light, per column
 using PairVector = std::array<double, pair_unknowns>;
 
-/// Motion of the columns of each view by one unit of each unknown.
+/// Motion of the columns of each view by one unit of each unknown that moves them.
 struct PairBasis {
-  std::array<std::vector<ColumnMotion>, pair_unknowns> motion;
+  std::array<std::vector<ColumnMotion>, pair_motions> motion;
   double axis_column = 0;
+  bool even_light = false;  // the views were divided by their intensities
 };
 
 /// With one standard deviation each.
@@ -29,12 +31,12 @@ struct PairFit {
   bool explains = false;  // most lines on edges look more alike from both ends than without motion
 };
 
-/// Fits the motion after which each line looks alike from both of its ends. `level` has a view each, columns x heights;
-/// `sinograms_of` takes views to virtual sinograms, linearly, the axis in their middle. Gauss-Newton on the
-/// differences, far ones weighted down [HUB64]; bubbles, which are in single lines, can still pull it away from most of
-/// them, which `explains` tells. Standard deviations from the scatter between ranges of angle and of
-/// offset, as the errors of neighbouring lines are not independent [physics §8].
-[[nodiscard]] PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
+/// Fits the motion, and with `count` of 4 the absorption, after which each line looks alike from both of its ends.
+/// `level` has a view each, columns x heights; `sinograms_of` takes views to virtual sinograms, linearly, the axis in
+/// their middle. Gauss-Newton on the differences, far ones weighted down [HUB64]; bubbles, which are in single lines,
+/// can still pull it away from most of them, which `explains` tells. Standard deviations from the scatter between
+/// ranges of angle and of offset, as the errors of neighbouring lines are not independent [physics §8].
+[[nodiscard]] PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, int count,
                                      const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of);
 
 }  // namespace vam::metrology
