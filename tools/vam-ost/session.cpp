@@ -154,7 +154,7 @@ metrology::AxisEstimate Session::axis_of(std::span<const metrology::CameraView> 
   const std::optional<double> column = options_.axis_column ? options_.axis_column : printer_.camera.axis_column;
   const std::optional<double> tilt_deg = options_.tilt_deg ? options_.tilt_deg : printer_.camera.tilt_deg;
   if (!column || !tilt_deg) {
-    const auto found = metrology::find_axis(metrology::mean_view(views));
+    const auto found = metrology::find_axis(views);
     if (!rig_ || found.column_sigma < axis.column_sigma) axis = found;  // else what is known is better
   }
   if (column) axis.pose.column = binned(*column, options_.binning);

@@ -10,6 +10,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
 
 namespace vam::metrology {
@@ -80,6 +81,7 @@ struct Normal {
   double cr = 0, tr = 0, rr = 0;
   double noise_cc = 0, noise_tt = 0;  // what slopes of variance 1 add to cc and tt
   long count = 0;
+  std::vector<std::array<double, 2>> lines;              // what each sees of the column, squared, and its residual
   std::array<std::array<Pull, ranges>, ranges> pulls{};  // of the ranges of rows and of offsets
 
   void add(double by_column, double by_tilt, double r, double weight, Pull& pull) {
@@ -115,32 +117,78 @@ Normal normal_of(const Image& image, double column, double bound) {
       normal.noise_cc += 1;
       normal.noise_tt += along * along + x * x;
       ++normal.count;
+      normal.lines.push_back({by_column * by_column, std::abs(r)});
     }
   }
   return normal;
 }
 
-// Variances of column and tilt by how much ranges of rows and of offsets disagree: what is the same in all rows or at
-// all offsets errs alike. Both, less what both count.
-Pull disagreement(const Normal& n, double cc, double tt, double left) {
+// Standard deviation of the residuals on edges, those that see the axis better than the mean. By their median: bubbles
+// and specks do not widen it.
+double edge_deviation(const Normal& n) {
+  double sum = 0;
+  for (const auto& line : n.lines) sum += line[0];
+  std::vector<double> residuals;
+  for (const auto& [sight, residual] : n.lines) {
+    if (sight * static_cast<double>(n.lines.size()) >= sum) residuals.push_back(residual);
+  }
+  return stats::median(residuals) / 0.6745;
+}
+
+// Variances of column and tilt by how much ranges of rows and of offsets, `merged` of them together, disagree: what is
+// the same in all rows or at all offsets errs alike. Both, less what both count; wider where few of them pull.
+Pull disagreement(const Normal& n, double cc, double tt, double left, int merged) {
+  const int count = ranges / merged;
   Pull by_rows{}, by_offsets{}, by_both{};
+  std::array<std::vector<double>, 2> single;
   const auto add = [&](const Pull& pull, Pull& to) {
     to[0] += std::pow((tt * pull[0] - n.ct * pull[1]) / left, 2);
     to[1] += std::pow((cc * pull[1] - n.ct * pull[0]) / left, 2);
   };
-  for (int i = 0; i < ranges; ++i) {
-    Pull rows{}, offsets{};
-    for (int j = 0; j < ranges; ++j) {
-      for (std::size_t u = 0; u < rows.size(); ++u) {
-        rows[u] += n.pulls[i][j][u];
-        offsets[u] += n.pulls[j][i][u];
+  const auto cell = [&](int row, int offset) {
+    Pull sum{};
+    for (int i = row * merged; i < (row + 1) * merged; ++i) {
+      for (int j = offset * merged; j < (offset + 1) * merged; ++j) {
+        for (std::size_t u = 0; u < sum.size(); ++u) sum[u] += n.pulls[i][j][u];
       }
-      add(n.pulls[i][j], by_both);
+    }
+    return sum;
+  };
+  for (int i = 0; i < count; ++i) {
+    Pull rows{}, offsets{};
+    for (int j = 0; j < count; ++j) {
+      const Pull here = cell(i, j);
+      const Pull across = cell(j, i);
+      for (std::size_t u = 0; u < rows.size(); ++u) {
+        rows[u] += here[u];
+        offsets[u] += across[u];
+      }
+      Pull alone{};
+      add(here, alone);
+      for (std::size_t u = 0; u < rows.size(); ++u) {
+        by_both[u] += alone[u];
+        single[u].push_back(alone[u]);
+      }
     }
     add(rows, by_rows);
     add(offsets, by_offsets);
   }
-  return {by_rows[0] + by_offsets[0] - by_both[0], by_rows[1] + by_offsets[1] - by_both[1]};
+  Pull variance{};
+  for (std::size_t u = 0; u < variance.size(); ++u) {
+    variance[u] = std::pow(stats::few_parts_factor(single[u]), 2) * (by_rows[u] + by_offsets[u] - by_both[u]);
+  }
+  return variance;
+}
+
+// The largest of those of narrow and wide ranges: the trail of a bubble that drifts crosses many narrow ones, and errs
+// alike in all of them.
+Pull disagreement(const Normal& n, double cc, double tt, double left) {
+  Pull most{};
+  for (const int merged : {1, 2, 4}) {
+    const Pull now = disagreement(n, cc, tt, left, merged);
+    for (std::size_t u = 0; u < most.size(); ++u) most[u] = std::max(most[u], now[u]);
+  }
+  return most;
 }
 
 [[noreturn]] void refuse(const Image& image) {
@@ -150,6 +198,17 @@ Pull disagreement(const Normal& n, double cc, double tt, double left) {
 }
 
 }  // namespace
+
+AxisEstimate find_axis(std::span<const CameraView> views) {
+  constexpr double sharp_px = 0.01;  // of clean views
+  const AxisEstimate of_mean = find_axis(mean_view(views));
+  if (of_mean.column_sigma < sharp_px) return of_mean;
+  AxisEstimate axis = find_axis(middle_view(views));
+  constexpr double left = 0.5;  // of what bubbles do to the mean, at most; they err alike in all ranges of the middle
+  axis.column_sigma = std::hypot(axis.column_sigma, left * of_mean.column_sigma);
+  axis.tilt_sigma_rad = std::hypot(axis.tilt_sigma_rad, left * of_mean.tilt_sigma_rad);
+  return axis;
+}
 
 AxisEstimate find_axis(const Image& mean_view) {
   if (mean_view.width < 20 || mean_view.height < 3) refuse(mean_view);
@@ -172,7 +231,7 @@ AxisEstimate find_axis(const Image& mean_view) {
     pose.column += column;
     pose.tilt_rad += tilt;
     if (std::abs(pose.tilt_rad) > farthest_rad) refuse(mean_view);
-    bound = 2.5 * std::sqrt(n.rr / static_cast<double>(n.count)) + 1e-30;  // Huber: dirt pulls with constant force
+    bound = 2.5 * edge_deviation(n) + 1e-30;  // Huber: dirt pulls with constant force
     // The slopes of the noise are no knowledge of the axis, and blurred pixels do not err one by one.
     const double cc = n.cc - noise2 * n.noise_cc;
     const double tt = std::max(n.tt - noise2 * n.noise_tt, 1e-6 * n.tt);

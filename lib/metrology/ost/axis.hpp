@@ -2,6 +2,8 @@
 // Finding the rotation axis in the views themselves.
 #pragma once
 
+#include <span>
+
 #include "metrology/ost/views.hpp"
 
 namespace vam::metrology {
@@ -20,5 +22,9 @@ struct AxisEstimate {
 /// Nothing needs to be known of the optics, and an even background does no harm.
 /// Throws Fault::data when the view has no contrast beyond its noise, or the axis leans by more than 30 degrees.
 [[nodiscard]] AxisEstimate find_axis(const Image& mean_view);
+
+/// The same from the mean view, or, where that leaves a hundredth of a pixel or more, as where bubbles pass, from the
+/// middle view, which they hardly draw away.
+[[nodiscard]] AxisEstimate find_axis(std::span<const CameraView> views);
 
 }  // namespace vam::metrology

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/image_size.hpp"
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
@@ -111,6 +112,33 @@ Image mean_view(std::span<const CameraView> views) {
     }
   }
   return mean;
+}
+
+Image middle_view(std::span<const CameraView> views) {
+  std::vector<double> angles_deg;
+  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
+  constexpr int most = 120;
+  const AngleGrid turn(angles_deg, std::min(most, AngleGrid(angles_deg, 0).summary().angles));
+  const int angles = turn.summary().angles;
+  const int quarter = angles / 4;
+  Image middle(views.front().image.width, views.front().image.height);
+  parallel_for(middle.height, [&](int y) {
+    std::vector<float> values(product(middle.width, angles));  // [x][angle]
+    for (int a = 0; a < angles; ++a) {
+      for (const auto& tap : turn.taps(a)) {
+        const float* row = views[tap.frame].image.row(y);
+        for (int x = 0; x < middle.width; ++x) values[product(x, angles) + a] += tap.weight * row[x];
+      }
+    }
+    for (int x = 0; x < middle.width; ++x) {
+      const auto first = values.begin() + std::ptrdiff_t{x} * angles;
+      const auto last = first + angles;
+      std::nth_element(first, first + quarter, last);
+      std::nth_element(first + quarter, last - quarter - 1, last);
+      middle(x, y) = std::accumulate(first + quarter, last - quarter, 0.0F) / static_cast<float>(angles - 2 * quarter);
+    }
+  });
+  return middle;
 }
 
 Image straightened(const Image& image, const AxisPose& axis, double row_stretch) {

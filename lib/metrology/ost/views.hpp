@@ -36,8 +36,13 @@ struct CameraFields {
 /// it: the light failed, and only noise is left. Empty for the others.
 [[nodiscard]] std::vector<std::string> contrast_problems(std::span<const CameraView> views);
 
-/// The mean over even angles of one turn: what find_axis wants. Throws Fault::data when the turn is incomplete.
+/// The mean over even angles of one turn. Throws Fault::data when the turn is incomplete.
 [[nodiscard]] Image mean_view(std::span<const CameraView> views);
+
+/// The mean of the middle half of each pixel's values over even angles of one turn. As the mean,
+/// it is its own mirror image about the axis, and what passes a pixel for less than a quarter of the turn hardly
+/// counts. Of at most 120 angles. Throws as mean_view.
+[[nodiscard]] Image middle_view(std::span<const CameraView> views);
 
 /// Where the rotation axis appears: column at the middle row, and its lean in radians, positive when the axis' lower
 /// end (last row) is displaced towards higher columns.

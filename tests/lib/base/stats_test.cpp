@@ -27,6 +27,9 @@ TEST_CASE("Student's t as in the tables, and in closed form for one and two degr
   }
   CHECK(few_readings_factor(4) == doctest::Approx(2.776445 / 1.959964).epsilon(1e-6));
   CHECK(few_readings_factor(0) == doctest::Approx(12.706205 / 1.959964).epsilon(1e-6));  // as of one degree
+  CHECK(few_parts_factor({2, 2, 2, 2}) == doctest::Approx(few_readings_factor(4)));
+  CHECK(few_parts_factor({1e3, 1e-3, 1e-3, 1e-3}) == doctest::Approx(few_readings_factor(1)));  // one of them counts
+  CHECK(few_parts_factor({}) == 1);
 }
 
 TEST_CASE("a weighted mean, of parts that agree and of parts that do not") {
