@@ -9,6 +9,7 @@
 #include "base/stats/median.hpp"
 #include "metrology/ost/private/body_paths.hpp"
 #include "metrology/ost/private/hidden_rays.hpp"
+#include "metrology/ost/private/line_ends.hpp"
 #include "metrology/ost/private/one_density_body.hpp"
 #include "metrology/ost/private/ray_mask.hpp"
 
@@ -32,44 +33,12 @@ double typical_difference(const std::vector<Image>& sinograms) {
   return differences.empty() ? 0.0 : stats::median(differences);
 }
 
-// Largest value near the other end of a line.
-float brightest_near(const std::vector<Image>& sinograms, int t, int angle, int k, int rows) {
-  constexpr int columns = 2;
-  float most = -1e30F;
-  for (int j = std::max(0, k - rows); j <= std::min(count_of(sinograms) - 1, k + rows); ++j) {
-    const float* row = sinograms[j].row(angle);
-    const int last = std::min(sinograms.front().width - 1, t + columns);
-    for (int i = std::max(0, t - columns); i <= last; ++i) most = std::max(most, row[i]);
-  }
-  return most;
-}
-
 // What a ray must be brighter by than the other end of its line: above the noise and a share of the contrast.
 float bubble_contrast(const std::vector<Image>& sinograms) {
   float most = 0;
   for (const Image& s : sinograms) most = std::max(most, *std::max_element(s.values.begin(), s.values.end()));
   const double noise = typical_difference(sinograms) * sigmas_per_median / std::sqrt(2.0);
   return static_cast<float>(6 * noise + 0.03 * most);
-}
-
-// Rays of an angle that are brighter than the other end of their line and all near there. Empty: none.
-RayMask bright_rays(const std::vector<Image>& sinograms, std::span<const int> rows, int angle, float least) {
-  const int width = sinograms.front().width;
-  RayMask mask(sinograms.size() * width, 0);
-  bool any = false;
-  for (int k = 0; k < count_of(sinograms); ++k) {
-    const Image& s = sinograms[k];
-    const int other = opposite(s, angle);
-    const float* near = s.row(angle);
-    const float* far = s.row(other) + width - 1;
-    for (int t = 0; t < width; ++t) {
-      if (near[t] - far[-t] <= least) continue;
-      if (near[t] - brightest_near(sinograms, width - 1 - t, other, k, rows[k]) <= least) continue;
-      mask[product(k, width) + t] = 1;
-      any = true;
-    }
-  }
-  return any ? mask : RayMask{};
 }
 
 // Gives marked rays the value of the darker end of their line. marked: one mask an angle.
@@ -143,6 +112,7 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, std::ve
   const int angles = sinograms.front().height;
   const auto heights = count_of(sinograms);
   const float least = bubble_contrast(sinograms);
+  restore_dark_rays(sinograms, rows, least);
   std::vector<RayMask> marked(angles);
   parallel_for(angles, [&](int a) {
     marked[a] = bright_rays(sinograms, rows, a, least);

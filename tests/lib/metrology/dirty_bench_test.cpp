@@ -184,6 +184,17 @@ TEST_CASE("noise, background, flicker, specks and bubbles") {
   };
   judge("a quarter of a turn at 60 % of the light", dimmed(0.6, 20, 45), 0.004);
   judge("three views at 20 %", dimmed(0.2, 77, 3), 0.005);
+  // Drops on the window for three views, dark and bright ones.
+  const auto dirty_for_a_while = [&](int specks, int bubbles) {
+    auto views = clean;
+    const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(bubbles, 8, 5), 180);
+    std::vector<std::vector<float>> three(bubbly.begin() + 40, bubbly.begin() + 43);
+    oracle::soil(bench, {.specks = specks}, three);
+    std::copy(three.begin(), three.end(), views.begin() + 40);
+    return reconstructed(bench, views_of(bench, views), bodies);
+  };
+  judge("200 specks in three views", dirty_for_a_while(200, 0), 0.01);
+  judge("200 specks and 60 bubbles in three views", dirty_for_a_while(200, 60), 0.01);
   judge("noise, background and flicker of 5 %", soiled({.noise = 0.05, .background = 0.05, .flicker = 0.05}), 0.037);
   // Where lines pass bubbles at both ends for long or beside an end face, something of them stays: of the draws 1 to 30
   // the median is 0.005 mm, all are within the bar, the worst is 0.049. Without the bodies that all rays show draws 6
