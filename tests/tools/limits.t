@@ -128,6 +128,8 @@ fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam
 python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 value=1e30
 fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' \
   vam-project wrong.exr --printer printer.toml -o x.mkv
+python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=virtual width=64 height=36 count=3 value=1e30
+fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' vam-dose wrong.exr -o x.vdb
 python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 2>/dev/null
 sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory in addition to the [0-9.e-]+ GiB in use; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
 

@@ -38,8 +38,8 @@ void check_finite(const Image& image, std::size_t index) {
                            " of image " + std::to_string(index) + " is not a finite number");
 }
 
-// Projector intensities are relative to what cures the resin; a value beyond has another unit, or is damaged, and would
-// leave all others dark.
+// Intensities of projections are relative to what cures the resin; a value beyond has another unit, or is damaged, and
+// would leave all others dark.
 void check_intensity(const Image& image, std::size_t index) {
   constexpr float most = 1e9F;
   unsigned beyond = 0;  // without an early exit: vector code
@@ -263,7 +263,7 @@ void StackParser::refill(bool alone) {
     take_size(ready_[at], info_);
     decode_whole(layouts_[layout_of_[first + at]].header, taken[at], first + at, ready_[at]);
     check_finite(ready_[at], first + at);
-    if (info_.space == model::Space::projector) check_intensity(ready_[at], first + at);
+    if (info_.space != model::Space::camera) check_intensity(ready_[at], first + at);
     seals_->note_image(first + at, ready_[at]);
   };
   if (count == 1) {
