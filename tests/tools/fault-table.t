@@ -17,6 +17,7 @@ vam-dose sinogram.exr --like part.vdb -o dose.vdb
 printf '%s\n' '[projector]' 'columns = 64' 'rows = 32' 'pixel_mm = 0.26' 'axis_column = 31.5' 'axis_row = 15' 'fps = 1' >small.toml
 vam-resample sinogram.exr --printer small.toml -o small.exr
 vam-project small.exr --printer small.toml -o views
+vam-convert part.vdb -o array.npy
 
 commands() {  # "OUTPUT... | COMMAND", a line each
   cat <<'LIST'
@@ -39,6 +40,8 @@ out.vdb out.json|vam-ost views --view-step 10 --pixel 0.26 --no-refraction -o ou
 out.exr out.json|vam-curethrough correct ladder.vdb --max-irradiance 110 -o out.exr --report out.json
 out.vdb|vam-curethrough model ladder.vdb --max-irradiance 110 -o out.vdb
 out.exr|vam-capture --device sim:?pace=virtual --binning 12 --frames 2 -o out.exr
+out.npy|vam-convert part.vdb -o out.npy
+out.vdb|vam-convert array.npy --voxel 0.2 -o out.vdb
 out.json|vam-calibrate resin standard.vdb --diameter 6 -o out.json
 LIST
 }
