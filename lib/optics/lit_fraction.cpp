@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "optics/chief_ray.hpp"
 
 namespace vam::optics {
@@ -31,30 +32,47 @@ class Directions {
 // [physics §4]: a ray of offset t passes the circle of that radius at delta + acos(t / radius) and delta - acos(t /
 // radius) in the lab; a turn carries every point of the circle past all directions. Rays between two light the arcs
 // between theirs.
-void light_between(const ChiefRay& a, const ChiefRay& b, double radius_mm, Directions& lit) {
-  if (std::min(std::abs(a.x_v_mm), std::abs(b.x_v_mm)) > radius_mm) return;
-  const auto half_angle = [&](const ChiefRay& ray) { return std::acos(std::clamp(ray.x_v_mm / radius_mm, -1.0, 1.0)); };
-  for (const double side : {1.0, -1.0}) {
-    lit.light(a.delta_rad + side * half_angle(a), b.delta_rad + side * half_angle(b));
+double fraction_at(const std::vector<ChiefRay>& rays, double distance_mm) {
+  constexpr double nearest_mm = 0.01;  // some rays of the fan pass nearer to the axis
+  const double radius_mm = std::max(distance_mm, nearest_mm);
+  Directions lit;
+  double last_half_angle = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const ChiefRay& ray = rays[i];
+    if (!ray.hits) continue;
+    const double half_angle = std::acos(std::clamp(ray.x_v_mm / radius_mm, -1.0, 1.0));
+    if (i > 0 && rays[i - 1].hits && std::min(std::abs(rays[i - 1].x_v_mm), std::abs(ray.x_v_mm)) <= radius_mm) {
+      for (const double side : {1.0, -1.0}) {
+        lit.light(rays[i - 1].delta_rad + side * last_half_angle, ray.delta_rad + side * half_angle);
+      }
+    }
+    last_half_angle = half_angle;
   }
+  return lit.fraction();
 }
 
-}  // namespace
-
-double lit_fraction(const model::Printer& printer, double radius_mm) {
+std::vector<ChiefRay> fan(const model::Printer& printer) {
   constexpr int samples = 20000;
   const model::Projector& projector = printer.projector;
   const View view = projector_view(printer);
   const double left_mm = (-0.5 - projector.axis_column) * projector.pixel_mm;
   const double width_mm = projector.columns * projector.pixel_mm;
-  Directions lit;
-  ChiefRay last;
-  for (int i = 0; i <= samples; ++i) {
-    const ChiefRay ray = chief_ray(view, left_mm + width_mm * i / samples);
-    if (ray.hits && last.hits) light_between(last, ray, radius_mm, lit);
-    last = ray;
-  }
-  return lit.fraction();
+  std::vector<ChiefRay> rays;
+  for (int i = 0; i <= samples; ++i) rays.push_back(chief_ray(view, left_mm + width_mm * i / samples));
+  return rays;
+}
+
+}  // namespace
+
+std::vector<double> lit_fractions(const model::Printer& printer, const std::vector<double>& radii_mm) {
+  const std::vector<ChiefRay> rays = fan(printer);
+  std::vector<double> fractions(radii_mm.size());
+  parallel_for(count_of(radii_mm), [&](int i) { fractions[i] = fraction_at(rays, radii_mm[i]); });
+  return fractions;
+}
+
+double lit_fraction(const model::Printer& printer, double radius_mm) {
+  return lit_fractions(printer, {radius_mm}).front();
 }
 
 }  // namespace vam::optics

@@ -51,6 +51,7 @@ TEST_CASE("beyond the writable radius light comes from the angles that traced ra
   bench.lens_distance = 120;
   bench.cylinders = {{12.7L, 1.47L}, {12.2L, 1.53L}};
   const double writable = writable_radius_mm(printer);
+  CHECK(optics::lit_fraction(printer, 0) == 1);
   CHECK(optics::lit_fraction(printer, 0.99 * writable) == 1);
   double before = 1;
   for (const double radius : {1.05 * writable, 1.15 * writable, 1.3 * writable, 12.0}) {
