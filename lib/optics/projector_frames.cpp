@@ -55,6 +55,13 @@ FramePlace frame_place(const model::Projector& projector, double column_offset, 
   return {projector.columns, projector.rows, projector.pixel_mm, projector.axis_row + row_offset, column_offset};
 }
 
+double beside_rows(const model::StackInfo& info, const FramePlace& place) {
+  const double rows = info.row_mm / place.pixel_mm;
+  if (info.count < 2 || std::round(rows) < 1 || std::abs(rows - std::round(rows)) > 1e-3) return 0;
+  const double edge = place.axis_row - (info.z_start_mm - 0.5 * info.row_mm) / place.pixel_mm - 0.5;
+  return std::abs(edge - std::round(edge));
+}
+
 FrameComposer::FrameComposer(std::string subject, const model::StackInfo& info, const FramePlace& place)
     : subject_(std::move(subject)),
       info_(info),
@@ -212,12 +219,11 @@ Image FrameComposer::frame(double angle_deg, double span_deg, const PixelRect& p
   const int count = count_of(slices_);
   for (int r = part.top; r < part.top + part.height; ++r) {
     const double z_mm = (place_.axis_row - r) * place_.pixel_mm;
-    const double position = (z_mm - slices_.front().z_mm) / slice_mm();
-    if (position < -0.5 || position > count - 0.5)
-      continue;  // half a slice beyond the middle of the last one it is dark
-    const Taps taps = sample_taps(position, place_.pixel_mm / slice_mm());
+    const Taps taps = mean_taps((z_mm - slices_.front().z_mm) / slice_mm(), place_.pixel_mm / slice_mm());
     for (std::size_t s = 0; s < taps.weights.size(); ++s) {
-      const Slice& slice = slices_[std::clamp(taps.first + static_cast<int>(s), 0, count - 1)];
+      const int number = taps.first + static_cast<int>(s);
+      if (number < 0 || number >= count) continue;
+      const Slice& slice = slices_[number];
       for (std::size_t a = 0; a < angles.weights.size(); ++a) {
         add_row(slice, angles.first + static_cast<int>(a), taps.weights[s] * angles.weights[a], part,
                 image.row(r - part.top));

@@ -38,6 +38,9 @@ struct FramePlace {
 };
 [[nodiscard]] FramePlace frame_place(const model::Projector& projector, double column_offset, double row_offset);
 
+/// How far slices of one or several whole rows lie beside the rows, in rows, up to 0.5; 0 of slices of another pitch.
+[[nodiscard]] double beside_rows(const model::StackInfo& info, const FramePlace& place);
+
 /// Takes a sinogram stack slice by slice and gives frames. Holds the lit part of every slice as floats: at most 4 bytes
 /// x angles x slices x columns.
 class FrameComposer {
@@ -58,9 +61,10 @@ class FrameComposer {
   [[nodiscard]] float peak() const { return peak_; }
 
   /// What the projector must show around one stage angle, over the span that the stage turns meanwhile, in the units of
-  /// the stack: interpolated between the sinogram's angles, or averaged over those that the span covers; likewise from
-  /// slices to rows. The stack is repeated turn by turn, but for poses that do not return to the first one: beyond the
-  /// ends the last frame holds. The image is made in the memory of a former one. Many threads may ask at once.
+  /// the stack: interpolated between the sinogram's angles, or averaged over those that the span covers. A row shows
+  /// the mean over its height, dark beyond the slices, so that each slice delivers all its light where it is. The stack
+  /// is repeated turn by turn, but for poses that do not return to the first one: beyond the ends the last frame holds.
+  /// The image is made in the memory of a former one. Many threads may ask at once.
   [[nodiscard]] Image frame(double angle_deg, double span_deg, Image former = {}) const;
   /// The same of a part of the frame only.
   [[nodiscard]] Image frame(double angle_deg, double span_deg, const PixelRect& part, Image former) const;

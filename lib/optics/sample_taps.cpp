@@ -21,7 +21,9 @@ Taps interpolation(double position) {
   return {static_cast<int>(below), {1 - part, part}};
 }
 
-Taps mean(double position, double width) {
+}  // namespace
+
+Taps mean_taps(double position, double width) {
   const double low = position - 0.5 * width;
   const double high = position + 0.5 * width;
   Taps taps{floor_int(low + 0.5 + on_grid), {}};
@@ -32,10 +34,8 @@ Taps mean(double position, double width) {
   return taps;
 }
 
-}  // namespace
-
 Taps sample_taps(double position, double width) {
-  return width > 1 + on_grid ? mean(position, width) : interpolation(position);
+  return width > 1 + on_grid ? mean_taps(position, width) : interpolation(position);
 }
 
 }  // namespace vam::optics

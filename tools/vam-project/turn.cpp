@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/log.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "optics/flatland_movie.hpp"
@@ -22,6 +23,15 @@ void read_into(Source& source, io::StackReader& reader) {
   Image slice;
   for (model::ImageInfo about; reader.next(slice, about); progress.tick()) source.add(slice, about.z_mm);
   source.check();
+}
+
+void warn_beside_rows(double rows, const std::string& name) {
+  constexpr double seen = 0.01;
+  if (rows < seen) return;
+  warn(
+      name + ": its slices begin " + format_number(rows, 2) +
+      " rows beside the projector's, so that rows on their borders show the mean of two; vam-slice with the settings " +
+      "of this printer makes slices that begin with rows");
 }
 
 }  // namespace
@@ -43,6 +53,7 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   const auto place = optics::frame_place(projector, right, down);
   const auto composer = std::make_shared<optics::FrameComposer>(options.input, info, place);
   read_into(*composer, reader);
+  if (down == 0) warn_beside_rows(optics::beside_rows(info, place), options.input);
   return {[composer](double angle, double span, const PixelRect& part, Image former) {
             return composer->frame(angle, span, part, std::move(former));
           },

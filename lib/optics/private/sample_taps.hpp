@@ -13,9 +13,12 @@ struct Taps {
   std::vector<float> weights;
 };
 
+/// The mean over `width` grid steps about `position`, with grid value k standing for [k - 1/2, k + 1/2], so that
+/// nothing between the samples is lost.
+[[nodiscard]] Taps mean_taps(double position, double width);
+
 /// A sample at `position` (in grid steps) that is `width` grid steps wide. Up to one step it is interpolated linearly,
-/// so a position on the grid gives that very value; a wider sample is the mean over its width, with grid value k
-/// standing for [k - 1/2, k + 1/2], so that nothing between the samples is lost.
+/// so a position on the grid gives that very value; a wider sample is the mean.
 [[nodiscard]] Taps sample_taps(double position, double width);
 
 }  // namespace vam::optics

@@ -150,7 +150,7 @@ TEST_CASE("a part of an image is where its pixels are when it is turned") {
   }
 }
 
-TEST_CASE("finer slices are averaged over a row, coarser ones interpolated; light per row is kept") {
+TEST_CASE("a row shows the mean over its height of finer, equal or coarser slices, which is all their light") {
   const StackInfo fine = sinograms(20, 4, 8, 0.2, 0.1, -0.35);  // 0.8 mm on rows of 0.2 mm
   const Image frame = composed(fine, {20, 4, 0.2, 1.5, 0}).frame(0, 90);
   for (int r = 0; r < 4; ++r) {
@@ -164,7 +164,17 @@ TEST_CASE("finer slices are averaged over a row, coarser ones interpolated; ligh
   CHECK(tall(5, 1) == high);
   CHECK(tall(5, 2) == doctest::Approx(0.5F * (low + high)));
   CHECK(tall(5, 3) == low);
-  CHECK(tall(5, 4) == low);  // half a slice beyond the last middle is still that slice
+  CHECK(tall(5, 4) == doctest::Approx(0.5F * low));                         // half of the row is beyond the slices
+  const Image twice = composed(coarse, {20, 4, 0.1, 1.5, 0}).frame(0, 90);  // two rows a slice: as they are
+  for (int r = 0; r < 4; ++r) CHECK(twice(5, r) == (r < 2 ? high : low));
+  for (const double pitch_mm : {0.03, 0.1, 0.14, 0.37}) {
+    const StackInfo info = sinograms(20, 4, 3, 0.1, pitch_mm, -pitch_mm + 0.013);
+    const Image frame_of_any = composed(info, {20, 16, 0.1, 7.5, 0}).frame(0, 90);
+    double shown = 0, wanted = 0;
+    for (int r = 0; r < 16; ++r) shown += 0.1 * static_cast<double>(frame_of_any(5, r));
+    for (int k = 0; k < 3; ++k) wanted += pitch_mm * static_cast<double>(labelled(info, k)(5, 0));
+    CHECK(shown == doctest::Approx(wanted).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("the column offset moves the light by fractions of a pixel") {
