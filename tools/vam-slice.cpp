@@ -91,7 +91,7 @@ void run(const cli::App& app, Options& options) {
                                                    : solid::writable(printer, optics::writable_radius_mm(printer));
   if (options.any_height) room.low_mm = -(room.high_mm = solid::any_height_mm);
   slice_tool::Correction correction;
-  solid::Part part = part_of(options, room, correction);
+  solid::Part part = part_of(options, printer.projector, room, correction);
   std::optional<solid::Part> insert = insert_of(options, part, room);
   const double lift_mm = slice_tool::lift_mm(options, printer, part, room);
   part = solid::lifted(std::move(part), lift_mm);

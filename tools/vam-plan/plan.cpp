@@ -51,10 +51,12 @@ class Source {
   }
   [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] solid::Part part(const model::Printer& printer, double factor) const {
-    if (!options_.shape.empty()) {
-      return solid::shape_part(options_.shape, placement_of(options_, printer, factor), room_of(printer));
-    }
-    return solid::mesh_part(mesh_, subject_, map(printer, factor), solid::FillMode::automatic);
+    solid::Part made =
+        options_.shape.empty()
+            ? solid::mesh_part(mesh_, subject_, map(printer, factor), solid::FillMode::automatic)
+            : solid::shape_part(options_.shape, placement_of(options_, printer, factor), room_of(printer));
+    made.lattice = solid::row_lattice(printer.projector, printer.projector.pixel_mm);
+    return made;
   }
   /// At the scale of the options.
   [[nodiscard]] solid::PlacedExtent extent(const model::Printer& printer) const {

@@ -34,15 +34,22 @@ solid::Part image_part(const Options& options) {
   return solid::image_part(std::move(stack), options.input, options.voxel_mm.value(), options.placement.stretch_z);
 }
 
-}  // namespace
-
-solid::Part part_of(const Options& options, const solid::Writable& room, Correction& correction) {
-  if (!options.shape.empty()) return solid::shape_part(options.shape, options.placement, room);
-  if (is_folder(options.input)) return image_part(options);
+solid::Part mesh_part(const Options& options, const solid::Writable& room, Correction& correction) {
   model::TriangleSoup mesh = corrected(io::read_mesh(options.input), options, correction);
   const std::string subject = io::input_name(options.input);
   const solid::Affine map = solid::place(mesh, options.placement, room, subject);
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));
+}
+
+}  // namespace
+
+solid::Part part_of(const Options& options, const model::Projector& projector, const solid::Writable& room,
+                    Correction& correction) {
+  if (options.shape.empty() && is_folder(options.input)) return image_part(options);
+  solid::Part part = options.shape.empty() ? mesh_part(options, room, correction)
+                                           : solid::shape_part(options.shape, options.placement, room);
+  part.lattice = solid::row_lattice(projector, options.voxel_mm.value());
+  return part;
 }
 
 namespace {

@@ -21,7 +21,9 @@ struct Correction {
 /// The mesh displaced by the deviations of the rounds that help.
 [[nodiscard]] model::TriangleSoup corrected(model::TriangleSoup mesh, const Options& options, Correction& correction);
 
-[[nodiscard]] solid::Part part_of(const Options& options, const solid::Writable& room, Correction& correction);
+/// Slices of meshes and shapes begin where rows of the projector do.
+[[nodiscard]] solid::Part part_of(const Options& options, const model::Projector& projector,
+                                  const solid::Writable& room, Correction& correction);
 
 /// Of its own size, where the options put it.
 [[nodiscard]] std::optional<solid::Part> insert_of(const Options& options, const solid::Part& part,

@@ -163,6 +163,12 @@ void transform(model::TriangleSoup& soup, const Affine& map) {
   }
 }
 
+Lattice row_lattice(const model::Projector& projector, double voxel_mm) {
+  const double edge_mm = model::z_mm(projector, -0.5);
+  const double phase_mm = edge_mm - std::floor(edge_mm / projector.pixel_mm + 1e-9) * projector.pixel_mm;
+  return {false, std::max(phase_mm, 0.0) / voxel_mm};
+}
+
 model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
                         const std::string& subject) {
   const double odd = lattice.odd_side ? 1 : 0;

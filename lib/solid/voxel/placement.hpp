@@ -73,12 +73,15 @@ struct PlacedExtent {
 /// All points moved; triangles turned over when the map mirrors.
 void transform(model::TriangleSoup& soup, const Affine& map);
 
-/// How the lattice of voxels lies: by default their faces are at multiples of voxel_mm in x, y and z, so that with
-/// voxel_mm = pixel_mm slices coincide with rows of the projector. Stacks of images bring a lattice of their own.
+/// How the lattice of voxels lies: by default their faces are at multiples of voxel_mm in x, y and z. Stacks of images
+/// bring a lattice of their own.
 struct Lattice {
   bool odd_side = false;  // a voxel's centre on the axis, not a corner
   double z_phase = 0;     // faces at multiples plus this share of a voxel
 };
+
+/// Slices begin where a row of the projector does: with voxels of one or several pixels they coincide with rows.
+[[nodiscard]] Lattice row_lattice(const model::Projector& projector, double voxel_mm);
 
 /// The smallest grid around the axis that holds the part with one voxel to spare in x and y, and at least `radius_mm`
 /// in every direction; nx = ny. Throws Fault::data above 4096 voxels a side, or 65536 slices.

@@ -112,6 +112,27 @@ TEST_CASE("grids: centred, even, faces at whole voxels, the part inside") {
   CHECK(data_error([&] { (void)grid_around(part, 1e-3, 0, {}, "test"); }).find("4096") != std::string::npos);
 }
 
+TEST_CASE("slices begin where rows do, wherever the lens is, with voxels of any size") {
+  PlacedExtent part;
+  part.box.add({-1, -1, -0.77});
+  part.box.add({1, 1, 3.14});
+  part.radius_mm = 1.5;
+  model::Projector projector;  // 768 rows of 0.065 mm
+  CHECK(row_lattice(projector, 0.065).z_phase == 0);
+  for (const double axis_row : {383.5, 383.0, 700.2, -20.9}) {
+    projector.axis_row = axis_row;
+    for (const double pixels : {1.0, 2.0, 1.7, 0.4}) {
+      const double voxel_mm = pixels * projector.pixel_mm;
+      const model::Grid grid = grid_around(part, voxel_mm, 0, row_lattice(projector, voxel_mm), "test");
+      const double row = projector.axis_row - grid.z_mm(-0.5) / projector.pixel_mm + 0.5;  // of the lower face
+      if (pixels >= 1 && pixels != 1.7) CHECK(std::abs(row - std::round(row)) < 1e-6);
+      CHECK(grid.z_mm(-0.5) <= -0.77);
+      CHECK(grid.z_mm(grid.nz - 0.5) >= 3.14);
+      CHECK(grid.z_mm(0.5) > -0.77);
+    }
+  }
+}
+
 TEST_CASE("a thin rod may have 65536 slices, and no more") {
   PlacedExtent rod;
   rod.box = {{-0.012, -0.012, 0}, {0.012, 0.012, 65.536}};
