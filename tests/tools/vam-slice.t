@@ -26,6 +26,7 @@ stl("point.stl", [[[1, 1, 1]] * 3] * 4)
 stl("nan.stl", [[[0, 0, 0], [1, 0, 0], [0, float("nan"), 0]]])
 stl("empty.stl", [])
 stl("far.stl", [[[x + 100 for x in v] for v in t] for t in c])
+stl("fin.stl", c + [[[v[0] * 0.015, v[1], v[2] * 0.75 + 3] for v in t] for t in c])
 stl("high.stl", [[[v[0], v[1], v[2] + 100] for v in t] for t in c])
 open("cut.stl", "wb").write(open("cube.stl", "rb").read()[:300])
 open("quads.obj", "w").write("".join("v %g %g %g\n" % tuple((1 if n >> a & 1 else -1) for a in range(3)) for n in range(8))
@@ -99,6 +100,10 @@ says 'inches.obj: the part is only 0.6 mm large; is its unit cm or in[?]' \
 quiet "a requested size causes no warning" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb
 says 'no voxel .*covered to 0.33 at most.; voxels of' \
   vam-slice --shape box:x=4,y=4,z=0.1 --stretch-z 1 --voxel 0.15 -o out.vdb
+says 'fin.stl: [0-9.]+ % of the part is in walls too thin for the voxels: between z = [0-9.]+ and [0-9.]+ mm no voxel of theirs is half covered, .*; voxels of 0.03' \
+  vam-slice fin.stl --voxel 0.15 -o out.vdb --report report.json
+# 0.06 mm thick, 4 mm wide, 2.5 mm above the cube: 0.6 mm3, of which up to two layers touch voxels of the cube.
+holds "the volume of the fin is reported" "$(json report.json lost_volume_mm3) > 0.52 && $(json report.json lost_volume_mm3) < 0.6"
 
 # The height in the image: level with the lens, in the image, or as requested
 place() { vam-slice --shape cone:bottom=8,height=6 --voxel 0.25 "$@" -o out.vdb --report report.json && json report.json place.mm; }

@@ -11,6 +11,7 @@
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "solid/mesh/repair.hpp"
+#include "solid/voxel/lost_walls.hpp"
 #include "solid/voxel/placement.hpp"
 #include "solid/voxel/voxelize.hpp"
 
@@ -60,6 +61,7 @@ struct FillSummary {
   long surface_voxels = 0;  // coverage between 0 and 1
   float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
+  LostWalls lost;
   Vote vote;
 };
 

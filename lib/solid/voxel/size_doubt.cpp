@@ -2,6 +2,7 @@
 #include "solid/voxel/size_doubt.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/text.hpp"
@@ -48,6 +49,15 @@ std::string size_doubt(const Part& part, const FillSummary& content, const model
            format_number(largest_mm, 3) + " mm large (a voxel is covered to " +
            format_number(static_cast<double>(content.most), 2) + " at most)" +
            (unit.empty() ? "; voxels of " + format_number(thinner, 2) + " mm or thicker walls may help" : unit);
+  }
+  const double lost = content.lost.voxels * std::pow(grid.voxel_mm, 3) / content.volume_mm3;
+  if (unit.empty() && lost > 1e-3) {
+    return part.subject + ": " + format_number(100 * lost, 2) +
+           " % of the part is in walls too thin for the voxels: between z = " +
+           format_number(grid.z_mm(content.lost.first - 0.5) / stretch_z, 3) + " and " +
+           format_number(grid.z_mm(content.lost.end - 0.5) / stretch_z, 3) +
+           " mm no voxel of theirs is half covered, and they will not be printed; voxels of " +
+           format_number(grid.voxel_mm * static_cast<double>(content.lost.most), 2) + " mm or thicker walls may help";
   }
   return unit.empty() ? "" : part.subject + ": the part is only " + format_number(largest_mm, 3) + " mm large" + unit;
 }

@@ -18,8 +18,8 @@ namespace vam::solid {
 [[nodiscard]] std::string likely_unit(double largest_mm, const Writable& room);
 
 /// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
-/// is less than a tenth as large as the writable width. `unit_known`: the user has stated what a unit of the file is,
-/// or how large the part.
+/// is less than a tenth as large as the writable width, or a thousandth of it or more is in walls that no voxel
+/// resolves. `unit_known`: the user has stated what a unit of the file is, or how large the part.
 [[nodiscard]] std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid,
                                      double stretch_z, const Writable& room, bool unit_known);
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solid/voxel/lost_walls.hpp"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "base/index.hpp"
+
+using namespace vam;
+using namespace vam::solid;
+
+namespace {
+
+constexpr int n = 6;
+
+/// Slices handed over `a_pass` at a time.
+LostWalls found(const std::vector<float>& values, int a_pass) {
+  const int nz = static_cast<int>(values.size()) / (n * n);
+  LostWallFinder finder(model::centred_grid(n, n, nz, 0.1));
+  for (int k = 0; k < nz; k += a_pass) finder.add(std::min(a_pass, nz - k), values.data() + product(k, n * n));
+  return finder.finish();
+}
+
+void set(std::vector<float>& values, int i, int j, int k, float coverage) {
+  values[product(k, n * n) + product(j, n) + i] = coverage;
+}
+
+}  // namespace
+
+TEST_CASE("walls are lost where neither a voxel nor its 26 neighbours are half covered, in passes of any size") {
+  std::vector<float> values(product(n * n, 9), 0.0F);
+  for (int k = 0; k < 3; ++k) set(values, 2, 2, k, 1);  // a pillar, with a fin that goes on above it
+  for (int k = 0; k < 8; ++k) set(values, 3, 3, k, 0.25F);
+  set(values, 5, 5, 0, 0.1F);  // a speck, at the edge
+  for (const int a_pass : {1, 2, 3, 4, 9}) {
+    CAPTURE(a_pass);
+    const LostWalls lost = found(values, a_pass);
+    CHECK(lost.voxels == doctest::Approx(4 * 0.25 + 0.1));  // slice 3 of the fin touches the pillar by a corner
+    CHECK(lost.first == 0);
+    CHECK(lost.end == 8);
+    CHECK(lost.most == 0.25F);
+  }
+  set(values, 4, 3, 7, 0.5F);  // half covered: it and its neighbours, below it too
+  CHECK(found(values, 4).voxels == doctest::Approx(2 * 0.25 + 0.1));
+}
+
+TEST_CASE("a single slice, and none") {
+  std::vector<float> values(product(n * n, 1), 0.0F);
+  CHECK(found(values, 1).voxels == 0);
+  set(values, 1, 1, 0, 0.3F);
+  const LostWalls lost = found(values, 1);
+  CHECK(lost.voxels == doctest::Approx(0.3));
+  CHECK(lost.first == 0);
+  CHECK(lost.end == 1);
+}
