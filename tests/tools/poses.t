@@ -110,6 +110,9 @@ done
 fails 65 'is not a vam-calibration/1 record' vam-optimize --wobble-record wobble.csv part.vdb -o none.exr
 
 # Wrong tables and combinations
+head -n 60 wobble.csv >short.csv
+vam-optimize --method fbp --angles 60 --poses short.csv part.vdb -o short.exr 2>short.err
+is "a pose too few is said" "$(cat short.err)" "vam-optimize: warning: short.csv: has 59 poses, 1 fewer than 1 turn of 60 angles (--angles); the stage angles at the end are lit that much less"
 fails 66 'missing.csv' vam-optimize --poses missing.csv part.vdb -o none.exr
 fails 65 'is at 6 degrees, but frame 1 is at 1' vam-optimize --poses wobble.csv part.vdb -o none.exr
 sed 's/vial/lens/' wobble.csv >lens.csv

@@ -2,8 +2,10 @@
 #include "vam-optimize/light.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/pose_file.hpp"
@@ -42,6 +44,17 @@ void warn_of_wobble(const model::Printer& printer, double voxel_mm) {
        "/current-edges.json; compensate for it by --wobble-record");
 }
 
+/// Of frames that are a few more or fewer than whole turns: by mistake, it seems.
+void warn_of_rest(int frames, const Options& options) {
+  const int turns = std::max(round_int(static_cast<double>(frames) / options.angles), 1);
+  const int rest = frames - turns * options.angles;
+  if (rest == 0 || 20 * std::abs(rest) > options.angles) return;
+  warn(options.poses + ": has " + std::to_string(frames) + " poses, " + std::to_string(std::abs(rest)) +
+       (rest < 0 ? " fewer" : " more") + " than " + std::to_string(turns) + (turns == 1 ? " turn" : " turns") + " of " +
+       std::to_string(options.angles) + " angles (--angles); the stage angles at the end are lit that much " +
+       (rest < 0 ? "less" : "more"));
+}
+
 model::Poses poses_of(const model::Grid& part, const model::Printer& printer, const Options& options) {
   if (options.helix_mm) return light::helix_poses(printer, part, *options.helix_mm, options.angles);
   if (!options.wobble_record.empty()) {
@@ -51,6 +64,7 @@ model::Poses poses_of(const model::Grid& part, const model::Printer& printer, co
   if (options.poses.empty()) return {};
   model::Poses poses = io::read_poses(options.poses);
   io::require_angles(options.poses, poses, 0, 0, 360.0 / options.angles);
+  warn_of_rest(count_of(poses), options);
   return poses;
 }
 
@@ -86,7 +100,7 @@ void warn_of_reach(const io::SparseVolume& target, const model::Printer& printer
   if (optics::judged_radius_mm(printer, farthest) <= writable) return;
   warn(reaches(options, farthest) + "writable radius of " + format_number(writable, 4) +
        " mm; its outermost voxels are lit from " + format_number(100 * optics::lit_fraction(printer, farthest), 3) +
-       " % of the stage angles");
+       " % of the stage angles, and doses there are accurate to a few per cent");
 }
 
 /// Rows beyond the projector's stay dark.
