@@ -27,8 +27,10 @@ struct Bounds {
     }
   }
   void join(const Bounds& other) {
-    add(other.low);
-    add(other.high);
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], other.low[a]);
+      high[a] = std::max(high[a], other.high[a]);
+    }
   }
   [[nodiscard]] Point size() const { return high - low; }
   [[nodiscard]] double largest_side() const { return std::max({size()[0], size()[1], size()[2]}); }
