@@ -177,6 +177,20 @@ TEST_CASE("a row shows the mean over its height of finer, equal or coarser slice
   }
 }
 
+TEST_CASE("how far slices of whole rows lie beside the rows") {
+  const FramePlace place{20, 9, 0.1, 4.0, 0};
+  const auto beside = [&](int count, double row_mm, double z_start_mm) {
+    return beside_rows(sinograms(20, 12, count, 0.1, row_mm, z_start_mm), place);
+  };
+  CHECK(beside(5, 0.1, -0.2) == doctest::Approx(0));
+  CHECK(beside(4, 0.1, -0.15) == doctest::Approx(0.5));
+  CHECK(beside(3, 0.2, -0.15) == doctest::Approx(0));
+  CHECK(beside(3, 0.2, -0.22) == doctest::Approx(0.3));
+  CHECK(beside(3, 0.15, -0.22) == 0);  // not whole rows
+  CHECK(beside(3, 0.05, -0.22) == 0);
+  CHECK(beside(1, 0.1, -0.22) == 0);
+}
+
 TEST_CASE("the column offset moves the light by fractions of a pixel") {
   const StackInfo info = sinograms(20, 4, 1, 0.1, 0.1, 0);
   const Image plain = composed(info, {20, 1, 0.1, 0, 0}).frame(0, 90);
