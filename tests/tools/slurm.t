@@ -66,6 +66,7 @@ quiet 'a queue is made by Slurm' vam-batch --slurm --prefix ./mortal parts.tsv
 [ -e killed/really ]; report $? 'a piece was killed while it ran'
 [ -e requeued/really ]; report $? 'the job of the other one was put back into the queue'
 is 'no state is left of either' "$(ls batch/*.state 2>/dev/null | wc -l)" 0
+is 'each job has its log' "$(cd batch/log && ls | sed 's/[0-9][0-9]*/N/g' | tr '\n' ' ')" 'end-N.log part.gather-N.log part.piece-N_N.log part.piece-N_N.log part.slice-N.log '
 is 'no job is left' "$(squeue -h | wc -l)" 0
 # shellcheck disable=SC2086
 vam-optimize batch/part.vdb $optimize --printer level.toml | vam-stack -o whole.exr

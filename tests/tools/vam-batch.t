@@ -24,8 +24,28 @@ rm batch/two.2.exr
 is 'a lost piece is made again' "$(vam-batch --plan parts.tsv | grep '^vam-' | cut -d ' ' -f 1 | tr '\n' ' ')" 'vam-optimize vam-stack vam-dose '
 quiet 'and joined' vam-batch parts.tsv
 same 'in the same bytes' batch/two.exr whole.exr
-sed -i 's/0\.2|/&/; 3s/--angles 12/--angles 10/' parts.tsv
+sed -i '3s/--angles 12/--angles 10/' parts.tsv
 is 'other settings make one part again' "$(vam-batch --plan parts.tsv | grep '^vam-' | cut -d ' ' -f 1 | tr '\n' ' ')" 'vam-slice vam-optimize vam-dose '
+
+echo junk >batch/one.state
+quiet 'with no checkpoint of the former ones' vam-batch -- parts.tsv
+queue 'part|name|slice|optimize' "box.off|empty|--voxel 0.4 --unit \"\" '\\x' \\y|$optimize"
+is 'empty words and quoted backslashes are kept' "$(vam-batch --plan parts.tsv | sed -n 's/.*--unit \(.*\) -o .*/\1/p')" "'' \\\\x y"
+queue 'part|slice' 'box.off|--voxel 0.4'
+is '$VAM_PRINTER is followed' "$(VAM_PRINTER=level.toml vam-batch --plan parts.tsv | grep -c '^vam-.*--printer level.toml')" 3
+
+# ---- one run at a time, which ends with its tools ----------------------------------------------------------------------
+cat >endless <<'SH'
+#!/bin/sh
+# Makes nothing for a minute.
+[ "$2" = --version ] || { echo $$ >pid; exec sleep 60; }
+SH
+chmod +x endless
+vam-batch --folder held --prefix ./endless parts.tsv 2>errors & batch=$!
+await test -s pid
+fails 75 'held: another vam-batch makes it' vam-batch --folder held parts.tsv
+kill $batch; wait $batch; is 'SIGTERM ends it' $? 143
+! kill -0 "$(cat pid)" 2>/dev/null; report $? 'and its tools'
 
 # ---- what fails ------------------------------------------------------------------------------------------------------
 cat >twice <<'SH'
@@ -43,7 +63,7 @@ queue 'part|optimize' "box.off|--method 'cal' \$(touch pwned) ; touch pwned & \`
 vam-batch --retries 0 parts.tsv >/dev/null 2>&1
 [ ! -e pwned ] && [ ! -e batch/pwned ]; report $? 'no cell is run'
 
-rm -rf batch; mkdir batch batch/log
+rm -rf batch; mkdir batch
 fails 64 '^vam-batch: no queue given; see --help' vam-batch
 fails 66 'none.tsv: cannot open it' vam-batch none.tsv
 fails 64 "--jobs: '0' is not a whole number" vam-batch --jobs 0 parts.tsv
@@ -52,6 +72,8 @@ fails 64 '--sbatch: requires --slurm' vam-batch --sbatch -n1 parts.tsv
 fails 64 '--slurmy: unknown option' vam-batch --slurmy parts.tsv
 refused() { queue "$3" "$4"; fails "$1" "$2" vam-batch parts.tsv; }  # refused STATUS REGEX LINE LINE
 refused 65 "line 1: 'mesh' is not one of the columns part, name, printer, slice, optimize, pieces" 'mesh' 'box.off'
+refused 65 "line 1: 'part name' is not one of the columns" 'part name' 'box.off'
+refused 65 "line 1: names the column 'part' twice" 'part|part' 'box.off|box.off'
 refused 65 'line 1: must name the columns, part among them' 'name' 'box'
 refused 65 'line 2: has 2 cells, but the table has 1 columns' 'part' 'box.off|x'
 refused 65 'line 2: has no part' 'part|name' '|x'
@@ -59,10 +81,17 @@ refused 66 'line 2: none.off: cannot open it' 'part' 'none.off'
 refused 65 "line 2: 'a b.off' must consist of letters" 'part' 'a b.off'
 refused 65 "line 2: the name '../x' must" 'part|name' 'box.off|../x'
 refused 65 "line 2: pieces is '0'" 'part|pieces' 'box.off|0'
+refused 65 "line 2: pieces is '501', not a whole number from 1 to 500" 'part|pieces' 'box.off|501'
 refused 65 'line 2: the column slice has an open quote' 'part|slice' "box.off|--voxel '0.2"
-queue 'part' 'box.off' 'box.off'; rm -f batch/box.settings
+queue 'part' 'box.off' 'box.off'
 vam-batch parts.tsv 2>errors; is 'a name that is taken' "$? $(grep -c "line 3: the name 'box' is taken" errors)" '65 1'
 queue 'part'; fails 65 'has no part; write one per line' vam-batch parts.tsv
+
+queue 'part|slice|optimize' "box.off|--voxel 0.4|$optimize"; mkdir batch/summary.tsv
+fails 73 'batch/summary.tsv: cannot be written' vam-batch parts.tsv
+mkdir bare; for program in bash dirname readlink; do ln -s "$(command -v $program)" bare; done
+fails 69 'no GNU make on this machine; install make' env PATH="$PWD/bare" bash "$VAM_SOURCE/scripts/vam-batch" parts.tsv
+[ ! -e batch/log ]; report $? 'logs are those of Slurm'
 
 if ! command -v sbatch >/dev/null; then
   fails 69 '--slurm: no sbatch on this machine' vam-batch --slurm parts.tsv
