@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/progress.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr/stack_pieces.hpp"
@@ -54,16 +53,16 @@ cli::Manual manual() {
 
 model::ImageRange chosen(const Options& options, const io::StackPieces& in, const std::string& name) {
   const model::ImageRange& there = in.images();
+  const std::string held =
+      (options.inputs.size() == 1 ? name + ": holds" : "the pieces: hold") + " images " + model::range_text(there);
   const std::string all = std::to_string(in.info().count);
   if (options.slices.empty()) {
     if (there.count() == in.info().count) return there;
-    throw Error{Fault::data, name + ": holds images " + model::range_text(there) + " of " + all +
-                                 "; name the other pieces, too, or choose some of these by --slices"};
+    throw Error{Fault::data, held + " of " + all + "; name the other pieces, too, or choose some of these by --slices"};
   }
   const model::ImageRange range = tool::slices_among(options.slices, in.info().count, name);
   if (range.from >= there.from && range.to <= there.to) return range;
-  throw Error{Fault::data, name + ": holds images " + model::range_text(there) + " of " + all +
-                               ", not all of --slices " + options.slices};
+  throw Error{Fault::data, held + " of " + all + ", not all of --slices " + options.slices};
 }
 
 void run(const Options& options) {
@@ -72,14 +71,7 @@ void run(const Options& options) {
   io::StackPieces in(options.inputs);
   const model::ImageRange range = chosen(options, in, name);
   io::StackWriter out(options.output, io::cut(in.info(), range, name), options.stack);
-  Progress progress("copying", in.images().count());
-  Image image;
-  model::ImageInfo about;
-  for (int index = in.images().from; in.next(image, about); ++index, progress.tick(1)) {
-    if (!range.holds(index)) continue;
-    const bool own = about.has_angle || about.has_time || about.has_number;
-    own ? out.write(image, about) : out.write(image);
-  }
+  in.copy(range, out);
   out.commit();
 }
 
@@ -92,7 +84,7 @@ int main(int argc, char** argv) {
   cli::add_output(app, options.output).writes_as({".exr"});
   app.option(
       "--slices", "SLICES", options.slices,
-      "Write these images of the undivided stack, counted from 0: FROM to TO - 1 as FROM:TO, or the I-th of N equal "
+      "Write these images of the undivided stack, counted from 0: FROM to TO - 1 as FROM:TO, or the I-th of N similar "
       "shares as I/N.");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);

@@ -121,7 +121,7 @@ class App {
   /// "vam-slice 0.1.0 part.stl --voxel 0.1": the line for vam:history; known once run() has parsed. No paths of other
   /// machines, time stamps or host names are added.
   [[nodiscard]] std::string history() const;
-  /// Without these options and their values, which say of what part of the work and where to it was done.
+  /// history() without these long options and their values, which do not change the result.
   [[nodiscard]] std::string history_without(const std::vector<std::string>& flags) const;
   /// A line "--flag=value" for each option but those not_in_job(), with the values in force, and the hash of each file
   /// that such an option reads: which job a kept state is of. An option is part of it unless its declaration says

@@ -16,6 +16,11 @@ vam-stack <whole.exr >copied.exr
 same 'shares through a pipe are the undivided stack' piped.exr copied.exr
 vam-stack b.exr --slices 30:40 -o c.exr && vam-stack whole.exr --slices 30:40 -o d.exr
 same 'a piece of a piece is a piece of the whole' c.exr d.exr
+vam-stack b.exr - <a.exr -o joined.exr; same 'a file and stdin' whole.exr joined.exr
+vam-stack a.exr - <b.exr -o joined.exr; same 'in any order' whole.exr joined.exr
+vam-stack --slices 0:3 -o c.exr <a.exr && vam-stack whole.exr --slices 0:3 -o d.exr
+same 'a piece of a piece through a pipe' c.exr d.exr
+vam-stack b.exr --slices 30:40 -o c.exr
 for piece in a b; do vam-resample $piece.exr >r$piece.exr 2>/dev/null; done
 vam-stack ra.exr rb.exr >rjoined.exr 2>errors
 ok 'pieces with other histories are refused' grep -q 'differs from ra.exr in its history; join pieces of one stack' errors

@@ -267,11 +267,14 @@ void declare(cli::App& app, Options& options) {
   declare_grey_levels(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
-  app.option("--slices", "SLICES", options.slices,
-             "Compute these slices only, counted from 0 at the bottom: FROM to TO - 1 as FROM:TO, or the I-th of N "
-             "similar shares as I/N. vam-stack joins such pieces to the stack of the whole part, in the same bytes. "
-             "For level rays (projector.telecentric, --geometry parallel), as rays that climb couple all slices. The "
-             "report describes these slices.");
+  app.option(
+      "--slices", "SLICES", options.slices,
+      "Compute these slices only, counted from 0 at the bottom: FROM to TO - 1 as FROM:TO, or the I-th of N "
+      "similar shares as I/N, which begin at multiples of 64. vam-stack joins such pieces to the stack of the whole "
+      "part, with the same images and attributes. "
+      "For level rays (projector.telecentric, --geometry parallel), as rays that climb couple all slices. The "
+      "report describes these slices. Does not apply to options that need the whole part: --preview, --budget, "
+      "--robust, --tradeoff, --certify, --bits, --poses, --helix, --wobble-record.");
   cli::add_report(app, options.report);
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);

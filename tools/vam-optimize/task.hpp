@@ -21,7 +21,8 @@ namespace vam::optimize_tool {
 /// too few.
 [[nodiscard]] std::optional<model::ImageRange> slices_of(const model::StackInfo& whole, const Options& options);
 
-/// Of these slices. The history is that of the whole, so that joined pieces are its stack.
+/// Of these slices. The history is that of the whole written to standard output without report, trace and checkpoint,
+/// so that joined pieces are its stack.
 [[nodiscard]] model::StackInfo written_info(const model::StackInfo& whole,
                                             const std::optional<model::ImageRange>& slices, const cli::App& app,
                                             const Options& options);

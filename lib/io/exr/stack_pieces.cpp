@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/progress.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/seal.hpp"
@@ -79,7 +80,7 @@ StackPieces::StackPieces(const std::vector<std::string>& paths) {
     require_next(part);
     images_.to = range_of(part.info).to;
   }
-  if (paths.front() == "-") images_.to = info_.count;
+  if (piped()) images_.to = info_.count;  // more may follow
 }
 
 void StackPieces::require_same(const Part& first, const Part& other) const {
@@ -121,15 +122,33 @@ bool StackPieces::advance() {
   return true;
 }
 
-bool StackPieces::next(Image& image, model::ImageInfo& about) {
+bool StackPieces::piped() const { return parts_.back().name == input_name("-"); }
+
+/// Of what comes through a pipe all is read, lest its writer fails.
+bool StackPieces::next(const ImageRange& wanted, Image& image, model::ImageInfo& about) {
+  if (done_ >= wanted.to && !piped()) return false;
   while (!parts_[at_].reader->next(image, about)) {
-    if (advance()) continue;
-    if (done_ == images_.to) return false;
-    throw Error{Fault::data, parts_[at_].name + ": ends after image " + std::to_string(done_) + " of " +
-                                 std::to_string(info_.count) + "; the other pieces are missing"};
+    if (!advance()) return false;
   }
   ++done_;
   return true;
+}
+
+void StackPieces::copy(const ImageRange& wanted, StackWriter& out) {
+  Progress progress("copying", wanted.to - done_);
+  Image image;
+  model::ImageInfo about;
+  for (; next(wanted, image, about); progress.tick(1)) {
+    if (!wanted.holds(done_ - 1)) continue;
+    if (about.has_angle || about.has_time || about.has_number) {
+      out.write(image, about);
+    } else {
+      out.write(image);
+    }
+  }
+  if (done_ >= wanted.to) return;
+  throw Error{Fault::data, parts_[at_].name + ": ends after image " + std::to_string(done_) + " of " +
+                               std::to_string(info_.count) + "; the other pieces are missing"};
 }
 
 StackInfo cut(const StackInfo& info, const ImageRange& images, const std::string& name) {

@@ -21,8 +21,8 @@ class StackPieces {
   [[nodiscard]] const model::StackInfo& info() const { return info_; }
   /// The images that the pieces hold; on stdin those up to the last of the undivided stack.
   [[nodiscard]] const model::ImageRange& images() const { return images_; }
-  /// The next of images(); false after the last. Throws Fault::data where stdin ends before it.
-  bool next(Image& image, model::ImageInfo& about);
+  /// Writes these of images(), once. Throws Fault::data where stdin ends before the last of them.
+  void copy(const model::ImageRange& wanted, StackWriter& out);
 
  private:
   struct Part {
@@ -33,6 +33,8 @@ class StackPieces {
   void require_same(const Part& first, const Part& other) const;
   void require_next(const Part& part) const;
   bool advance();
+  [[nodiscard]] bool piped() const;
+  bool next(const model::ImageRange& wanted, Image& image, model::ImageInfo& about);
 
   std::vector<Part> parts_;  // ascending
   std::size_t at_ = 0;

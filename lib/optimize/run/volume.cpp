@@ -52,6 +52,10 @@ class VolumeRun {
         reader_(task.source, light.object()),
         division_(division_of(task, light)),
         asked_(task.slices.value_or(model::ImageRange{0, task.source.slices})) {
+    if (asked_.from < 0 || asked_.count() < 1 || asked_.to > task.source.slices || (task.slices && division_.whole)) {
+      throw Error{Fault::usage, "slices: " + model::range_text(asked_) + " of " + std::to_string(task.source.slices) +
+                                    " cannot be computed apart from the others"};
+    }
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
     for (const SliceDigest& slice : digests) {

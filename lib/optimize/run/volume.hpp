@@ -32,8 +32,8 @@ struct IntensityLimit {
 struct VolumeTask {
   std::string title = "optimising";  // of the progress
   VolumeSource source;
-  /// The slices that are asked for, by the passes of the whole volume that they belong to, so that their projections
-  /// are those of the whole; none: all. The outcome is theirs.
+  /// Only these slices are written. They are optimised in the passes of the whole volume, so that their projections are
+  /// those of a run without this. Fault::usage where the volume has too few, or all are one pass.
   std::optional<model::ImageRange> slices;
   Circle circle;
   model::VoxelBox part;  // its box
