@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <vector>
 
 #include "base/constants.hpp"
@@ -191,46 +192,28 @@ Pull disagreement(const Normal& n, double cc, double tt, double left) {
   return most;
 }
 
-[[noreturn]] void refuse(const Image& image) {
-  throw Error{Fault::data, "views: no rotation axis found, the mean view of " + std::to_string(image.width) + " x " +
-                               std::to_string(image.height) +
-                               " pixels has no contrast that is symmetric about a column"};
-}
-
-}  // namespace
-
-AxisEstimate find_axis(std::span<const CameraView> views) {
-  constexpr double sharp_px = 0.01;  // of clean views
-  const AxisEstimate of_mean = find_axis(mean_view(views));
-  if (of_mean.column_sigma < sharp_px) return of_mean;
-  AxisEstimate axis = find_axis(middle_view(views));
-  constexpr double left = 0.5;  // of what bubbles do to the mean, at most; they err alike in all ranges of the middle
-  axis.column_sigma = std::hypot(axis.column_sigma, left * of_mean.column_sigma);
-  axis.tilt_sigma_rad = std::hypot(axis.tilt_sigma_rad, left * of_mean.tilt_sigma_rad);
-  return axis;
-}
-
-AxisEstimate find_axis(const Image& mean_view) {
-  if (mean_view.width < 20 || mean_view.height < 3) refuse(mean_view);
+// Nothing where the image is not symmetric about a column.
+std::optional<AxisEstimate> axis_of(const Image& view) {
+  if (view.width < 20 || view.height < 3) return std::nullopt;
   AxisEstimate estimate;
   AxisPose& pose = estimate.pose;
-  pose.column = start_column(mean_view);
-  const double noise2 = std::pow(noise_of(mean_view), 2) * blurred_slope_variance();
-  const Image smooth = blurred(mean_view);
+  pose.column = start_column(view);
+  const double noise2 = std::pow(noise_of(view), 2) * blurred_slope_variance();
+  const Image smooth = blurred(view);
   constexpr int steps = 60;
   constexpr double farthest_rad = 30 * rad_per_deg;
   double bound = 1e300;
   for (int step = 0; step < steps; ++step) {
     const Normal n = normal_of(straightened(smooth, pose), pose.column, bound);
     constexpr double more_than_noise = 1.5;
-    if (n.count == 0 || !(n.cc > more_than_noise * noise2 * n.noise_cc)) refuse(mean_view);
+    if (n.count == 0 || !(n.cc > more_than_noise * noise2 * n.noise_cc)) return std::nullopt;
     const double determinant = n.cc * n.tt - n.ct * n.ct;
-    if (!(determinant > 0)) refuse(mean_view);
+    if (!(determinant > 0)) return std::nullopt;
     const double column = std::clamp((n.ct * n.tr - n.tt * n.cr) / determinant, -5.0, 5.0);
     const double tilt = std::clamp((n.ct * n.cr - n.cc * n.tr) / determinant, -0.05, 0.05);
     pose.column += column;
     pose.tilt_rad += tilt;
-    if (std::abs(pose.tilt_rad) > farthest_rad) refuse(mean_view);
+    if (std::abs(pose.tilt_rad) > farthest_rad) return std::nullopt;
     bound = 2.5 * edge_deviation(n) + 1e-30;  // Huber: dirt pulls with constant force
     // The slopes of the noise are no knowledge of the axis, and blurred pixels do not err one by one.
     const double cc = n.cc - noise2 * n.noise_cc;
@@ -243,6 +226,27 @@ AxisEstimate find_axis(const Image& mean_view) {
     if (std::abs(column) < 1e-3 && std::abs(tilt) < 1e-5) break;
   }
   return estimate;
+}
+
+}  // namespace
+
+AxisEstimate find_axis(const Image& mean_view) {
+  if (const auto found = axis_of(mean_view)) return *found;
+  throw Error{Fault::data, "views: no rotation axis found, the mean view of " + std::to_string(mean_view.width) +
+                               " x " + std::to_string(mean_view.height) +
+                               " pixels has no contrast that is symmetric about a column"};
+}
+
+AxisEstimate find_axis(std::span<const CameraView> views) {
+  constexpr double sharp_px = 0.01;  // of clean views
+  const AxisEstimate of_mean = find_axis(mean_view(views));
+  if (of_mean.column_sigma < sharp_px) return of_mean;
+  auto axis = axis_of(middle_view(views));
+  if (!axis) return of_mean;
+  constexpr double left = 0.5;  // of what bubbles do to the mean, at most; they err alike in all ranges of the middle
+  axis->column_sigma = std::hypot(axis->column_sigma, left * of_mean.column_sigma);
+  axis->tilt_sigma_rad = std::hypot(axis->tilt_sigma_rad, left * of_mean.tilt_sigma_rad);
+  return axis->column_sigma < of_mean.column_sigma ? *axis : of_mean;
 }
 
 }  // namespace vam::metrology

@@ -55,6 +55,35 @@ TEST_CASE(
 
 TEST_CASE("a uniform image has no axis") { CHECK_THROWS_AS((void)find_axis(Image(100, 50, 1.0F)), Error); }
 
+// A pin of 2 px that turns at 60 px from the axis: it passes a pixel for a few of the views.
+TEST_CASE("the axis of a pin beside it is as certain as the mean view has it") {
+  constexpr int count = 120;
+  for (const double noise : {6.0, 10.0}) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0, noise);
+    std::vector<CameraView> views;
+    for (int i = 0; i < count; ++i) {
+      const double angle_deg = 360.0 * i / count;
+      const double column = 79.5 + 60 * std::cos(angle_deg * rad_per_deg);
+      Image image(160, 96);
+      for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+          const double pin = y > 20 && y < 75 ? 100 * std::clamp(2.5 - std::abs(x - column), 0.0, 1.0) : 0;
+          image(x, y) = static_cast<float>(20 + pin + normal(random));
+        }
+      }
+      views.push_back({std::move(image), angle_deg});
+    }
+    const AxisEstimate of_mean = find_axis(mean_view(views));
+    const AxisEstimate found = find_axis(views);
+    CAPTURE(noise);
+    CHECK(found.column_sigma <= of_mean.column_sigma);
+    CHECK(found.column_sigma < 0.03);
+    CHECK(std::abs(found.pose.column - 79.5) < 4 * found.column_sigma);
+    CHECK(std::abs(found.pose.tilt_rad) < 4 * found.tilt_sigma_rad);
+  }
+}
+
 TEST_CASE("dark, flat and binning invert the camera model") {
   Image truth(7, 5);
   for (std::size_t i = 0; i < truth.size(); ++i) truth.values[i] = static_cast<float>(i);
