@@ -31,7 +31,7 @@ struct WeightedLine {
 [[nodiscard]] double few_readings_factor(int freedom);
 
 /// The same for a variance that is the sum of these parts, each the square of one reading: a few large ones among many
-/// small ones count as few.
+/// small ones count as few. At least 0 each; 1 where all are 0.
 [[nodiscard]] double few_parts_factor(const std::vector<double>& parts);
 
 }  // namespace vam::stats

@@ -25,7 +25,7 @@ struct RunOut {
   [[nodiscard]] double size_sigma_mm() const;  // along its direction, or of a part where the size is 0
   /// Farther from 0 than chance takes one of 370.
   [[nodiscard]] bool seen() const;
-  /// The scattered light is absorbed by more than chance makes it seem in one of 370 cases, and enough to matter.
+  /// The scattered light is absorbed by more than chance makes it seem in one of 740 cases, and enough to matter.
   [[nodiscard]] bool absorbs() const;
 };
 
