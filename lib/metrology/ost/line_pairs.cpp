@@ -104,8 +104,6 @@ struct Sums {
   Matrix normal{};
   Vector right{};
   std::array<std::array<Vector, offset_ranges>, angle_ranges> by_both{};
-  double square = 0;  // of the residuals where there is something to see
-  double sight = 0;
 };
 
 // The height whose slopes stand for those of height k: near, and made of other rows, as slopes of the noise that is in
@@ -126,16 +124,12 @@ void add_height(const Lines& lines, int k, double bound, Sums& sums) {
     for (int t = 2; t < half; ++t) {
       Vector own{};
       Vector row{};
-      double sight = 0;
       for (int i = 0; i < unknowns; ++i) {
         own[i] = difference(by[i], k, t, a);
         row[i] = difference(by[i], other, t, a);
-        sight += row[i] * row[i];
       }
       const double r = difference(now, k, t, a);
       const double weight = std::min(1.0, bound / (std::abs(r) + 1e-300));
-      sums.square += sight * r * r;
-      sums.sight += sight;
       Vector gradient{};
       for (int i = 0; i < unknowns; ++i) {
         gradient[i] = weight * row[i] * r;
@@ -258,8 +252,10 @@ void leave_even_light(const std::vector<Image>& sinograms, std::vector<Image>& g
     std::vector<double> shares;
     for (std::size_t k = 0; k < gain.size(); ++k) {
       const auto total = [&](const Image& s) { return std::accumulate(s.row(a), s.row(a) + s.width, 0.0); };
-      shares.push_back(total(gain[k]) / total(sinograms[k]));
+      const double light = total(sinograms[k]);
+      if (light > 0) shares.push_back(total(gain[k]) / light);
     }
+    if (shares.empty()) return;
     const auto share = static_cast<float>(stats::median(shares));
     for (std::size_t k = 0; k < gain.size(); ++k) {
       for (int t = 0; t < gain[k].width; ++t) gain[k](t, a) -= share * sinograms[k](t, a);
@@ -273,6 +269,7 @@ void restore(Lines& lines, double by_absorption, bool even_light) {
   gain.resize(lines.now.size());
   parallel_for(count_of(lines.now), [&](int k) { gain[k] = absorbed(lines.now[k]); });
   if (even_light) leave_even_light(lines.now, gain);
+  if (by_absorption == 0) return;
   parallel_for(count_of(lines.now), [&](int k) {
     Image& s = lines.now[k];
     for (std::size_t i = 0; i < s.size(); ++i) s.values[i] += static_cast<float>(by_absorption) * gain[k].values[i];
@@ -327,12 +324,13 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
     bound = 2.5 * stats::median(edge_differences(lines)) / 0.6745 + 1e-30;
     fit.converged = step > 0 && farthest < near_px;
   }
+  if (!fit.converged) return fit;
   Vector unmoved{};
   unmoved[pair_motions] = fit.value[pair_motions];
   const auto before = edge_differences(lines_after(unmoved));
   constexpr double few = 3;
-  const double most = few * stats::median(before);
-  fit.explains = usual_difference(edge_differences(lines_after(fit.value)), most) < usual_difference(before, most);
+  const double limit = few * stats::median(before);
+  fit.explains = usual_difference(edge_differences(lines_after(fit.value)), limit) < usual_difference(before, limit);
   return fit;
 }
 

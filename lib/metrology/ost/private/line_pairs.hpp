@@ -28,7 +28,7 @@ struct PairFit {
   PairVector value{};
   PairVector sigma{};
   bool converged = false;
-  bool explains = false;  // most lines on edges look more alike from both ends than without motion
+  bool explains = false;  // converged, and most lines on edges look more alike from both ends than without motion
 };
 
 /// Fits the motion, and with `count` of 4 the absorption, after which each line looks alike from both of its ends.
