@@ -306,7 +306,9 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
   PairFit fit;
   double bound = 1e300;
   constexpr int steps = 12;
-  constexpr double near_px = 1e-2;  // a last step below this leaves far less
+  constexpr double near_px = 1e-2;      // a last step below this leaves far less
+  constexpr double near_per_px = 1e-4;  // of the absorption
+  constexpr double most = 300;          // of these in one step
   for (int step = 0; step < steps && !fit.converged; ++step) {
     const Lines lines = lines_after(fit.value);
     Sums sums;
@@ -317,12 +319,13 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
     const Vector variance = variances(sums, inverse);
     double farthest = 0;
     for (int i = 0; i < unknowns; ++i) {
-      fit.value[i] -= std::clamp(move[i], -3.0, 3.0);
+      const double near = i < pair_motions ? near_px : near_per_px;
+      fit.value[i] -= std::clamp(move[i], -most * near, most * near);
       fit.sigma[i] = std::sqrt(variance[i]);
-      farthest = std::max(farthest, std::abs(move[i]));
+      farthest = std::max(farthest, std::abs(move[i]) / near);
     }
     bound = 2.5 * stats::median(edge_differences(lines)) / 0.6745 + 1e-30;
-    fit.converged = step > 0 && farthest < near_px;
+    fit.converged = step > 0 && farthest < 1;
   }
   if (!fit.converged) return fit;
   Vector unmoved{};
