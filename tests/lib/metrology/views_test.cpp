@@ -18,9 +18,9 @@ using namespace vam::metrology;
 namespace {
 
 // The mean view of a turning body, written down directly: even in the distance from a leaning axis.
-Image mean_view(int width, int height, double column, double tilt_deg, double noise) {
+Image mean_view(int width, int height, double column, double tilt_deg, double noise, int seed = 7) {
   Image image(width, height);
-  std::mt19937 random(7);
+  std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, noise);
   const double s = std::sin(tilt_deg * rad_per_deg);
   const double c = std::cos(tilt_deg * rad_per_deg);
@@ -41,15 +41,34 @@ Image mean_view(int width, int height, double column, double tilt_deg, double no
 
 }  // namespace
 
-TEST_CASE(
-    "axis offset of 3.7 px and tilt of 0.5 deg are found within 0.1 px and 0.05 deg, and sigma is consistent with the "
-    "error") {
+TEST_CASE("axis offset of 3.7 px and tilt of 0.5 deg are found within 0.1 px and 0.05 deg") {
   for (const double noise : {0.0, 0.02}) {
     const auto found = find_axis(mean_view(320, 240, 0.5 * 319 + 3.7, 0.5, noise));
     CHECK(std::abs(found.pose.column - (0.5 * 319 + 3.7)) < 0.1);
     CHECK(std::abs(found.pose.tilt_rad * deg_per_rad - 0.5) < 0.05);
-    CHECK(found.column_sigma < 0.05);
-    CHECK(found.tilt_sigma_rad * deg_per_rad < 0.02);
+  }
+}
+
+// The RMS of 24 errors is within 30 % of the true one (two deviations of its own); drifting bubbles ask for a wider one
+// of the column, whose ranges are merged.
+TEST_CASE("deviations of column and tilt are those of the errors") {
+  constexpr int draws = 24;
+  for (const double noise : {0.005, 0.02}) {
+    double column2 = 0, tilt2 = 0, column_sigma = 0, tilt_sigma = 0;
+    for (int seed = 1; seed <= draws; ++seed) {
+      const auto found = find_axis(mean_view(320, 240, 0.5 * 319 + 3.7, 0.5, noise, seed));
+      column2 += std::pow(found.pose.column - (0.5 * 319 + 3.7), 2);
+      tilt2 += std::pow(found.pose.tilt_rad - 0.5 * rad_per_deg, 2);
+      column_sigma += found.column_sigma / draws;
+      tilt_sigma += found.tilt_sigma_rad / draws;
+    }
+    const double column = column_sigma / std::sqrt(column2 / draws);
+    const double tilt = tilt_sigma / std::sqrt(tilt2 / draws);
+    CAPTURE(noise);
+    CHECK(column > 0.7);
+    CHECK(column < 2);
+    CHECK(tilt > 0.7);
+    CHECK(tilt < 1.4);
   }
 }
 
