@@ -32,12 +32,11 @@ std::vector<std::string> description() {
       "stage.turns; if the last pose leads back to the first one, --turns repeats it. vam-project does not move the "
       "vial: index and time of each frame are those of the table of poses. Live, only poses that repeat every turn can "
       "be shown.",
-      "Rows: z = 0 is at projector.axis_row, counted from the top, and z points upwards. A row shows "
-      "the mean of the slices over its height, so that a slice delivers its light at its height: as it is where its "
-      "edges are edges of rows, as those of vam-slice are if the voxel is one or several pixels high. Columns are "
-      "those of vam-resample, with the axis "
-      "at projector.axis_column; --column-offset shifts them. Intensity outside the projector's columns or rows is an "
-      "error. The orientation is applied last.",
+      "Rows: z = 0 is at projector.axis_row, counted from the top, and z points upwards. A row shows the mean of the "
+      "slices over its height, so that each slice delivers its light at its own height. Where slices begin and end "
+      "with rows, as those of vam-slice do if a voxel is one or several pixels high, they are shown unchanged. Columns "
+      "are those of vam-resample, with the axis at projector.axis_column; --column-offset shifts them. Intensity "
+      "outside the projector's columns or rows is an error. The orientation is applied last.",
       "Grey: the value --full-scale (default: the maximum of the stack) is shown at full intensity, times "
       "--multiplier. "
       "Each pixel is set to the grey level whose intensity is nearest to the required one, by the measured response "

@@ -37,12 +37,10 @@ std::vector<std::string> limits() {
       "A part that is too large is refused; the error states the value of --scale (--fit, --voxel) that makes it fit. "
       "The part must fit into the projector's rows unless --any-height is given, for machines that lift the vial past "
       "the image during the print (vam-optimize --helix). A part without a voxel wholly inside, or smaller than a "
-      "tenth of the writable width, causes a warning with the probable unit of the file or a suitable voxel size, and "
-      "so "
-      "do walls of which no voxel is half covered: they are not printed.",
-      "Slices of meshes and shapes begin where a row of the projector does (projector.axis_row), so that voxels that "
-      "are "
-      "one or several pixels high coincide with rows.",
+      "tenth of the writable width, causes a warning with the probable unit of the file or a suitable voxel size, "
+      "and so do walls of which no voxel is half covered: they are not printed.",
+      "Slices of meshes and shapes begin where a row of the projector does (projector.axis_row), so that voxels "
+      "that are one or several pixels high coincide with rows.",
       "An insert keeps the size of its file, in mm or --insert-unit. Its origin coincides with that of PART's file and "
       "it is rotated with PART, so that the parts of an assembly stay together as long as PART is not scaled; "
       "--insert-at, --insert-rotate and --insert-scale override this. An insert that misses the part, or overlaps it, "

@@ -50,7 +50,7 @@ struct More {
   double like_z, even;
 };
 
-/// Weights of the iteration come near to A y <= A z; what is missing is made up for by more weight in the void.
+/// Weights of the iteration come near to A y <= A z; what is missing is compensated by more weight in the void.
 class Prover {
  public:
   Prover(const Problem& problem, const light::Operator& light) : problem_(problem), light_(light) {

@@ -92,7 +92,7 @@ struct VolumeOutcome {
 
 /// Slices of a part are optimised only where light and figures leave passes independent. All calls of the task's
 /// functions come from the calling thread. Throws Fault::data when a slice has part outside the circle, and when the
-/// state to go on from is of another job; Fault::usage when a blur is to be made up for by a method that does not keep
+/// state to go on from is of another job; Fault::usage when a blur is to be compensated by a method that does not keep
 /// doses to scale.
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light);
 
