@@ -77,10 +77,11 @@ std::vector<std::string> notes() {
   return {
       "Accuracy: chief-ray doses agree with a sum over individual rays to 1e-3. The dose of a voxel is the mean over "
       "its volume, across the beam exactly for pixels of uniform intensity, along the axis linear between rows. Beyond "
-      "the writable radius rays form caustics; doses there are accurate to a few per cent.",
+      "the writable radius rays form caustics; doses there are accurate to 1 % of the maximum (RMS; single voxels to "
+      "some per cent).",
       "Memory with climbing rays: 90 slices of dose; the intensities of 64 slices and of the slices around them whose "
       "rows reach them, 4 bytes per lit column and angle; 48 images of the stack; the table of rays, 90 bytes for each "
-      "of 1440 directions and of the voxels from the axis to the corner of the grid (8 times as many beyond the "
+      "of 1440 directions and of the voxels from the axis to the corner of the grid (16 times as many beyond the "
       "writable radius); 0.3 bytes per voxel; and 0.1 GiB. Voxels of the dose and of --like beyond 32 MiB are kept in "
       "a scratch file in $TMPDIR, else /var/tmp. An insert adds 24 bytes per voxel, the whole stack, and three times "
       "the intensities of its lit columns. With horizontal rays: three batches of 64 slices and images.",

@@ -78,22 +78,21 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
   const float along = place - static_cast<float>(direction);
   const int next = direction + 1 < table.directions ? direction + 1 : 0;
   const auto pair = [&](const TableNode* points) { return std::array<TableNode, 2>{points[direction], points[next]}; };
-  const auto inner_mm = static_cast<float>(table.inner.pitch_mm * (table.inner.rows - 1));
+  const auto node_of = [&](const RayTable::Zone& zone, int sheet) {
+    const RayTable::RowPair rows = zone.rows_at(r);
+    const auto low = pair(table.points(zone, rows.low, sheet));
+    const auto high = pair(table.points(zone, rows.high, sheet));
+    return between(low.data(), high.data(), rows.part, along);
+  };
   if (r <= static_cast<float>(table.inner_edge_mm) || (here.shifted && r <= static_cast<float>(table.reach_mm))) {
-    const float row = std::min(r, inner_mm) / static_cast<float>(table.inner.pitch_mm);
-    const int low = std::min(static_cast<int>(row), table.inner.rows - 2);
-    const auto below = pair(table.points(table.inner, low, 0));
-    const auto above = pair(table.points(table.inner, low + 1, 0));
-    NodeValues values = between(below.data(), above.data(), row - static_cast<float>(low), along);
+    NodeValues values = node_of(table.inner, 0);
     if (here.shifted) shift_.add(r, turn, here.powers, values);
     to[0] = node_at(std::bit_cast<TableNode>(values), scale);
     return 1;
   }
   if (table.outer.rows == 0 || here.shifted) return 0;
-  const int nearest = table.outer.nearest_row(r);
   for (int sheet = 0; sheet < table.outer.sheets; ++sheet) {
-    const auto points = pair(table.points(table.outer, nearest, sheet));
-    to[sheet] = node_at(std::bit_cast<TableNode>(between(points.data(), points.data(), 0, along)), scale);
+    to[sheet] = node_at(std::bit_cast<TableNode>(node_of(table.outer, sheet)), scale);
   }
   return table.outer.sheets;
 }

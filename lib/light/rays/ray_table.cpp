@@ -28,26 +28,34 @@ RayTable::RayTable(const Scope& scope)
       climbs_(scope.view.rows_lens_mm.has_value()) {
   scope_.height_mm = std::max(scope.height_mm, 1e-3);
   const ChiefRayDose light{scope_, edge_mm, reach_mm};
-  const double inside =
-      std::min(reach_mm * (climbs_ ? 0.9995 : ChiefRayDose::rim), std::max(scope.r_max_mm, scope.pitch_mm));
-  inner.rows = std::max(2, ceil_int(inside / scope.pitch_mm) + 1);
+  const double pitch_mm = climbs_ ? scope.voxel_mm : 0.5 * scope.voxel_mm;
+  const double inside = std::min(reach_mm * (climbs_ ? 0.9995 : ChiefRayDose::rim), std::max(scope.r_max_mm, pitch_mm));
+  inner.rows = std::max(2, ceil_int(inside / pitch_mm) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
   inner_edge_mm = std::max(inside, std::min(reach_mm, scope.r_max_mm));
-  const double beyond = std::min(edge_mm, scope.r_max_mm) - reach_mm;
-  if (beyond > 0) {
+  if (std::min(edge_mm, scope.r_max_mm) > reach_mm) {
+    inner_edge_mm =
+        std::max(0.0, reach_mm - 0.5 * scope.voxel_mm);  // no voxel of the inner zone is crossed by the reach
+    const double beyond = std::min(edge_mm, scope.r_max_mm) - inner_edge_mm;
     outer.sheets = most_sheets;
-    outer.rows = ceil_int(2 * beyond / scope.pitch_mm);  // nearest row: half the pitch
+    outer.rows = ceil_int(circles_per_voxel * beyond / scope.voxel_mm);
     outer.pitch_mm = beyond / outer.rows;
-    outer.first_mm = reach_mm + 0.5 * outer.pitch_mm;
+    outer.first_mm = inner_edge_mm + 0.5 * outer.pitch_mm;
     outer.first_row = inner.rows;
   }
   nodes_.resize(static_cast<std::size_t>(inner.rows + outer.rows * outer.sheets) * directions);
   parallel_for(inner.rows, [&](int row) { fill_inner_row(light, row); });
-  parallel_for(outer.rows, [&](int row) { fill_outer_row(light, row); });
+  constexpr int rows_at_once = 16;  // their circles overlap
+  parallel_for((outer.rows + rows_at_once - 1) / rows_at_once, [&](int block) {
+    fill_outer_rows(light, block * rows_at_once, std::min((block + 1) * rows_at_once, outer.rows));
+  });
+  for (int row = 0; row < outer.rows; ++row) continue_outer_row(row);
 }
 
-int RayTable::Zone::nearest_row(double r_mm) const {
-  return std::clamp(round_int((r_mm - first_mm) / pitch_mm), 0, rows - 1);
+RayTable::RowPair RayTable::Zone::rows_at(double r_mm) const {
+  const double place = std::clamp((r_mm - first_mm) / pitch_mm, 0.0, rows - 1.0);
+  const int low = floor_int(place);
+  return {low, std::min(low + 1, rows - 1), static_cast<float>(place - low)};
 }
 
 HeightScale RayTable::scale_at(double z_mm, const RayScale& scale) const {

@@ -52,7 +52,7 @@ RayTable::Scope VialRays::table_scope() const {
   table.sense = sense();
   table.absorption_per_mm = setup_.absorption_per_mm;
   table.r_max_mm = farthest_mm(setup_) + model::farthest_mm(setup_.poses, model::Moves::part);
-  table.pitch_mm = setup_.grid.voxel_mm / (setup_.view.rows_lens_mm ? 1 : 2);
+  table.voxel_mm = setup_.grid.voxel_mm;
   table.height_mm = std::max(top_mm(), least_height_mm);
   return table;
 }
@@ -219,17 +219,16 @@ int VialRays::find(int i, int j, RaySource* rays) const {
   const bool outside = r > table_.inner_edge_mm;
   if (outside && table_.outer.rows == 0) return 0;
   const RayTable::Zone& zone = outside ? table_.outer : table_.inner;
-  const double place = (r - zone.first_mm) / zone.pitch_mm;
-  const int low = outside ? zone.nearest_row(r) : std::min(static_cast<int>(place), zone.rows - 2);
+  const RayTable::RowPair rows = zone.rows_at(r);
   // alpha = psi - theta: the voxel seen from the lab. In steps of the table, increasing with the row.
   const double theta = setup_.part_angle_rad(0);
   double alpha = sense() * (std::atan2(y, x) - theta) / turn_rad;
   alpha = (alpha - std::floor(alpha)) * table_.directions;
   const int index = std::min(static_cast<int>(alpha), table_.directions - 1);
   for (int sheet = 0; sheet < zone.sheets; ++sheet) {
-    rays[sheet] = {static_cast<int>(table_.row_begin(zone, low, sheet)),
-                   static_cast<int>(table_.row_begin(zone, low + (outside ? 0 : 1), sheet)), index,
-                   outside ? 0.0F : static_cast<float>(std::min(place - low, 1.0)), static_cast<float>(alpha - index)};
+    rays[sheet] = {static_cast<int>(table_.row_begin(zone, rows.low, sheet)),
+                   static_cast<int>(table_.row_begin(zone, rows.high, sheet)), index, rows.part,
+                   static_cast<float>(alpha - index)};
   }
   return zone.sheets;
 }

@@ -54,7 +54,8 @@ oracle::SkewDose deposition(const parts::Part& part, const model::Printer& print
 }  // namespace
 
 TEST_CASE("a bar whose corners reach 1.15 R/n prints, judged by deposited rays") {
-  const parts::Part part = bar(0.4);
+  constexpr double voxel_mm = 0.2;
+  const parts::Part part = bar(voxel_mm);
   const parts::Light light = parts::make_light(part, printer(), angles, "auto", false);
   const Image& frame = light.sinograms.front();
   const auto slow = oracle::skew_dose(deposition(part, printer()), [&](int column, int, int angle) {
@@ -64,10 +65,10 @@ TEST_CASE("a bar whose corners reach 1.15 R/n prints, judged by deposited rays")
   for (std::size_t v = 0; v < part.voxels.size(); ++v) {
     const int i = static_cast<int>(v) % part.grid.nx;
     const int j = static_cast<int>(v) / part.grid.nx;
-    if (std::hypot(part.grid.x_mm(i), part.grid.y_mm(j)) > 12.2 - 0.4) continue;  // voxels that the edge cuts
+    if (std::hypot(part.grid.x_mm(i), part.grid.y_mm(j)) > 12.2 - voxel_mm) continue;  // voxels that the edge cuts
     statistics.add(static_cast<float>(slow.dose[v]), model::label_of(part.voxels[v]));
   }
   const model::DoseMetrics judged = statistics.metrics();
   CHECK(judged.ver == 0);
-  CHECK(judged.pw > 0.03);  // the maker's own figure is 0.06; counting rays costs 0.01 to 0.02 at the worst voxel
+  CHECK(judged.pw > 0.05);  // the maker's own figure is 0.06
 }

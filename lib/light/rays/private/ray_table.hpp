@@ -65,11 +65,16 @@ using RayNodes = std::vector<RayNode, CacheAligned<RayNode>>;
 /// Within the reach every point of the plan has one ray from each side, found by Newton's method at three heights;
 /// between these, columns, strength and density are polynomials in z^2 (by symmetry), rows z times one: exact to 1e-4
 /// of a pixel for any height that a projector has. Beyond the reach the rays of one stage angle fold (caustics): a
-/// point has up to four rays, or none. These rows are filled ray by ray, which keeps the power; there the climb is that
-/// of low rays.
+/// point has up to four rays, or none. These rows are filled ray by ray, which keeps the power, and hold the means over
+/// a voxel; there the climb is that of low rays.
 class RayTable {
  public:
-  static constexpr int most_sheets = 4;  // front; rear: fold, middle, fold
+  static constexpr int most_sheets = 4;        // front; rear: fold, middle, fold
+  static constexpr int circles_per_voxel = 4;  // rays of the outer rows are counted on
+  struct RowPair {
+    int low, high;
+    float part;  // of the way from low to high
+  };
   struct Zone {
     double first_mm = 0;  // radius of row 0
     double pitch_mm = 0;
@@ -77,8 +82,8 @@ class RayTable {
     int sheets = 1;     // branches of the map
     int first_row = 0;  // of the table
 
-    /// The row that is nearest to a radius.
-    [[nodiscard]] int nearest_row(double r_mm) const;
+    /// The rows on either side of a radius, or the zone's end.
+    [[nodiscard]] RowPair rows_at(double r_mm) const;
   };
 
   /// What it is a table of.
@@ -88,7 +93,7 @@ class RayTable {
     int sense = 1;   // +1 when alpha grows with the index
     double absorption_per_mm = 0;
     double r_max_mm = 0;   // radii up to this are needed
-    double pitch_mm = 0;   // of the rows
+    double voxel_mm = 0;   // edge of a voxel
     double height_mm = 0;  // largest |z| above or below the lens's axis that is needed
   };
   explicit RayTable(const Scope& scope);
@@ -112,14 +117,15 @@ class RayTable {
   int phases = 0;      // directions a stage angle
   int directions = 0;  // of a turn
   double reach_mm = 0;
-  double edge_mm = 0;        // radius of the resin
-  Zone inner;                // to be interpolated between rows
-  double inner_edge_mm = 0;  // up to where it holds: its last row, or the reach, before which it ends by a hair
-  Zone outer;                // nearest row
+  double edge_mm = 0;  // radius of the resin
+  Zone inner;
+  double inner_edge_mm = 0;  // up to where it is used: its last row, or the reach, before which it ends by a hair
+  Zone outer;                // from there on; no rows where no voxel is beyond the reach
 
  private:
   void fill_inner_row(const ChiefRayDose& light, int row);
-  void fill_outer_row(const ChiefRayDose& light, int row);
+  void fill_outer_rows(const ChiefRayDose& light, int first, int end);
+  void continue_outer_row(int row);
   [[nodiscard]] TableNode* row_of(const Zone& zone, int row, int sheet) {
     return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
