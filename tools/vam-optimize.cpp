@@ -31,19 +31,19 @@ using namespace vam;
 using optimize_tool::Options;
 using optimize_tool::Scene;
 
-/// Three slices and three sinograms for each slice (four where the best light is kept, six with --robust), of all
-/// slices where they are one pass.
+/// Three slices (four with --delivered) and three sinograms for each slice (four where the best light is kept, six with
+/// --robust), of all slices where they are one pass.
 void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, const light::Operator& light,
                         const std::string& subject) {
   const bool robust = task.scenarios != nullptr;
   const bool whole = optimize::takes_whole(task, light);
   const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
   const int slices = (count + lanes - 1) / lanes * lanes;
-  const double arrays = 3.0 * static_cast<double>(scene.grid.slice_size()) + (robust                     ? 6.0
-                                                                              : task.limits.patience > 0 ? 4.0
-                                                                                                         : 3.0) *
-                                                                                 light.sinogram().width *
-                                                                                 light.sinogram().height;
+  const double arrays = (task.source.delivered ? 4.0 : 3.0) * static_cast<double>(scene.grid.slice_size()) +
+                        (robust                     ? 6.0
+                         : task.limits.patience > 0 ? 4.0
+                                                    : 3.0) *
+                            light.sinogram().width * light.sinogram().height;
   const double bytes = sizeof(float) * slices * arrays;
   const std::string what = subject + ": " + model::size_text(scene.grid);
   if (whole) return warn_of_scratch_files(bytes, what);

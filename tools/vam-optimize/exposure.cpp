@@ -13,9 +13,13 @@ std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, 
   const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   const double full_scale = options.full_scale.value_or(peak);
   if (!per_radian || !model::repeat(info.poses)) return std::nullopt;
-  if (!(full_scale > 0) || !(score::window_middle(doses) > 0)) return std::nullopt;
-  return score::plan_exposure(doses, *per_radian / full_scale, printer, optics::turns_of(info),
-                              options.demands.window.threshold());
+  const double threshold = options.demands.window.threshold();
+  // What completes a dose has no window to choose from: its threshold is the resin's.
+  model::DoseMetrics exact;
+  exact.iou_threshold = threshold;
+  const model::DoseMetrics& aim = options.delivered.empty() ? doses : exact;
+  if (!(full_scale > 0) || !(score::window_middle(aim) > 0)) return std::nullopt;
+  return score::plan_exposure(aim, *per_radian / full_scale, printer, optics::turns_of(info), threshold);
 }
 
 }  // namespace vam::optimize_tool

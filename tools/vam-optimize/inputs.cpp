@@ -20,6 +20,14 @@ io::SparseVolume read_own(const std::string& path, const std::string& name) {
   throw Error{Fault::data, path + ": has several grids, but none is called '" + name + "'"};
 }
 
+io::SparseVolume read_dose(const std::string& path) {
+  io::SparseVolume dose = read_own(path, "dose");
+  if (dose.units == "mJ/cm3") return dose;
+  throw Error{Fault::data, path + ": the dose is in units of '" + dose.units +
+                               "', not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
+                               "vam-dose"};
+}
+
 }  // namespace
 
 Inputs read(const Options& options) {
@@ -39,6 +47,7 @@ Inputs read(const Options& options) {
   if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice writes one"};
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
   if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));
+  if (!options.delivered.empty()) in.delivered.push_back(read_dose(options.delivered));
   if (!in.insert.empty())
     in.insert.front().extend_to(in.grid(), options.input);  // other programs leave the void around it out
   for (const auto& [volumes, file] :

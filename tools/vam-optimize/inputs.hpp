@@ -14,15 +14,17 @@
 
 namespace vam::optimize_tool {
 
-/// The volumes of a job, all on one grid; those after the target may be missing.
+/// The volumes of a job, those after the target may be missing. All are on one grid but the dose that was delivered,
+/// which is that of all resin that light reaches.
 struct Inputs {
-  std::vector<io::SparseVolume> target, insert, weight, tolerance;  // at most one each
+  std::vector<io::SparseVolume> target, insert, weight, tolerance, delivered;  // at most one each
 
   [[nodiscard]] const model::Grid& grid() const { return target.front().grid(); }
 };
 
-/// Target, insert, weight and tolerance of the target's file; the latter two may have files of their own. Throws
-/// Fault::data when there is no target, or another volume is on another grid.
+/// Target, insert, weight and tolerance of the target's file; the latter two may have files of their own, as the dose
+/// that was delivered has. Throws Fault::data when there is no target, another of these is on another grid, or the dose
+/// is not in mJ/cm3.
 [[nodiscard]] Inputs read(const Options& options);
 
 /// Reads a stack slice after slice, the last 64 of which may be read again; slices in between are skipped.

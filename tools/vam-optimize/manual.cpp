@@ -147,6 +147,13 @@ std::vector<std::pair<std::string, std::string>> examples() {
        "export VAM_PRINTER=low.toml\n"
        "vam-slice --shape gyroid:diameter=8,height=11 --voxel 0.25 --any-height -o tall.vdb\n"
        "vam-optimize --angles 60 --helix 5.2 tall.vdb -o helix.exr"},
+      {"What is left after one turn in full light:",
+       "vam-slice --print-printer --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 -o lab.toml\n"
+       "export VAM_PRINTER=lab.toml\n"
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
+       "vam-optimize --angles 90 part.vdb -o whole.exr\n"
+       "vam-dose whole.exr --like part.vdb -o turn.vdb\n"
+       "vam-optimize --angles 90 part.vdb --delivered turn.vdb --init whole.exr --turns 1 -o rest.exr"},
       {"A part that sinks by 1 mm during the turn:",
        "seq 0 59 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { print 6 * $1 \",0,0,\" (-$1 / 59) "
        "\",part\" }' >sinking.csv\n"

@@ -108,6 +108,14 @@ void declare_stopping(cli::App& app, Options& options) {
       "loss constrains the surface, that of the last one), with 0 that of the last one.");
   app.not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
+  app.option("--delivered", "DOSE", options.delivered,
+             readers("--delivered") +
+                 "dose (VDB, in mJ/cm3) that the resin has received already, as of vam-dose --shown: the projections "
+                 "complete it to the target's, the threshold being resin.critical_dose_mj_cm3. --init are the "
+                 "projections for the whole dose, of which the optimisation starts with the share that is left; "
+                 "figures of merit and report are those of both doses together.")
+      .reads()
+      .needs({"--init"});
   app.flag(
       "--preview", options.preview,
       "Instead of projections write a verdict to standard output, within seconds: whether the part will print, how "

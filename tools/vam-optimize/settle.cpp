@@ -118,6 +118,18 @@ void refuse_beside_preview(const cli::App& app, const Options& options) {
   }
 }
 
+/// What completes a dose is of this print and this printer alone, and has a scale.
+void refuse_beside_delivered(const cli::App& app, const Options& options) {
+  if (options.delivered.empty()) return;
+  if (!options.in_vial()) {
+    throw Error{Fault::usage, "--delivered: does not apply to a parallel beam; use --geometry vial"};
+  }
+  for (const char* flag : {"--grey-target", "--robust", "--shortest", "--tradeoff", "--certify", "--poses", "--helix",
+                           "--wobble-record"}) {
+    if (app.given(flag)) throw Error{Fault::usage, std::string("--delivered: does not apply to ") + flag + "; omit it"};
+  }
+}
+
 /// What is of the whole part, or depends on the machine.
 void settle_slices(const cli::App& app, Options& options) {
   if (options.slices.empty()) return;
@@ -139,6 +151,7 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
   refuse_poses(options);
   refuse_dither(options);
   refuse_beside_preview(app, options);
+  refuse_beside_delivered(app, options);
   if (options.in_vial() && options.bins) {
     throw Error{Fault::usage,
                 "--detector-bins: does not apply to --geometry vial, whose sinogram has the projector's columns; use "

@@ -66,7 +66,7 @@ class Apg final : public Method {
       }
     });
     std::swap(iterate.dose, before_.dose);
-    light.adjoint(iterate.g, iterate.dose);
+    find_dose(problem, light, iterate);
     safeguard(problem, light, iterate);
   }
 
@@ -110,7 +110,7 @@ class Apg final : public Method {
   }
 
   void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
-    enter_bounds(light, largest_light(options_, light), iterate);
+    enter_bounds(problem, light, largest_light(options_, light), iterate);
     before_ = iterate;
     const DoseWindow& window = problem.demands.window;
     const double half_width = options_.half_width > 0 ? options_.half_width : 0.5 * (window.high - window.low);
@@ -227,7 +227,7 @@ MethodEntry apg_method() {
           "Beck and Teboulle, FISTA, 2009; two-metric projection: Bertsekas, 1982",
           60,
           true,
-          {"--max-intensity", "--robust", "--free-surface"},
+          {"--max-intensity", "--robust", "--free-surface", "--delivered"},
           make<Apg>,
           make_robust};
 }

@@ -71,7 +71,7 @@ class Cal final : public Method {
  private:
   /// The line search begins with Newton's step for a resin whose response is the dose: P is about (A A*)^-1.
   void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
-    enter_bounds(light, largest_light(options_, light), iterate);
+    enter_bounds(problem, light, largest_light(options_, light), iterate);
     length_ = filled(iterate.g.size(), 1.0F);
     loss_ = losses(problem, light, iterate);
   }

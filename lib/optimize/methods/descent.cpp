@@ -43,7 +43,7 @@ void Descent::exchange(Archive& archive) {
 
 /// Cauchy's step <g, g> / <A* g, A* g>, g the gradient, would be the best one if the loss were |A* g|^2 / 2.
 void Descent::prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
-  enter_bounds(light, largest_light(options_, light), iterate);
+  enter_bounds(problem, light, largest_light(options_, light), iterate);
   loss_ = losses(problem, light, iterate.dose);
   differentiate(problem, light, iterate);
   light.adjoint(gradient_, before_.dose);

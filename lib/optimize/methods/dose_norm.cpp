@@ -25,7 +25,7 @@ class DoseNorm final : public Method {
       for (std::size_t i = first; i < last; ++i) asked_[s].values[i] = goal(problem, s, i);
     });
     goal_sums_ = pooled(sums(asked_, problem), light);
-    project(light, iterate);
+    project(problem, light, iterate);
   }
 
   void resume(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
@@ -48,7 +48,7 @@ class DoseNorm final : public Method {
         asked_[s].values[i] /= std::max(ratio, least_ratio);
       }
     });
-    project(light, iterate);
+    project(problem, light, iterate);
   }
 
   void exchange(Archive& archive) override {
@@ -63,10 +63,10 @@ class DoseNorm final : public Method {
     return problem.labels[s][i] == Label::outside ? target : std::max(target, static_cast<float>(options_.void_dose));
   }
 
-  void project(const light::Operator& light, Iterate& iterate) {
+  void project(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     filtered_projections(light, asked_, iterate.g);
     clip_below(iterate.g, static_cast<float>(options_.min_intensity * light.row_angle_rad()));
-    find_dose(light, iterate);
+    find_dose(problem, light, iterate);
   }
 
   std::vector<Slab> asked_;  // I_k

@@ -107,8 +107,8 @@ std::unique_ptr<Method> make(const MethodOptions& options) {
 /// Those for which `holds` is true.
 [[nodiscard]] std::vector<std::string> method_names(const std::function<bool(const MethodEntry&)>& holds);
 
-/// iterate.dose = A* iterate.g.
-void find_dose(const light::Operator& light, Iterate& iterate);
+/// iterate.dose = A* iterate.g, and what was delivered already.
+void find_dose(const Problem& problem, const light::Operator& light, Iterate& iterate);
 
 /// Scales each slice to the common threshold.
 void start_at_threshold(const Problem& problem, const light::Operator& light, Iterate& iterate);

@@ -51,20 +51,47 @@ std::vector<std::string> method_names(const std::function<bool(const MethodEntry
   return names;
 }
 
+namespace {
+
+/// Of light for the whole dose, the share that is left: 1 - <D, A* g> / <A* g, A* g> over the part.
+void leave_rest(const Problem& problem, const light::Operator& light, Iterate& iterate) {
+  iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
+  light.adjoint(iterate.g, iterate.dose);
+  const auto product = [&](const std::vector<Slab>& other) {
+    return pooled(summed(iterate.dose,
+                         [&](std::size_t s, std::size_t i) {
+                           const bool counts = problem.labels[s][i] == Label::part;
+                           return counts ? other[s].values[i] * iterate.dose[s].values[i] : 0.0F;
+                         }),
+                  light);
+  };
+  const PerSlice given = product(problem.delivered);
+  PerSlice rest = product(iterate.dose);
+  for_slices(rest, [&](std::size_t s, std::size_t lane) {
+    float& share = rest[s][lane];
+    share = share > 0 ? std::clamp(1 - given[s][lane] / share, 0.0F, 1.0F) : 1;
+  });
+  scale(iterate.g, rest);
+}
+
+}  // namespace
+
 void Method::start(const Problem& problem, const light::Operator& light, Iterate& iterate) {
   filtered_projections(light, problem.target, iterate.g);
   clip_below(iterate.g, 0.0F);
-  find_dose(light, iterate);
+  find_dose(problem, light, iterate);
 }
 
-void Method::resume(const Problem& /*problem*/, const light::Operator& light, Iterate& iterate) {
+void Method::resume(const Problem& problem, const light::Operator& light, Iterate& iterate) {
+  if (!problem.delivered.empty()) leave_rest(problem, light, iterate);
   clip_above(iterate.g, largest_light(options_, light));
-  find_dose(light, iterate);
+  find_dose(problem, light, iterate);
 }
 
-void find_dose(const light::Operator& light, Iterate& iterate) {
+void find_dose(const Problem& problem, const light::Operator& light, Iterate& iterate) {
   if (iterate.dose.empty()) iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
   light.adjoint(iterate.g, iterate.dose);
+  add_delivered(problem, iterate.dose);
 }
 
 void start_at_threshold(const Problem& problem, const light::Operator& light, Iterate& iterate) {

@@ -50,8 +50,8 @@ bool clip_above(std::vector<Slab>& g, float peak) {
   return true;
 }
 
-void enter_bounds(const light::Operator& light, float peak, Iterate& iterate) {
-  if (clip_above(iterate.g, peak)) light.adjoint(iterate.g, iterate.dose);
+void enter_bounds(const Problem& problem, const light::Operator& light, float peak, Iterate& iterate) {
+  if (clip_above(iterate.g, peak)) find_dose(problem, light, iterate);
 }
 
 float largest_light(const MethodOptions& options, const light::Operator& light) {

@@ -17,13 +17,14 @@ PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, 
     SliceData all;
     for (int job = first; job < first + used; ++job) {
       const SliceData one = reader.read(slice(job));
-      for (auto field : {&SliceData::target, &SliceData::insert, &SliceData::weight, &SliceData::tolerance}) {
+      for (auto field :
+           {&SliceData::target, &SliceData::insert, &SliceData::weight, &SliceData::tolerance, &SliceData::delivered}) {
         (all.*field).insert((all.*field).end(), (one.*field).begin(), (one.*field).end());
       }
     }
     const auto values = [](const std::vector<float>& v) { return v.empty() ? nullptr : v.data(); };
-    append(input.problem, {values(all.target), values(all.weight), values(all.tolerance)}, used, object.width,
-           object.height, circle);
+    append(input.problem, {values(all.target), values(all.weight), values(all.tolerance), values(all.delivered)}, used,
+           object.width, object.height, circle);
     if (all.insert.empty()) continue;
     input.inserts.emplace_back(object.width, object.height);
     pack(all.insert.data(), used, input.inserts.back());

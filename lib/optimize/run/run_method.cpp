@@ -122,10 +122,10 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
   }
 }
 
-bool return_to_best(const light::Operator& light, Standing& standing, Iterate& state) {
+bool return_to_best(const Problem& problem, const light::Operator& light, Standing& standing, Iterate& state) {
   if (standing.best_light.empty() || standing.best_at == standing.iteration) return false;
   state.g = std::move(standing.best_light);
-  light.adjoint(state.g, state.dose);
+  find_dose(problem, light, state);
   return true;
 }
 

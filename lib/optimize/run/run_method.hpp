@@ -64,7 +64,7 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
                    Iterate& iterate, Standing& standing, const Watch& watch = {}, const Pause& pause = {});
 /// The light of the best iterate and its dose take the place of the last one's; false where that is the best, or none
 /// was kept.
-bool return_to_best(const light::Operator& light, Standing& standing, Iterate& iterate);
+bool return_to_best(const Problem& problem, const light::Operator& light, Standing& standing, Iterate& iterate);
 /// From the start to the end.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate);

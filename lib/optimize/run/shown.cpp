@@ -62,6 +62,7 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
         pass, [&](int k) { return frames[k]; }, shown.sharp());
     std::vector<Slab> dose = slabs(sinograms.size(), object.width, object.height);
     shown.blurred().adjoint(sinograms, dose);
+    add_delivered(input.problem, dose);
     input.problem.demands.window = {threshold, threshold};
     tally(dose, input.problem, pass, {task.part, each_its_own, {0, slices}, once}, ledger);
     if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(dose, input.problem);

@@ -166,7 +166,8 @@ class VolumeRun {
       return false;
     }
     double most = work.search.max_intensity;
-    if (outcome.stop != StopReason::goal && return_to_best(light.blurred(), work.search.standing, work.state)) {
+    if (outcome.stop != StopReason::goal &&
+        return_to_best(input.problem, light.blurred(), work.search.standing, work.state)) {
       most = work.search.best_max_intensity;
     }
     work.search.standing.best_light = {};
@@ -235,7 +236,8 @@ class VolumeRun {
               const Scenarios* scenarios) {
     Iterate& state = work.state;
     const bool whole = division_.whole;
-    if (division_.halo == 0) {  // slices that share dose with other passes are to scale already
+    // Slices that share dose with other passes are to scale already, as is what is missing of a dose.
+    if (division_.halo == 0 && problem.delivered.empty()) {
       bring_to_threshold(problem, light, whole ? Together::pass : Together::slice, most, scenarios, state);
     }
     if (whole) outcome_.surface = work.method->surface_miss(state.dose);

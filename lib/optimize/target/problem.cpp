@@ -96,6 +96,13 @@ void settle(Problem& problem, int first) {
 
 void settle(Problem& problem) { settle(problem, 0); }
 
+void add_delivered(const Problem& problem, std::span<Slab> dose) {
+  if (problem.delivered.empty()) return;
+  for_values(dose, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) dose[s].values[i] += problem.delivered[s].values[i];
+  });
+}
+
 void check(const Demands& demands) {
   const DoseWindow& w = demands.window;
   if (w.low >= 0 && w.low < w.high) return;
@@ -119,6 +126,7 @@ void append(Problem& problem, const Slices& slices, int count, int width, int he
     free_weightless(problem.weight.back(), problem.labels.back());
   }
   if (slices.tolerance != nullptr) problem.tolerance.push_back(packed(slices.tolerance));
+  if (slices.delivered != nullptr) problem.delivered.push_back(packed(slices.delivered));
 }
 
 }  // namespace vam::optimize

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "base/per_slice.hpp"
@@ -52,6 +53,7 @@ struct Problem {
   Demands demands;
   std::vector<Slab> weight;      // what an error of this voxel costs, the largest of a slice 1; empty: all 1
   std::vector<Slab> tolerance;   // epsilon of this voxel; empty: demands.band
+  std::vector<Slab> delivered;   // dose that this voxel has received already; empty: none
   std::vector<float> gain = {};  // of each slice's target, by settle(): not 1 of a thin slice; empty: none is thin
 
   [[nodiscard]] float weight_at(std::size_t s, std::size_t i) const {
@@ -71,6 +73,7 @@ struct Slices {
   const float* target;
   const float* weight = nullptr;     // >= 0, relative to each other; a voxel of weight 0 is unconstrained
   const float* tolerance = nullptr;  // >= 0
+  const float* delivered = nullptr;  // >= 0, in the unit of the dose
 };
 
 /// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out. Slices that are not
@@ -82,5 +85,8 @@ void append(Problem& problem, const Slices& slices, int count, int width, int he
 /// for part; otherwise it stays dark. Where slices are stacked and the dose at the surface is prescribed, the slice
 /// beside one with such voxels is left as it is: its surface says where the part ends.
 void settle(Problem& problem);
+
+/// Adds what was delivered already to the dose of light.
+void add_delivered(const Problem& problem, std::span<Slab> dose);
 
 }  // namespace vam::optimize

@@ -21,7 +21,7 @@ struct Findings {
   double reach = -1;  // of the part from the axis, voxels
   bool has_void = false;
   long shared_with_insert = 0;
-  float least = 0;  // of weight and tolerance
+  float least = 0;  // of weight, tolerance and delivered dose
 };
 
 /// Voxels that part and insert together fill more than once, rounding left aside.
@@ -57,13 +57,13 @@ bool void_inside(const float* slice, light::Shape shape, const Circle& circle) {
 Findings look(const SliceData& slice, light::Shape shape, const Circle& circle) {
   Findings found;
   found.digest = digest(slice.target);
-  for (const auto* values : {&slice.insert, &slice.weight, &slice.tolerance}) {
+  for (const auto* values : {&slice.insert, &slice.weight, &slice.tolerance, &slice.delivered}) {
     if (!values->empty()) found.digest = digest(*values, found.digest);
   }
   found.reach = reach(slice.target.data(), shape.width, shape.height, circle.axis_x, circle.axis_y);
   found.has_void = void_inside(slice.target.data(), shape, circle);
   found.shared_with_insert = overlap(slice);
-  for (const auto* values : {&slice.weight, &slice.tolerance}) {
+  for (const auto* values : {&slice.weight, &slice.tolerance, &slice.delivered}) {
     for (const float v : *values) found.least = std::min(found.least, v);
   }
   return found;
@@ -76,8 +76,8 @@ void judge(int k, const Findings& found, const Circle& circle) {
                                  " voxels; cut the insert out of the part"};
   }
   if (found.least < 0) {
-    throw Error{Fault::data,
-                where + "a weight or tolerance is " + format_number(found.least) + "; none may be below 0"};
+    throw Error{Fault::data, where + "a weight, tolerance or delivered dose is " + format_number(found.least) +
+                                 "; none may be below 0"};
   }
   if (found.reach > circle.radius) {
     throw Error{Fault::data, where + "the part reaches " + format_number(found.reach, 4) +
@@ -109,6 +109,7 @@ std::vector<SliceData> SliceReader::read(int k, int count) const {
   take(source_.insert, &SliceData::insert);
   take(source_.weight, &SliceData::weight);
   take(source_.tolerance, &SliceData::tolerance);
+  take(source_.delivered, &SliceData::delivered);
   for (int i = 0; band_ && i < count; ++i) {
     std::vector<float>& weight = slices[i].weight;
     if (weight.empty()) weight.assign(pixels_, 1.0F);

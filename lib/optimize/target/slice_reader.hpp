@@ -21,12 +21,13 @@ struct VolumeSource {
   Read insert;         // coverage of an opaque insert; may be empty
   Read weight;         // relative cost of a voxel's error, >= 0; may be empty
   Read tolerance;      // maximum deviation of a voxel's response, >= 0; may be empty
+  Read delivered;      // dose that the voxels have received already, >= 0; may be empty
   double band_px = 0;  // half width of the unconstrained band around the surface
 };
 
 /// What one slice holds.
 struct SliceData {
-  std::vector<float> target, insert, weight, tolerance;  // the last three empty where the volume has none
+  std::vector<float> target, insert, weight, tolerance, delivered;  // all but the first empty where there is none
 };
 
 class SliceReader {
@@ -42,8 +43,8 @@ class SliceReader {
 };
 
 /// Digests of all slices, everything that they hold included. Throws Fault::data for a target that is empty, or full,
-/// or reaches beyond the circle, one that shares voxels with the insert, and weights or tolerances below 0; `grey`:
-/// values are doses, so a full target is as good as any.
+/// or reaches beyond the circle, one that shares voxels with the insert, and weights, tolerances or doses below 0;
+/// `grey`: values are doses, so a full target is as good as any.
 [[nodiscard]] std::vector<SliceDigest> check(const VolumeSource& source, light::Shape shape,
                                              const model::Circle& circle, bool grey);
 

@@ -40,8 +40,14 @@ inline vam::optimize::Problem make_problem(const float* slices, int count, int w
                                            const float* weight = nullptr, const float* tolerance = nullptr,
                                            bool stacked = false) {
   check(demands);
-  vam::optimize::Problem problem{
-      .slices = 0, .stacked = stacked, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
+  vam::optimize::Problem problem{.slices = 0,
+                                 .stacked = stacked,
+                                 .target = {},
+                                 .labels = {},
+                                 .demands = demands,
+                                 .weight = {},
+                                 .tolerance = {},
+                                 .delivered = {}};
   const auto pixels = static_cast<std::size_t>(width) * height;
   const auto from = [&](const float* images, int first) {
     return images == nullptr ? nullptr : images + static_cast<std::size_t>(first) * pixels;

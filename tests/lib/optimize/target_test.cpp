@@ -87,11 +87,11 @@ TEST_CASE("a target is refused with its slice: out of reach, shared with an inse
   volume.weight.assign(volume.target.size(), 0);
   CHECK(volume.checked().size() == 20);
   Volume::at(volume.weight, 3, 0, 8) = -0.25F;
-  CHECK(has(volume.refusal(), "slice 3: a weight or tolerance is -0.25;"));
+  CHECK(has(volume.refusal(), "slice 3: a weight, tolerance or delivered dose is -0.25;"));
   volume = {};
   volume.tolerance.assign(volume.target.size(), 0.1F);
   Volume::at(volume.tolerance, 19, 8, 8) = -0.5F;
-  CHECK(has(volume.refusal(), "slice 19: a weight or tolerance is -0.5;"));
+  CHECK(has(volume.refusal(), "slice 19: a weight, tolerance or delivered dose is -0.5;"));
 }
 
 TEST_CASE("a target without part or void is refused, of doses one without part alone") {

@@ -21,7 +21,7 @@ PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerS
 bool clip_above(std::vector<Slab>& g, float peak);
 /// Clips the light to at most `peak`; its dose follows. Losses are compared with that of the start, so it must be
 /// allowed itself.
-void enter_bounds(const light::Operator& light, float peak, Iterate& iterate);
+void enter_bounds(const Problem& problem, const light::Operator& light, float peak, Iterate& iterate);
 
 /// Largest value that light may take: options.max_intensity as a sinogram value, or no limit when that is 0.
 [[nodiscard]] float largest_light(const MethodOptions& options, const light::Operator& light);

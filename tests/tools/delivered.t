@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Light for what is left of a dose: a print whose first half was too bright below and too dark above is completed.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+volumes() { python3 "$VAM_SOURCE/tests/tools/volumes.py" "$@"; }
+pw() { json "$1" pw; }
+resin='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05'
+vam-slice $resin --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb
+vam-optimize $resin --angles 90 part.vdb -o whole.exr --report whole.json
+vam-dose $resin whole.exr --like part.vdb --exposure-plan -o whole.vdb
+volumes fall whole.vdb 0.5 0.35 half.vdb
+
+rest="vam-optimize $resin --angles 90 part.vdb --delivered half.vdb --init whole.exr"
+quiet 'light for the rest' $rest --iterations 10 -o rest.exr --report rest.json
+vam-dose $resin rest.exr --like part.vdb -o turn.vdb
+showings=$(awk "BEGIN { print $(json rest.json turns) * $(json rest.json multiplier) }")
+volumes sum half.vdb turn.vdb "$showings" sum.vdb
+volumes sum half.vdb whole.vdb 0.5 open.vdb
+for one in whole sum open; do vam-score $resin $one.vdb --target part.vdb --report $one.score.json >/dev/null; done
+holds 'half and half of the same light do not print' "$(json open.score.json ver) > 0 && $(pw open.score.json) < 0"
+holds 'half and the light that was computed for the rest do' "$(json sum.score.json ver) == 0 && $(pw sum.score.json) > 0.6 * $(pw whole.score.json)"
+holds 'at the critical dose' "$(json sum.score.json threshold) > 47 && $(json sum.score.json threshold) < 53"
+holds 'as its report says' "($(pw sum.score.json) - $(pw rest.json)) ^ 2 < 0.01 ^ 2"
+ok 'as many turns as are left' $rest --turns 1 --iterations 10 -o one.exr --report one.json
+holds 'are enough' "$(json one.json turns) == 1 && $(json one.json ver) == 0"
+
+fails 64 'delivered.*requires --init|--delivered requires --init' vam-optimize $resin --angles 90 part.vdb --delivered half.vdb -o none.exr
+fails 64 'method osmo does not use it' $rest --method osmo -o none.exr
+fails 64 '--delivered: does not apply to --shortest' $rest --shortest -o none.exr
+fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --angles 90 part.vdb --delivered half.vdb --init whole.exr -o none.exr
+vam-dose whole.exr --like part.vdb -o relative.vdb
+fails 65 "relative.vdb: the dose is in units of 'relative', not mJ/cm3" vam-optimize $resin --angles 90 part.vdb --delivered relative.vdb --init whole.exr -o none.exr
+vam-dose $resin whole.exr -o other.vdb
+fails 65 'other.vdb: has [0-9].* but light reaches .*compute it by vam-dose --like' vam-optimize $resin --angles 90 part.vdb --delivered other.vdb --init whole.exr -o none.exr
+volumes fall whole.vdb 0.5 1.5 negative.vdb
+fails 65 'a dose is 0 and more' vam-optimize $resin --angles 90 part.vdb --delivered negative.vdb --init whole.exr -o none.exr
+done_testing
