@@ -161,7 +161,7 @@ same "its report" parts.json whole.json
 is "its state is removed on completion" "$(ls run.state 2>/dev/null)" ""
 
 # Passes that have not begun when the run is interrupted start from the coarser levels, as they do in one run.
-vam-slice --shape boat --voxel 0.1 -o boat.vdb
+vam-slice --shape boat --voxel 0.14 -o boat.vdb
 passes() { timeout -s INT "$1" vam-optimize --geometry parallel --angles 60 --no-blur --iterations 30 --patience 0 \
   --checkpoint passes.state boat.vdb -o "$2"; }
 passes 100 passes.exr

@@ -16,6 +16,7 @@
 #include "solid/mesh/surface_samples.hpp"
 #include "solid/shapes/shapes.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "trials.hpp"
 
 using namespace vam;
 using vam::model::TriangleSoup;
@@ -245,18 +246,19 @@ double misplaced_mm(const TriangleSoup& right, const TriangleSoup& print, const 
 
 }  // namespace
 
-TEST_CASE("48 to 57 % of a print lie where they belong, ten of ten") {
+TEST_CASE("48 to 57 % of a print lie where they belong, every time") {
   const Design boat = design_of("boat:length=10", {60, 60, 60}, 0.2);
   const solid::Surface surface(boat.mesh);
   REQUIRE(solid::bounding_box(boat.mesh).largest_side() > 8);
-  for (std::uint64_t draw = 0; draw < 10; ++draw) {
+  const auto draws = static_cast<std::uint64_t>(trials_or(4));
+  for (std::uint64_t draw = 0; draw < draws; ++draw) {
     CAPTURE(draw);
     std::uint64_t seed = scrambled(draw + 1);
     const auto next = [&] { return unit_interval(seed = scrambled(seed)); };
     Vector3 normal{next() - 0.5, next() - 0.5, next() - 0.5};
     normal = (1 / length(normal)) * normal;
-    const TriangleSoup right =
-        part_of(boat.field, boat.grid, normal, 0.48 + 0.01 * static_cast<double>(draw), 0.05, draw);
+    const TriangleSoup right = part_of(boat.field, boat.grid, normal,
+                                       0.48 + 0.1 * static_cast<double>(draw) / static_cast<double>(draws), 0.05, draw);
     const Vector3 axis{next() - 0.5, next() - 0.5, next() - 0.5};
     const TriangleSoup print = moved(right, turn(axis, 360 * next(), {30, -12, 4}));
     const auto found = solid::align(print, boat.mesh, surface, {});
