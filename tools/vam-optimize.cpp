@@ -99,7 +99,7 @@ void run(const cli::App& app, Options& options) {
   std::optional<optimize::Trials> trials;
   if (options.printer_tolerances) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
   sink.commit();  // hours of work, which no figure or report shall undo
-  publish(outcome, trials, scene, in.target.front(), info, options);
+  publish(task, outcome, trials, scene, in.target.front(), info, options);
   beginning.remove();
 }
 

@@ -21,6 +21,10 @@ holds 'half and half of the same light do not print' "$(json open.score.json ver
 holds 'half and the light that was computed for the rest do' "$(json sum.score.json ver) == 0 && $(pw sum.score.json) > 0.6 * $(pw whole.score.json)"
 holds 'at the critical dose' "$(json sum.score.json threshold) > 47 && $(json sum.score.json threshold) < 53"
 holds 'as its report says' "($(pw sum.score.json) - $(pw rest.json)) ^ 2 < 0.01 ^ 2"
+holds 'which states how much there was' "($(json rest.json delivered.part_mean_percent) - 60) ^ 2 < 10 ^ 2 && $(json rest.json delivered.void_gelled_voxels) == 0"
+volumes fall whole.vdb 1.6 0 over.vdb
+vam-optimize $resin --angles 90 part.vdb --delivered over.vdb --init whole.exr --iterations 2 -o late.exr 2>late
+ok 'what has gelled in the void is a warning' grep -q 'over.vdb: [0-9]* voxels of the void have received the critical dose already' late
 ok 'as many turns as are left' $rest --turns 1 --iterations 10 -o one.exr --report one.json
 holds 'are enough' "$(json one.json turns) == 1 && $(json one.json ver) == 0"
 

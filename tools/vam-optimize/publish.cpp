@@ -19,6 +19,7 @@
 #include "optimize/run/limited_by.hpp"
 #include "score/exposure_plan.hpp"
 #include "score/verdict.hpp"
+#include "vam-optimize/delivered.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
 #include "vam-optimize/front.hpp"
@@ -65,8 +66,9 @@ void write_proof(const optimize::Certificate& proof, const Scene& scene, const i
 
 }  // namespace
 
-void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials, const Scene& scene,
-             const io::SparseVolume& target, const model::StackInfo& info, const Options& options) {
+void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
+             const std::optional<optimize::Trials>& trials, const Scene& scene, const io::SparseVolume& target,
+             const model::StackInfo& info, const Options& options) {
   const model::Printer& printer = scene.printer;
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
@@ -79,6 +81,7 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
     const double voxel_mm = scene.grid.voxel_mm;
     report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
   }
+  add_delivered(report, task.source, scene, options);
   const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, printer, info, options);
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be

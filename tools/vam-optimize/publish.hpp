@@ -14,7 +14,8 @@
 namespace vam::optimize_tool {
 
 /// Warnings on stderr; the files of --trace and --report where they are requested.
-void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials, const Scene& scene,
-             const io::SparseVolume& target, const model::StackInfo& info, const Options& options);
+void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
+             const std::optional<optimize::Trials>& trials, const Scene& scene, const io::SparseVolume& target,
+             const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -2,7 +2,6 @@
 #include "vam-optimize/task.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "base/per_slice.hpp"
@@ -11,10 +10,10 @@
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/covered.hpp"
-#include "model/grid_size.hpp"
 #include "optimize/target/void_rule.hpp"
 #include "resin/absolute_dose.hpp"
 #include "slices.hpp"
+#include "vam-optimize/delivered.hpp"
 #include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
@@ -95,33 +94,6 @@ void add_void_rule(optimize::VolumeSource& source, std::size_t pixels, const Opt
   const double most = options.void_rule == "below" ? options.demands.window.low : *options.void_band;
   source.tolerance = optimize::with_void(source.target, source.tolerance, static_cast<float>(options.demands.band),
                                          pixels, [most](float& value) { value = static_cast<float>(most); });
-}
-
-bool is_same(const model::Grid& a, const model::Grid& b) {
-  constexpr double rounding = 0.01;  // voxels
-  double apart = std::abs(a.voxel_mm - b.voxel_mm) * std::max({a.nx, a.ny, a.nz});
-  for (int axis = 0; axis < 3; ++axis) apart = std::max(apart, std::abs(a.origin_mm[axis] - b.origin_mm[axis]));
-  return a.nx == b.nx && a.ny == b.ny && a.nz == b.nz && apart < rounding * a.voxel_mm;
-}
-
-/// Dose over the threshold of the resin is relative dose over that of the projections.
-optimize::VolumeSource::Read delivered_dose(const Scene& scene, const Inputs& in, const Options& options) {
-  if (in.delivered.empty()) return {};
-  const io::SparseVolume& dose = in.delivered.front();
-  if (!is_same(dose.grid(), scene.grid)) {
-    throw Error{Fault::data, options.delivered + ": has " + model::place_text(dose.grid()) + ", but light reaches " +
-                                 model::place_text(scene.grid) +
-                                 "; compute it by vam-dose --like with this target and these settings"};
-  }
-  const auto critical = scene.printer.resin.critical_dose_mj_cm3;
-  if (!critical) {
-    throw Error{Fault::usage, "--delivered: the threshold of the resin is not known; set resin.critical_dose_mj_cm3"};
-  }
-  const auto relative = static_cast<float>(options.demands.window.threshold() / *critical);
-  return [&dose, relative](int k, int count, float* to) {
-    dose.read_slices(k, count, to);
-    std::for_each_n(to, dose.grid().slice_size() * static_cast<std::size_t>(count), [&](float& v) { v *= relative; });
-  };
 }
 
 optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const Options& options) {

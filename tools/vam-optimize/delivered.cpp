@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vam-optimize/delivered.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/log.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/grid_size.hpp"
+
+namespace vam::optimize_tool {
+
+namespace {
+
+bool is_same(const model::Grid& a, const model::Grid& b) {
+  constexpr double rounding = 0.01;  // voxels
+  double apart = std::abs(a.voxel_mm - b.voxel_mm) * std::max({a.nx, a.ny, a.nz});
+  for (int axis = 0; axis < 3; ++axis) apart = std::max(apart, std::abs(a.origin_mm[axis] - b.origin_mm[axis]));
+  return a.nx == b.nx && a.ny == b.ny && a.nz == b.nz && apart < rounding * a.voxel_mm;
+}
+
+}  // namespace
+
+optimize::VolumeSource::Read delivered_dose(const Scene& scene, const Inputs& in, const Options& options) {
+  if (in.delivered.empty()) return {};
+  const io::SparseVolume& dose = in.delivered.front();
+  if (!is_same(dose.grid(), scene.grid)) {
+    throw Error{Fault::data, options.delivered + ": has " + model::place_text(dose.grid()) + ", but light reaches " +
+                                 model::place_text(scene.grid) +
+                                 "; compute it by vam-dose --like with this target and these settings"};
+  }
+  const auto critical = scene.printer.resin.critical_dose_mj_cm3;
+  if (!critical) {
+    throw Error{Fault::usage, "--delivered: the threshold of the resin is not known; set resin.critical_dose_mj_cm3"};
+  }
+  const auto relative = static_cast<float>(options.demands.window.threshold() / *critical);
+  return [&dose, relative](int k, int count, float* to) {
+    dose.read_slices(k, count, to);
+    std::for_each_n(to, product(count, dose.grid().slice_size()), [&](float& v) { v *= relative; });
+  };
+}
+
+void add_delivered(Json& report, const optimize::VolumeSource& source, const Scene& scene, const Options& options) {
+  if (!source.delivered) return;
+  const double threshold = options.demands.window.threshold();
+  double part_dose = 0;
+  std::int64_t part = 0, gelled = 0;
+  std::vector<float> dose(scene.grid.slice_size()), target(dose.size());
+  for (int k = 0; k < scene.grid.nz; ++k) {
+    source.delivered(k, 1, dose.data());
+    source.target(k, 1, target.data());
+    for (std::size_t i = 0; i < dose.size(); ++i) {
+      const model::Label label = model::label_of(target[i]);
+      const auto received = static_cast<double>(dose[i]);
+      if (label == model::Label::part) {
+        part_dose += received;
+        ++part;
+      }
+      if (label == model::Label::void_ && received >= threshold) ++gelled;
+    }
+  }
+  const double percent = part > 0 ? 100 * part_dose / (static_cast<double>(part) * threshold) : 0;
+  report["delivered"] = {{"part_mean_percent", percent}, {"void_gelled_voxels", gelled}};
+  if (gelled == 0) return;
+  warn(options.delivered + ": " + std::to_string(gelled) +
+       " voxels of the void have received the critical dose already, which no light can undo");
+}
+
+}  // namespace vam::optimize_tool
