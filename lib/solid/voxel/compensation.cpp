@@ -49,7 +49,7 @@ model::Volume deviation_volume(const model::TriangleSoup& print, const model::Tr
 std::size_t rounds_to_apply(std::span<const double> rms_mm, double uncertainty_mm) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < rms_mm.size(); ++i) {
-    if (!(rms_mm[i] < rms_mm[best] - uncertainty_mm)) return best;
+    if (!(rms_mm[i] < rms_mm[best] - uncertainty_mm)) return rms_mm[i] < rms_mm[best] ? i : best;
     best = i;
   }
   return rms_mm.size();

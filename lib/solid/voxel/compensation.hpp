@@ -21,7 +21,8 @@ namespace vam::solid {
                                              const model::Grid& grid);
 
 /// How many of the rounds, in their order, make the best correction: all of them while each is better than those
-/// before by more than `uncertainty_mm`; else those before the best, which was printed with them: it has settled.
+/// before by more than `uncertainty_mm`; else it has settled, at the best up to there, which was printed with the
+/// rounds before it.
 [[nodiscard]] std::size_t rounds_to_apply(std::span<const double> rms_mm, double uncertainty_mm);
 
 /// The design displaced by -damping times the sum of the deviations of these rounds, as a closed surface at their

@@ -131,6 +131,7 @@ TEST_CASE("rounds are applied while they help") {
   CHECK(rounds({0.13}) == 1);
   CHECK(rounds({0.13, 0.06, 0.05}) == 3);
   CHECK(rounds({0.1325, 0.059, 0.0496, 0.0524}) == 2);  // the third print was the best: made with two
+  CHECK(rounds({0.0482, 0.0186, 0.0180, 0.01}) == 2);   // hardly better, but no worse
   CHECK(rounds({0.1325, 0.059, 0.0595, 0.01}) == 1);    // settled: what came after was not printed with it
   CHECK(rounds({0.13, 0.14}) == 0);
 }
