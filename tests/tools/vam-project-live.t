@@ -74,6 +74,37 @@ print(worst <= 5 + 1e-9)
 PY
 is 'every frame is the one nearest to the angle' "$(cat angles)" True
 
+# New projections between turns: the frames change at a turn's begin, without a dark image; what does not fit is refused.
+mkdir new
+cp part.exr new/earlier.exr
+vam-project part.exr -o null: --speed 180 --turns 4 --max-missed 0.9 --log renewed --frames-from new &
+tool=$!
+await grep -qs '"frame":[0-9]' renewed
+$exr make small.exr space=projector width=64 height=12 count=3
+mv small.exr new/a.exr
+$exr make other.part space=projector width=64 height=36 count=3 value=0.25
+mv other.part new/b.exr
+wait $tool
+is 'a print whose projections were renewed' $? 0
+is 'one was refused' "$(grep '"event":"frames-refused"' renewed | grep -c 'new/a.exr: 64 columns x 12 angles, but the print shows 64 x 36; compute it')" 1
+is 'one was shown' "$(grep -c '"event":"frames",' renewed)" 1
+is 'with its hash' "$(grep '"event":"frames",' renewed | grep -c "$(sha256sum <new/b.exr | cut -d' ' -f1)")" 1
+python3 - >between <<'PY'
+import json
+flips, at = [], None
+for line in map(json.loads, open("renewed")):
+    if line["event"] == "frames": at, turn = len(flips), line["turn"]
+    if line["event"] == "flip": flips.append(line)
+lit = [i for i, flip in enumerate(flips) if flip["frame"] >= 0]
+print(all(flips[i]["frame"] >= 0 for i in range(lit[0], lit[-1])), flips[at]["frame"], abs(flips[at]["angle_deg"] - 360 * turn) <= 10)
+PY
+is 'nothing dark between, the first frame at the begin of a turn' "$(cat between)" 'True 0 True'
+for one in part new/b; do vam-dose $one.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o dose.vdb --report ${one#new/}.json; done
+holds 'each was shown for whole turns, all of them together' \
+  "($(json part.json shown_turns) + $(json b.json shown_turns) - 4) ^ 2 < 0.1 ^ 2 && $(json b.json shown_turns) > 0.9"
+fails 66 'nowhere: cannot read the folder' vam-project part.exr -o null: --turns 1 --speed 180 --frames-from nowhere
+fails 64 'frames-from: applies only to a display' vam-project part.exr -o x.mkv --frames-from new
+
 wait $early
 is 'a stage that ends is an error' $? 75
 ok 'which is reported' grep -q 'ended after line 550' errors2

@@ -106,9 +106,8 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
   std::vector<double> turns(info.height);
   for (const std::string& run : options.shown) {
     require_unchanged(run);
-    io::require_sinogram_of(run, options.input);
     const double intensity = intensity_of(run, run == options.shown.front(), printer);
-    const auto of_run = io::turns_shown(io::read_shown(run), rows, printer.stage.speed_deg_s);
+    const auto of_run = io::turns_shown(io::read_shown(run, options.input), rows, printer.stage.speed_deg_s);
     std::transform(turns.begin(), turns.end(), of_run.begin(), turns.begin(),
                    [&](double sum, double one) { return sum + intensity * one; });
   }

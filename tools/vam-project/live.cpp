@@ -30,6 +30,23 @@ void Live::add(const GreyImage& levels) {
   ++frames_;
 }
 
+void Live::offer(device::ScreenFrames frames, const Json& facts) {
+  auto offer = std::make_unique<Offer>(Offer{std::move(frames), facts});
+  const std::lock_guard lock(offering_);
+  offer_.swap(offer);
+}
+
+// The screen does not wait for a thread that just offers others: these come a turn later.
+void Live::take_offer(int turn) {
+  const std::unique_lock lock(offering_, std::try_to_lock);
+  if (!lock.owns_lock() || offer_ == nullptr || offer_->taken) return;
+  display_->exchange(offer_->frames);
+  offer_->taken = true;
+  Json facts{{"turn", turn}};
+  facts.update(offer_->facts);
+  log_("frames", facts);
+}
+
 // From here on each flip is a heartbeat.
 void Live::begin() {
   device::hurry(device::Urgency::driver);
@@ -53,6 +70,7 @@ device::PlayTally Live::play(int frames_per_turn, double speed_deg_s, int turns)
   plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
   plan.allowed_missed = options_.allowed_missed;
   plan.allowed_missed_lit = options_.allowed_missed_lit;
+  plan.next_turn = [this](int turn) { take_offer(turn); };
   return ended(device::play(*display_, lamp(), *angles, clock_, plan, logger()));
 }
 

@@ -4,11 +4,13 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "base/json.hpp"
 #include "device/os/event_log.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/projector/player.hpp"
@@ -27,13 +29,25 @@ class Live {
   void add(const GreyImage& levels);
   /// A line of the log that is no flip.
   void note(const std::string& event, const Json& facts) { log_(event, facts); }
+  /// Frames in place of those that are shown, from the next turn on, and what of them is logged then; from any thread.
+  /// Others that have not been shown yet are dropped.
+  void offer(device::ScreenFrames frames, const Json& facts);
+  [[nodiscard]] device::DisplayMode mode() const { return display_->mode(); }
   /// The frames of whole turns are loaded: prints with them.
   device::PlayTally play(int frames_per_turn, double speed_deg_s, int turns);
   /// Shows the loaded frames one after the other.
   device::PlayTally play_through(double hold_s, bool forever);
 
  private:
+  /// Frames that wait for their turn; afterwards those they have replaced, whose memory is given back elsewhere.
+  struct Offer {
+    device::ScreenFrames frames;
+    Json facts;
+    bool taken = false;
+  };
+
   void begin();
+  void take_offer(int turn);
   [[nodiscard]] device::Lamp* lamp();
   device::PlayTally ended(const device::PlayTally& tally);
   std::function<void(const device::FlipRecord&)> logger();
@@ -47,6 +61,8 @@ class Live {
   std::optional<device::RelayedLamp> relayed_;
   std::unique_ptr<device::Display> display_;
   int frames_ = 0;
+  std::mutex offering_;
+  std::unique_ptr<Offer> offer_;
 };
 
 /// Preloads what it is given; commit() plays it.

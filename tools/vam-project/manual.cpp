@@ -113,7 +113,8 @@ std::vector<std::string> notes() {
       "drm: "
       "sets and verifies it; sdl: uses that of the desktop (xrandr --gamma 1:1:1 makes it linear).",
       "Memory. The lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
-      "x 200 slices x 400 lit columns: 115 MB), and a few frames. Frames cannot be computed slice by slice.",
+      "x 200 slices x 400 lit columns: 115 MB), and a few frames; a display takes all frames, a byte per pixel, and "
+      "with --frames-from those to come and those they replace as well. Frames cannot be computed slice by slice.",
       "PNG: 1, 2, 4 and 8 bits are stored at that depth. 10 bits are stored in 16, spread over the full range and "
       "marked by an sBIT chunk, as the PNG specification requires; a shift to the right by 6 restores the level. "
       "Video: "

@@ -77,6 +77,12 @@ void add_live(cli::App& app, Options& all) {
   app.option("--max-missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
              "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.")
       .was("--missed-lit");
+  app.option(
+      "--frames-from", "FOLDER", options.frames_from,
+      "Look for new projections in this folder while printing: a sinogram (EXR) that appears in it takes the place "
+      "of the one that is shown, from the next turn on, without a dark image. It must have the same columns, "
+      "angles and full scale and be for the same printer; one that is not is reported in the log, and the frames "
+      "stay, as they do while new ones are late.");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error.");
@@ -146,7 +152,7 @@ void refuse_unknown_display(const std::string& output) {
 void refuse_live(const cli::App& app, const std::string& output) {
   refuse_unknown_display(output);
   for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--max-missed",
-                           "--max-missed-lit", "--plan", "--log"}) {
+                           "--max-missed-lit", "--plan", "--log", "--frames-from"}) {
     if (!app.given(flag)) continue;
     throw Error{Fault::usage, std::string(flag) + ": applies only to a display, but the output is " +
                                   (output == "-" ? "standard output" : output) + "; give -o " +

@@ -26,6 +26,7 @@ struct LiveOptions {
   std::optional<int> frames_per_turn;
   double from_deg = 0;
   bool with_parent = false;
+  std::string frames_from;  // folder
 };
 
 struct PatternOptions {

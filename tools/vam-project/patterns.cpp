@@ -69,9 +69,9 @@ model::StackInfo stack_info(const model::Projector& projector, int count) {
 namespace {
 
 void refuse_options_of_prints(const cli::App& app) {
-  for (const char* flag :
-       {"--turns", "--speed", "--print-speed", "--full-scale", "--multiplier", "--dither", "--flatland",
-        "--column-offset", "--row-offset", "--frames-per-turn", "--from", "--accept-printer", "--freeze", "--report"}) {
+  for (const char* flag : {"--turns", "--speed", "--print-speed", "--full-scale", "--multiplier", "--dither",
+                           "--flatland", "--column-offset", "--row-offset", "--frames-per-turn", "--from",
+                           "--frames-from", "--accept-printer", "--freeze", "--report"}) {
     if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to --pattern; omit it"};
   }
 }

@@ -3,16 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-project/live.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/plan.hpp"
+#include "vam-project/renewal.hpp"
 #include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"
 
@@ -61,6 +65,22 @@ void warn_of_dose(const Options& options, const io::StackReader& reader, const m
        format_number(turns / reached, 4) + " turns (--turns)");
 }
 
+/// The light of a sinogram that is to take the place of another. Throws Fault::data unless it is as large, for the same
+/// printer.
+Light read_renewed(const std::string& path, Options options, const model::StackInfo& former,
+                   const model::Printer& printer) {
+  options.input = path;
+  io::StackReader reader(path);
+  const model::StackInfo& info = reader.info();
+  if (info.width != former.width || info.height != former.height || info.angle_step_deg != former.angle_step_deg) {
+    throw Error{Fault::data, path + ": " + std::to_string(info.width) + " columns x " + std::to_string(info.height) +
+                                 " angles, but the print shows " + std::to_string(former.width) + " x " +
+                                 std::to_string(former.height) + "; compute it with the same options"};
+  }
+  (void)require_printer(options, info, printer);
+  return read_light(options, reader, printer.projector);
+}
+
 // One turn's frames, or those of the turns that differ, into the display, then the print: the angle of the stage
 // chooses the frame.
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader,
@@ -73,10 +93,21 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
   const Dithering dithering = dithering_of(options, frames, turns);
   const auto schedule = optics::frame_schedule(frames, 360, std::max(1, dithering.turns));
-  LiveSink sink(live, [&] { return live.play(frames, printer.stage.speed_deg_s, turns); });
+  const auto scale = static_cast<float>(options.multiplier / peak);
+  const auto renew = [&](const std::string& path) {
+    const Light renewed = read_renewed(path, options, reader.info(), printer);
+    ScreenSink screen(live.mode());
+    const auto seen = show(frames_of(renewed, schedule, dithering), scale, printer.projector, false, dithering, screen);
+    live.offer(std::move(screen.bytes),
+               {{"sinogram", path}, {"sinogram_sha256", io::sha256_of(path)}, {"clipped", seen.clipped}});
+  };
+  LiveSink sink(live, [&] {
+    std::optional<Renewal> renewal;
+    if (!options.live.frames_from.empty()) renewal.emplace(options.live.frames_from, live, renew);
+    return live.play(frames, printer.stage.speed_deg_s, turns);
+  });
   const Frames shown = frames_of(light, schedule, dithering);
-  const auto tally = show(shown, static_cast<float>(options.multiplier / peak), printer.projector, app.given("--bits"),
-                          dithering, sink);
+  const auto tally = show(shown, scale, printer.projector, app.given("--bits"), dithering, sink);
   Json report = figures(shown, printer.projector.bits, peak, tally);
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
   if (!differences.empty()) report["printer_differences"] = differences;

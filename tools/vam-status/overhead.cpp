@@ -122,7 +122,9 @@ std::string overhead_figure(const RunFolder& run, const LightView& light, bool l
   return "<figure><h2>Vial from above: dose so far</h2>" + drawing_of(run, light, lit, high) + colour_bar(high, unit) +
          "<figcaption>Slice at z = " + format_number(light.middle_mm(), 3) + " mm." + gels +
          " The red mark is stage angle 0 and turns with the vial; the profile below is the projected intensity in that "
-         "slice.</figcaption></figure>\n";
+         "slice." +
+         (run.renewed() ? " The dose of the projections that took the place of the first ones is not shown." : "") +
+         "</figcaption></figure>\n";
 }
 
 }  // namespace vam::status_tool

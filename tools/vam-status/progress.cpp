@@ -83,8 +83,10 @@ void RunFolder::load_settings() {
 std::string RunFolder::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
 
 std::vector<io::ShownImage> RunFolder::shown() const {
-  return flips_ ? flips_->shown() : std::vector<io::ShownImage>{};
+  return flips_ ? flips_->shown_of("") : std::vector<io::ShownImage>{};
 }
+
+bool RunFolder::renewed() const { return flips_ && !flips_->renewals().empty(); }
 
 void RunFolder::read() {
   load_settings();

@@ -46,7 +46,10 @@ class RunFolder {
   [[nodiscard]] const PrintProgress& progress() const { return progress_; }
   /// Of the run's frozen settings.
   [[nodiscard]] const model::Printer& printer() const { return printer_; }
+  /// Of the sinogram that the print began with.
   [[nodiscard]] std::vector<io::ShownImage> shown() const;
+  /// Whether others have taken its place.
+  [[nodiscard]] bool renewed() const;
   [[nodiscard]] std::string file(const std::string& name) const;
 
  private:

@@ -2,6 +2,7 @@
 // A screen that shows preloaded frames at its vertical blanks: the image input of a projector [devices §4].
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct Flip {
   double time_s = 0;
 };
 
+/// Frames as a screen takes them: screen_bytes() each.
+using ScreenFrames = std::vector<std::vector<std::uint8_t>>;
+
 /// Black from the constructor to the destructor's end, except between present() of a frame and the next black one.
 /// Frames are 8-bit grey (fewer bits are spread to 0..255). Throws Error: absent (no such screen), busy (in use, or no
 /// flip in time), data (a frame of another size).
@@ -35,6 +39,8 @@ class Display {
   [[nodiscard]] virtual DisplayMode mode() const = 0;
   /// Preloads a frame and returns its index: 0, 1, ...
   virtual int add(const GreyImage& levels) = 0;
+  /// Takes these frames in place of all that it has, which it gives back, at once: what is on stays on until present().
+  virtual void exchange(ScreenFrames& frames) = 0;
   /// Shows frame `index`, or black for -1, from the next vertical blank on; returns when it is on.
   virtual Flip present(int index) = 0;
 

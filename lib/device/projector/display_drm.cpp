@@ -75,6 +75,11 @@ class DrmDisplay final : public Display {
     return count_of(frames_) - 1;
   }
 
+  void exchange(ScreenFrames& frames) override {
+    frames_.swap(frames);
+    held_ = {-1, -1};  // the images hold frames of before
+  }
+
   Flip present(int index) override {
     watch(index >= 0);
     const bool again = index >= 0 && held_[0] == index;  // it is on, or black followed it
@@ -180,7 +185,7 @@ class DrmDisplay final : public Display {
   std::unique_ptr<DrmBuffer> black_;
   std::array<std::unique_ptr<DrmBuffer>, 2> images_;  // that was shown last, and the other
   std::array<int, 2> held_{-1, -1};                   // frames, in them
-  std::vector<std::vector<std::uint8_t>> frames_;     // grey, at a byte a pixel
+  ScreenFrames frames_;                               // grey, at a byte a pixel
   std::uint64_t asked_ = 0;                           // flips so far
   Flip flip_;
   double connected_s_ = 0;  // when it was looked at last

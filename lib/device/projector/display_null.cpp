@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.hpp"
 #include "device/projector/display_backends.hpp"
 
 namespace vam::device {
@@ -19,6 +20,8 @@ class NullDisplay final : public Display {
     (void)screen_bytes(levels, mode_);  // what would not fit a screen does not fit this one
     return count_++;
   }
+
+  void exchange(ScreenFrames& frames) override { count_ = count_of(frames); }
 
   Flip present(int) override {
     auto sequence = static_cast<long>(std::floor((clock_.now_s() - origin_s_) * mode_.hz)) + 1;

@@ -88,6 +88,8 @@ class SdlDisplay final : public Display {
     return count_of(frames_) - 1;
   }
 
+  void exchange(ScreenFrames& frames) override { frames_.swap(frames); }
+
   Flip present(int index) override {
     draw(index);
     watch(index >= 0);
@@ -158,7 +160,7 @@ class SdlDisplay final : public Display {
   std::unique_ptr<SDL_Window, WindowCloser> window_;
   std::unique_ptr<SDL_Renderer, RendererCloser> renderer_;
   std::unique_ptr<SDL_Texture, TextureCloser> texture_;
-  std::vector<std::vector<std::uint8_t>> frames_;
+  ScreenFrames frames_;
   double origin_s_ = 0;
   double next_s_ = 0;
 };

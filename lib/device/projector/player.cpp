@@ -132,6 +132,7 @@ PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, 
   const double end_deg = 360.0 * plan.turns;
   const long loaded = plan.frames > 0 ? plan.frames : plan.frames_per_turn;
   bool light_is_on = false;
+  int turn = static_cast<int>(plan.from_deg / 360);
   for (;;) {
     check_interrupted();  // a display with blanks of its own never sleeps by the clock
     bool switched = false;
@@ -154,6 +155,10 @@ PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, 
       light_is_on = switched = true;
     }
     const auto nearest = static_cast<long>(std::lround(predicted->angle_deg / step_deg));
+    if (lit && nearest / plan.frames_per_turn > turn) {
+      turn = static_cast<int>(nearest / plan.frames_per_turn);
+      if (plan.next_turn) plan.next_turn(turn);
+    }
     // The engine's answer may take a blank, while all is black.
     const bool counted = predicted->angle_deg >= plan.from_deg - 360 && !switched;
     presenter.show(lit ? static_cast<int>(nearest % loaded) : -1, *predicted, counted);

@@ -31,11 +31,21 @@ std::string armed_sinogram(const std::string& run) {
   return "";
 }
 
+std::string log_of(const std::string& run) {
+  return std::filesystem::is_directory(run) ? (std::filesystem::path(run) / "flips.jsonl").string() : run;
+}
+
+// SHA-256 of the sinograms that took the place of others; none while there is no log.
+std::vector<std::string> renewals_of(const std::string& run) {
+  if (!std::filesystem::exists(log_of(run))) return {};
+  FlipLog log(run);
+  log.read();
+  return log.renewals();
+}
+
 }  // namespace
 
-FlipLog::FlipLog(const std::string& path)
-    : file_(std::filesystem::is_directory(path) ? (std::filesystem::path(path) / "flips.jsonl").string() : path),
-      stream_(file_) {
+FlipLog::FlipLog(const std::string& path) : file_(log_of(path)), stream_(file_) {
   if (!stream_.is_open()) throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(errno)};
 }
 
@@ -51,9 +61,13 @@ void FlipLog::read() {
     ++line_;
     const Json event = parse_json(text);
     try {
-      if (event.at("event") == "display" && !flips_.empty()) flips_.back().last = true;  // another run begins
+      if (event.at("event") == "display") begin_run();
+      if (event.at("event") == "frames") {
+        renewals_.push_back(event.at("sinogram_sha256"));
+        renewal_ = renewals_.size();
+      }
       if (event.at("event") != "flip") continue;
-      const LoggedFlip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false};
+      const LoggedFlip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false, renewal_};
       flips_.push_back(flip);
       if (flip.angle_deg < last_run_up_deg) continue;
       const long missed = event.value("missed", 0L);
@@ -65,26 +79,59 @@ void FlipLog::read() {
   }
 }
 
-std::vector<ShownImage> FlipLog::shown() const {
+void FlipLog::begin_run() {
+  if (!flips_.empty()) flips_.back().last = true;
+  renewal_ = 0;
+}
+
+template <class Counts>
+std::vector<ShownImage> FlipLog::images(const Counts& counts) const {
   std::vector<ShownImage> shown;
+  double before_s = 0;
   for (std::size_t i = 0; i < flips_.size(); ++i) {
     if (flips_[i].frame < 0) continue;
     const bool last = flips_[i].last || i + 1 == flips_.size();
-    const double seconds = !last ? flips_[i + 1].t_s - flips_[i].t_s : shown.empty() ? 0 : shown.back().seconds;
-    shown.push_back({flips_[i].angle_deg, std::max(0.0, seconds)});
+    const double seconds = !last ? std::max(0.0, flips_[i + 1].t_s - flips_[i].t_s) : before_s;
+    before_s = seconds;
+    if (counts(flips_[i])) shown.push_back({flips_[i].angle_deg, seconds});
   }
   return shown;
 }
 
-std::vector<ShownImage> read_shown(const std::string& path) {
-  FlipLog log(path);
+std::vector<ShownImage> FlipLog::shown() const {
+  return images([](const LoggedFlip&) { return true; });
+}
+
+std::vector<ShownImage> FlipLog::shown_of(const std::string& sinogram_sha256) const {
+  const bool renewed = std::find(renewals_.begin(), renewals_.end(), sinogram_sha256) != renewals_.end();
+  return images([&](const LoggedFlip& flip) {
+    return renewed ? flip.renewal > 0 && renewals_[flip.renewal - 1] == sinogram_sha256 : flip.renewal == 0;
+  });
+}
+
+std::vector<ShownImage> read_shown(const std::string& run) {
+  FlipLog log(run);
   log.read();
   return log.shown();
 }
 
+std::vector<ShownImage> read_shown(const std::string& run, const std::string& sinogram) {
+  require_sinogram_of(run, sinogram);
+  FlipLog log(run);
+  log.read();
+  return log.renewals().empty() ? log.shown() : log.shown_of(sha256_of(sinogram));
+}
+
 void require_sinogram_of(const std::string& run, const std::string& sinogram) {
+  const std::vector<std::string> later = renewals_of(run);
   const std::string armed = armed_sinogram(run);
-  if (armed.empty() || sinogram == "-" || armed == sha256_of(sinogram)) return;
+  if (later.empty() && (armed.empty() || sinogram == "-")) return;
+  if (sinogram == "-") {
+    throw Error{Fault::data, run + ": showed " + std::to_string(1 + later.size()) +
+                                 " sinograms one after the other; give one of them as a file"};
+  }
+  const std::string given = sha256_of(sinogram);
+  if (armed.empty() || armed == given || std::find(later.begin(), later.end(), given) != later.end()) return;
   throw Error{Fault::data, sinogram + ": is not the sinogram of " + run + ", whose SHA-256 begins " +
                                armed.substr(0, 8) + "; give the one that was shown"};
 }

@@ -143,6 +143,7 @@ class LateDisplay final : public Display {
   explicit LateDisplay(VirtualClock& clock) : clock_(clock), origin_s_(clock.now_s()) {}
   [[nodiscard]] DisplayMode mode() const override { return {16, 8, 60}; }
   int add(const GreyImage&) override { return count_++; }
+  void exchange(ScreenFrames&) override {}
   Flip present(int) override {
     const long sequence = std::max(sequence_ + 1, std::lround((clock_.now_s() - origin_s_) * 60));
     const double late_s = ++presented_ % 10 == 0 ? 0.007 : 0;

@@ -117,6 +117,7 @@ class Watched final : public Display {
   explicit Watched(Clock& clock) : inner_(open_display("null:", {4, 4, 60}, clock, nullptr)) {}
   DisplayMode mode() const override { return inner_->mode(); }
   int add(const GreyImage& levels) override { return inner_->add(levels); }
+  void exchange(ScreenFrames& frames) override { inner_->exchange(frames); }
   Flip present(int index) override {
     shown = index;
     lit = lit || index >= 0;
@@ -130,6 +131,29 @@ class Watched final : public Display {
 };
 
 }  // namespace
+
+TEST_CASE("Frames may be exchanged before the first frame of a turn, and nothing dark is between") {
+  VirtualClock clock;
+  Watched display(clock);
+  for (int i = 0; i < 4; ++i) display.add(GreyImage(4, 4, 8));
+  PlayPlan plan;
+  plan.frames_per_turn = 4;
+  plan.turns = 3;
+  plan.from_deg = 90;
+  std::vector<FlipRecord> flips;
+  std::vector<std::pair<int, std::size_t>> turns;  // and the flips before
+  plan.next_turn = [&](int turn) { turns.emplace_back(turn, flips.size()); };
+  const auto angles = elapsed_angle(90, clock);
+  play(display, nullptr, *angles, clock, plan, [&](const FlipRecord& record) { flips.push_back(record); });
+  REQUIRE(turns.size() == 3);  // the last turn ends with the frame of the angle 0
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto [turn, before] = turns[i];
+    CHECK(turn == static_cast<int>(i) + 1);
+    CHECK(flips[before - 1].frame == 3);
+    CHECK(flips[before].frame == 0);
+    CHECK(std::abs(flips[before].angle_deg - (360.0 * turn - 45)) < 3);
+  }
+}
 
 TEST_CASE("A light engine that fails in a print: the right fault, the screen black, the LEDs off where it answers") {
   const std::vector<std::pair<const char*, Fault>> cases{

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "fault_of.hpp"
+#include "io/stream/stream.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::Fault;
@@ -47,6 +48,30 @@ TEST_CASE("in a log of several runs an image ends with its run") {
   REQUIRE(shown.size() == 3);
   CHECK(shown[1].seconds == 1);
   CHECK(shown[2].seconds == 2);
+}
+
+TEST_CASE("flips count for the sinogram whose frames were on") {
+  const scratch::Folder folder;
+  const std::string first = folder.write("first.exr", "one");
+  const std::string second = folder.write("second.exr", "two");
+  const auto renewal = [](const std::string& file) {
+    return R"({"event":"frames","turn":1,"sinogram_sha256":")" + vam::io::sha256_of(file) + "\"}\n";
+  };
+  const std::string log = folder.write("flips.jsonl", flip(10, 0, 0) + flip(11, 1, 90) + renewal(second) +
+                                                          flip(13, 0, 360) + flip(14, 1, 450) + flip(18, -1, 720));
+  const auto before = read_shown(log, first);
+  REQUIRE(before.size() == 2);
+  CHECK(before.back().seconds == 2);
+  const auto after = read_shown(log, second);
+  REQUIRE(after.size() == 2);
+  CHECK(after.front().angle_deg == 360);
+  CHECK(after.back().seconds == 4);
+  CHECK(read_shown(log).size() == 4);
+  error_of([&] { (void)read_shown(log, "-"); }, Fault::data);
+  const std::string armed = R"({"event":"arm","sinogram_sha256":")" + vam::io::sha256_of(first) + "\"}\n";
+  (void)folder.write("events.jsonl", armed);
+  CHECK(read_shown(folder.path.string(), second).size() == 2);
+  error_of([&] { (void)read_shown(folder.path.string(), folder.write("third.exr", "three")); }, Fault::data);
 }
 
 TEST_CASE("a log with a truncated last line is read, another file is refused") {
