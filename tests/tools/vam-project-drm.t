@@ -9,6 +9,7 @@ card=$VAM_BUILD/lib/vam-test/drm_card.so
 tiny_print part.exr
 printf '[stage]\nspeed_deg_s = 360\n' >>printer.toml
 judge="python3 $VAM_SOURCE/tests/device/drm_trials.py"
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 shown() { grep '"shade"' card/log | tail -n 1 | grep -o '"shade":"[a-z]*"'; }
 print() { rm -f card/log flips leds; LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 "$@"; }
 
@@ -20,6 +21,25 @@ is 'every flip showed the frame in its log line, at that blank' "$(cut -d' ' -f1
 holds 'of 36 frames and black nearly all' "$(cut -d' ' -f2 judged) > 30"
 is 'black at the end' "$(shown)" '"shade":"black"'
 is 'the gamma table is linear' "$(grep -o '"straight":.' card/log)" '"straight":1'
+
+# New projections from the next turn on, to the byte, without a dark image.
+mkdir new
+$exr make other.part space=projector width=64 height=36 count=3 value=0.25
+cp other.part other.exr
+vam-project part.exr -o frames1/ --fps 1 --speed 10 --full-scale 1
+vam-project other.exr -o frames2/ --fps 1 --speed 10 --full-scale 1
+rm -f flips; print --max-missed 1 --log flips --turns 6 --full-scale 1 --frames-from new &
+tool=$!
+await grep -qs '"frame":[0-9]' flips
+mv other.part new/other.exr
+wait $tool
+is 'a print whose projections are renewed has status 0' $? 0
+sed '/"event":"frames"/,$d' flips >flips1
+sed '1,/"event":"frames"/d' flips >flips2
+$judge images frames1 flips1 >judged1
+$judge images frames2 flips2 >judged2
+is 'every flip showed the frame of its sinogram' "$(cut -d' ' -f1 judged1 judged2 | tr '\n' ' ')" 'exact exact '
+is 'the new ones begin with frame 0' "$(head -n 1 flips2 | grep -o '"frame":-*[0-9]*')" '"frame":0'
 
 is 'RGB is sent in full range, its bits are left alone' "$(grep -o '"full_range.*' card/log)" '"full_range":1,"bpc":12}'
 is 'in the mode that the screen prefers' "$(grep -o '"columns":[0-9]*' card/log | sort -u)" '"columns":64'
