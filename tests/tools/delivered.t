@@ -25,6 +25,10 @@ holds 'which states how much there was' "($(json rest.json delivered.part_mean_p
 volumes fall whole.vdb 1.6 0 over.vdb
 vam-optimize $resin --angles 90 part.vdb --delivered over.vdb --init whole.exr --iterations 2 -o late.exr 2>late
 ok 'what has gelled in the void is a warning' grep -q 'over.vdb: [0-9]* voxels of the void have received the critical dose already' late
+volumes fall half.vdb 0.25 0 quarter.vdb
+volumes fall half.vdb 0.75 0 rest.vdb
+ok 'doses of several projections' vam-optimize $resin --angles 90 part.vdb --delivered quarter.vdb --delivered rest.vdb --init whole.exr --iterations 10 -o two.exr --report two.json
+holds 'add up' "($(json two.json delivered.part_mean_percent) - $(json rest.json delivered.part_mean_percent)) ^ 2 < 1e-6 && ($(pw two.json) - $(pw rest.json)) ^ 2 < 1e-8"
 ok 'as many turns as are left' $rest --turns 1 --iterations 10 -o one.exr --report one.json
 holds 'are enough' "$(json one.json turns) == 1 && $(json one.json ver) == 0"
 

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 
@@ -27,9 +28,10 @@ bool is_same(const model::Grid& a, const model::Grid& b) {
 
 optimize::VolumeSource::Read delivered_dose(const Scene& scene, const Inputs& in, const Options& options) {
   if (in.delivered.empty()) return {};
-  const io::SparseVolume& dose = in.delivered.front();
-  if (!is_same(dose.grid(), scene.grid)) {
-    throw Error{Fault::data, options.delivered + ": has " + model::place_text(dose.grid()) + ", but light reaches " +
+  for (std::size_t i = 0; i < in.delivered.size(); ++i) {
+    const model::Grid& grid = in.delivered[i].grid();
+    if (is_same(grid, scene.grid)) continue;
+    throw Error{Fault::data, options.delivered[i] + ": has " + model::place_text(grid) + ", but light reaches " +
                                  model::place_text(scene.grid) +
                                  "; compute it by vam-dose --like with this target and these settings"};
   }
@@ -38,9 +40,13 @@ optimize::VolumeSource::Read delivered_dose(const Scene& scene, const Inputs& in
     throw Error{Fault::usage, "--delivered: the threshold of the resin is not known; set resin.critical_dose_mj_cm3"};
   }
   const auto relative = static_cast<float>(options.demands.window.threshold() / *critical);
-  return [&dose, relative](int k, int count, float* to) {
-    dose.read_slices(k, count, to);
-    std::for_each_n(to, product(count, dose.grid().slice_size()), [&](float& v) { v *= relative; });
+  return [&doses = in.delivered, &scene, relative](int k, int count, float* to) {
+    std::vector<float> dose(product(count, scene.grid.slice_size()));
+    std::fill_n(to, dose.size(), 0.0F);
+    for (const io::SparseVolume& one : doses) {
+      one.read_slices(k, count, dose.data());
+      for (std::size_t i = 0; i < dose.size(); ++i) to[i] += relative * dose[i];
+    }
   };
 }
 
@@ -66,7 +72,7 @@ void add_delivered(Json& report, const optimize::VolumeSource& source, const Sce
   const double percent = part > 0 ? 100 * part_dose / (static_cast<double>(part) * threshold) : 0;
   report["delivered"] = {{"part_mean_percent", percent}, {"void_gelled_voxels", gelled}};
   if (gelled == 0) return;
-  warn(options.delivered + ": " + std::to_string(gelled) +
+  warn(join(options.delivered, ", ") + ": " + std::to_string(gelled) +
        " voxels of the void have received the critical dose already, which no light can undo");
 }
 

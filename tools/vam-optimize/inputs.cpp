@@ -47,7 +47,7 @@ Inputs read(const Options& options) {
   if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice writes one"};
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
   if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));
-  if (!options.delivered.empty()) in.delivered.push_back(read_dose(options.delivered));
+  for (const std::string& path : options.delivered) in.delivered.push_back(read_dose(path));
   if (!in.insert.empty())
     in.insert.front().extend_to(in.grid(), options.input);  // other programs leave the void around it out
   for (const auto& [volumes, file] :

@@ -17,7 +17,8 @@ namespace vam::optimize_tool {
 /// The volumes of a job, those after the target may be missing. All are on one grid but the dose that was delivered,
 /// which is that of all resin that light reaches.
 struct Inputs {
-  std::vector<io::SparseVolume> target, insert, weight, tolerance, delivered;  // at most one each
+  std::vector<io::SparseVolume> target, insert, weight, tolerance;  // at most one each
+  std::vector<io::SparseVolume> delivered;                          // doses, which add
 
   [[nodiscard]] const model::Grid& grid() const { return target.front().grid(); }
 };

@@ -113,7 +113,7 @@ void declare_stopping(cli::App& app, Options& options) {
                  "dose (VDB, in mJ/cm3) that the resin has received already, as of vam-dose --shown: the projections "
                  "complete it to the target's, the threshold being resin.critical_dose_mj_cm3. --init are the "
                  "projections for the whole dose, of which the optimisation starts with the share that is left; "
-                 "figures of merit and report are those of both doses together.")
+                 "figures of merit and report are those of both doses together. Several doses add up.")
       .reads()
       .needs({"--init"});
   app.flag(

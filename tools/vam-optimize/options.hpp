@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
@@ -26,7 +27,7 @@ struct Options {
   optimize::Demands demands;  // target constraints
   double surface_margin_mm = 0;
   std::string weights, band_volume;
-  std::string delivered;  // dose of the resin before this light
+  std::vector<std::string> delivered;  // doses of the resin before this light
   std::string response = "logistic";
   std::string void_rule = "met";
   double void_weight = 1;
