@@ -11,7 +11,9 @@
 #include "base/image.hpp"
 #include "base/index.hpp"
 #include "base/random.hpp"
+#include "sim/bench/print.hpp"
 #include "sim/bench/private/beams.hpp"
+#include "sim/bench/private/sight_lines.hpp"
 
 namespace vam::sim {
 
@@ -29,6 +31,7 @@ double height_at_axis_mm(const model::Printer& printer) {
 constexpr int rays_a_column = 5;         // of the camera
 constexpr int most_blurs = 9;            // widths of the beam between its narrowest and its widest place
 constexpr double scatter_per_mm = 0.08;  // of full scale
+constexpr double most_speck = 0.2;       // of full scale
 constexpr double reference_us = 20000;
 constexpr double fwhm_per_sigma = 2.354820045;
 
@@ -46,6 +49,25 @@ struct ColumnSight {
   std::vector<float> blurs;  // which of the beam's widths it has, between two of them
 };
 
+// Dirt that stays in the image.
+struct SimSpeck {
+  double column, row, radius_px;
+  double light;  // of full scale
+};
+
+void add_specks(const std::vector<SimSpeck>& specks, Image& light) {
+  for (const SimSpeck& speck : specks) {
+    for (int r = 0; r < light.height; ++r) {
+      if (std::abs(r - speck.row) > speck.radius_px) continue;
+      for (int c = 0; c < light.width; ++c) {
+        if (std::hypot(c - speck.column, r - speck.row) <= speck.radius_px) {
+          light(c, r) += static_cast<float>(speck.light);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 struct SimScene::State {
@@ -58,6 +80,8 @@ struct SimScene::State {
   std::vector<double> blurs_px;     // standard deviations of the beam, from its focus outwards
   double furthest_mm = 0;           // from the focus to the end of the resin
   std::vector<ColumnSight> sights;  // of each column
+  std::optional<SightLines> lines;  // to what light has cured
+  std::vector<SimSpeck> specks;
 
   State(const SimBench& about, int binning, int depth) : bench(about), bits(depth), beams(about.printer) {
     columns = bench.columns / binning;
@@ -71,6 +95,17 @@ struct SimScene::State {
     }
     const auto to_camera = outer_shells(bench.printer, bench.printer.camera.index_resin);
     for (int c = 0; c < columns; ++c) sights.push_back(sight(c, to_camera));
+    if (bench.resin) lines.emplace(bench.printer, columns, rows, pixel_mm);
+    for (int n = 0; n < bench.specks; ++n) specks.push_back(speck(n));
+  }
+
+  // Bright or dark, of one to three pixels.
+  [[nodiscard]] SimSpeck speck(int n) const {
+    std::uint64_t key = scrambled(static_cast<std::uint64_t>(bench.seed) << 32 ^ static_cast<std::uint64_t>(n));
+    const auto next = [&key] { return unit_interval(key = scrambled(key)); };
+    SimSpeck made{next() * columns, next() * rows, 0.5 + next(), 0};
+    made.light = (next() < 0.5 ? -0.5 : 1) * most_speck * next();
+    return made;
   }
 
   [[nodiscard]] ColumnSight sight(int column, const SimShells& shells) const {
@@ -190,7 +225,10 @@ Image SimScene::State::light(const SimMoment& moment) const {
   const double seen_mm = aside_mm * std::cos(azimuth) + along_mm * std::sin(azimuth);
   // Heights in the vial look enlarged [OST22 eq S6].
   const double enlarged = printer.camera.distance_mm / height_at_axis_mm(printer);
-  GlowingRow glowing(*this, moment.image, bench.centre_px + aside_mm / printer.projector.pixel_mm);
+  Image cured;
+  if (moment.print != nullptr) cured = lines->view(moment.print->resin(), moment.print->part_rad(moment.angle_deg));
+  GlowingRow glowing(*this, bench.glow > 0 ? moment.image : nullptr,
+                     bench.centre_px + aside_mm / printer.projector.pixel_mm);
   for (int r = 0; r < rows; ++r) {
     const double z_mm = (0.5 * (rows - 1) - r) * pixel_mm / enlarged;
     const double half_mm = 0.5 * pixel_mm / enlarged;
@@ -202,10 +240,11 @@ Image SimScene::State::light(const SimMoment& moment) const {
       const double from = c - moved_px;
       const auto left = floor_int(from);
       const double part = from - left;
-      double value = printed(from, z_mm, moment.angle_deg, growth);
+      double value = moment.print == nullptr ? printed(from, z_mm, moment.angle_deg, growth) : 0;
       for (const auto& [column, weight] : {std::pair(left, 1 - part), std::pair(left + 1, part)}) {
         if (column < 0 || column >= columns) continue;
         value += weight * row_glow[column];
+        if (moment.print != nullptr) value += weight * scatter_per_mm * cured(column, r);
       }
       image(c, r) = static_cast<float>(value);
     }
@@ -232,6 +271,7 @@ GreyImage SimScene::render(const std::vector<SimMoment>& exposure, double exposu
       light.values[i] += static_cast<float>(moment.share) * part.values[i];
     }
   }
+  add_specks(s.specks, light);
   GreyImage levels(s.columns, s.rows, s.bits);
   const double gain = exposure_us / reference_us;
   const double reach = 0.25 * (s.columns * s.columns + s.rows * s.rows);

@@ -5,13 +5,17 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/pixels.hpp"
 #include "model/printer.hpp"
 #include "sim/bench/body.hpp"
+#include "sim/bench/photoresin.hpp"
 
 namespace vam::sim {
+
+class SimPrint;
 
 /// The bench and its faults, as they truly are: what a calibration has to find.
 struct SimBench {
@@ -33,7 +37,10 @@ struct SimBench {
   double background = 0.02;   // of full scale
   double noise = 0;           // standard deviation, of full scale
   std::vector<SimBody> bodies{{1.5, 0, 0, 2.5, 0}, {-3.5, 1.0, 0, 1.2, 6.0}};
-  double lit_s = 20;  // light that makes the print; its volume grows in proportion; 0: it is there
+  double lit_s = 20;              // light that makes the print; its volume grows in proportion; 0: it is there
+  std::optional<SimResin> resin;  // that light cures, instead of bodies that grow
+  double lamp_drift_per_min = 0;  // relative change of its light, from the first on
+  int specks = 0;                 // on window or lens, that stay where they are
   int seed = 1;
 };
 
@@ -43,6 +50,7 @@ struct SimMoment {
   const GreyImage* image = nullptr;  // that the projector shows; none: black
   double lit_s = 0;                  // how long there was light so far
   double share = 1;                  // of the exposure
+  const SimPrint* print = nullptr;   // that light has cured; none: bodies
 };
 
 /// Renders frames of one size.

@@ -6,6 +6,7 @@
 
 #include "base/index.hpp"
 #include "base/json.hpp"
+#include "sim/bench/print.hpp"
 
 namespace vam::sim {
 
@@ -13,10 +14,17 @@ namespace {
 constexpr double kept_s = 5;  // of the logs, for a camera that looks back
 constexpr double finest_turn_deg = 0.5;
 constexpr int most_parts = 8;
+constexpr double cured_turn_deg = 1;
+constexpr double most_cured_s = 4;  // at once
+constexpr double late_s = 0.2;      // that logs may come after what they tell
 }  // namespace
 
-SimWorld::SimWorld(SimSources sources, double start_s)
-    : sources_(std::move(sources)), start_s_(start_s), angles_(sources_.angles), shown_(sources_.shown) {}
+SimWorld::SimWorld(SimSources sources, double start_s, SimPrint* print)
+    : sources_(std::move(sources)),
+      start_s_(start_s),
+      print_(print),
+      angles_(sources_.angles),
+      shown_(sources_.shown) {}
 
 // What the camera sees of it; with a filter that lets no projector light through (no images), nothing.
 const GreyImage* SimWorld::image(int frame) const {
@@ -45,8 +53,39 @@ void SimWorld::read_logs() {
     }
     flips_.push_back({t_s, line.value("frame", -1), lit_s});
   }
-  while (stage_.size() > 2 && stage_[1].t_s < stage_.back().t_s - kept_s) stage_.pop_front();
-  while (flips_.size() > 2 && flips_[1].t_s < flips_.back().t_s - kept_s) flips_.pop_front();
+}
+
+void SimWorld::forget() {
+  const auto old = [this](double t_s, double last_s) {
+    return t_s < last_s - kept_s && (!cured_s_ || t_s < *cured_s_);
+  };
+  while (stage_.size() > 2 && old(stage_[1].t_s, stage_.back().t_s)) stage_.pop_front();
+  while (flips_.size() > 2 && old(flips_[1].t_s, flips_.back().t_s)) flips_.pop_front();
+}
+
+// Light of the logs, image by image, the stage turning by a degree at most meanwhile; what is in them by then only. A
+// client does not wait long for a frame: what is behind is made up for in several.
+void SimWorld::cure(double until_s) {
+  if (print_ == nullptr) return;
+  if (!cured_s_) cured_s_ = flips_.empty() ? start_s_ : std::min(start_s_, flips_.front().t_s);
+  until_s = std::min(until_s, *cured_s_ + most_cured_s);
+  std::vector<double> cuts{*cured_s_};
+  for (const Shown& flip : flips_) {
+    if (flip.t_s > *cured_s_ && flip.t_s < until_s) cuts.push_back(flip.t_s);
+  }
+  cuts.push_back(until_s);
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    const double seconds = cuts[i + 1] - cuts[i];
+    if (!(seconds > 0)) continue;
+    const bool dark = moment(0.5 * (cuts[i] + cuts[i + 1])).image == nullptr;
+    const double turn_deg = std::abs(angle_deg(cuts[i + 1]) - angle_deg(cuts[i]));
+    const int parts = dark ? 1 : std::max(1, ceil_int(turn_deg / cured_turn_deg));
+    for (int n = 0; n < parts; ++n) {
+      const SimMoment now = moment(cuts[i] + (n + 0.5) * seconds / parts);
+      print_->pass(now.image, now.angle_deg, seconds / parts);
+    }
+  }
+  cured_s_ = std::max(*cured_s_, until_s);
 }
 
 double SimWorld::angle_deg(double t_s) const {
@@ -61,6 +100,7 @@ double SimWorld::angle_deg(double t_s) const {
 
 SimMoment SimWorld::moment(double t_s) const {
   SimMoment moment;
+  moment.print = print_;
   moment.angle_deg = angle_deg(t_s);
   if (sources_.shown.empty()) {
     moment.image = image(0);
@@ -78,11 +118,15 @@ SimMoment SimWorld::moment(double t_s) const {
 
 SimMoment SimWorld::at(double t_s) {
   read_logs();
+  cure(t_s - late_s);
+  forget();
   return moment(t_s);
 }
 
 std::vector<SimMoment> SimWorld::during(double from_s, double to_s) {
   read_logs();
+  cure(from_s - late_s);
+  forget();
   const double turn_deg = std::abs(angle_deg(to_s) - angle_deg(from_s));
   const int parts = std::clamp(ceil_int(turn_deg / finest_turn_deg), 1, most_parts);
   std::vector<double> cuts;

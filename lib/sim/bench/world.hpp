@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,7 +27,8 @@ struct SimSources {
 /// Times are on CLOCK_MONOTONIC, as in the logs.
 class SimWorld {
  public:
-  SimWorld(SimSources sources, double start_s);
+  /// print: that the light cures, from the first flip on.
+  SimWorld(SimSources sources, double start_s, SimPrint* print = nullptr);
   /// The moment t_s; times must not fall by more than a second from call to call.
   SimMoment at(double t_s);
   /// What an exposure sees: cut where the image changes, and so finely that the stage turns by half a degree at most
@@ -43,12 +45,16 @@ class SimWorld {
     double lit_before_s;  // light there had been until then
   };
   void read_logs();
+  void cure(double until_s);
+  void forget();
   [[nodiscard]] const GreyImage* image(int frame) const;
   [[nodiscard]] double angle_deg(double t_s) const;
   [[nodiscard]] SimMoment moment(double t_s) const;
 
   SimSources sources_;
   double start_s_;
+  SimPrint* print_;
+  std::optional<double> cured_s_;  // all light until then has reached the resin
   LogTail angles_;
   LogTail shown_;
   std::deque<TableSample> stage_;
