@@ -2,6 +2,7 @@
 // What simulated cameras have in common, in this process (sim:) or behind a network (vam-sim-camera).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "device/camera/camera.hpp"
+#include "sim/bench/print.hpp"
 #include "sim/bench/world.hpp"
 #include "sim/controllers/device.hpp"
 
@@ -21,13 +23,14 @@ struct SimCameraSettings {
   double exposure_us = 20000;
   int bits = 8;
   std::string maker = "aravis";
-  std::optional<device::StampMoment> stamp;  // that time stamps name; none: as the maker says
-  bool latch = true;                         // the camera's clock can be read
-  double lag_s = 0;                          // from that moment to the time stamp
-  std::set<long> drop;                       // numbers of frames that never arrive
-  std::set<long> incomplete;                 // and of those whose lower half does not
-  long unplug = -1;                          // the camera is unplugged before this frame
-  long shrink = -1;                          // from this frame on, one after the first, images are half as high
+  std::optional<device::StampMoment> stamp;    // that time stamps name; none: as the maker says
+  bool latch = true;                           // the camera's clock can be read
+  double lag_s = 0;                            // from that moment to the time stamp
+  std::set<long> drop;                         // numbers of frames that never arrive
+  std::set<long> incomplete;                   // and of those whose lower half does not
+  long unplug = -1;                            // the camera is unplugged before this frame
+  std::function<void(const SimPrint&)> cured;  // every quarter turn, what light has made of the resin
+  long shrink = -1;                            // from this frame on, one after the first, images are half as high
 };
 
 /// "3,7" to numbers of frames. Throws Fault::usage.

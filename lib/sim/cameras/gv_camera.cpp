@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "sim/cameras/makers.hpp"
@@ -101,6 +102,8 @@ struct SimGvCamera::State {
   SimCameraSettings settings;
   SimLog log;
   ArvGvFakeCamera* server = nullptr;
+  std::optional<SimPrint> print;
+  int quarters = 0;  // turned when the print was handed over last
   std::optional<SimWorld> world;
   std::unique_ptr<GvClock> clock;
   device::StampMoment stamp = device::StampMoment::end;
@@ -133,7 +136,8 @@ struct SimGvCamera::State {
     const long number = next++;
     if (number == settings.unplug) std::_Exit(0);  // no goodbye: the cable is pulled
     if (number + 1 == settings.shrink) set(ARV_FAKE_CAMERA_REGISTER_HEIGHT, get(ARV_FAKE_CAMERA_REGISTER_HEIGHT) / 2);
-    if (!world) world.emplace(settings.sources, now_s);
+    if (settings.bench.resin && !print) print.emplace(settings.bench);
+    if (!world) world.emplace(settings.sources, now_s, print ? &*print : nullptr);
     const int bits = format == ARV_PIXEL_FORMAT_MONO_16 ? 16 : 8;
     const std::pair wanted(std::max(1U, get(ARV_FAKE_CAMERA_REGISTER_BINNING_HORIZONTAL)), bits);
     if (!scene || scene_of != wanted) {
@@ -150,6 +154,7 @@ struct SimGvCamera::State {
                              clock->ns(middle_s - device::to_middle_s(stamp, 1e-6 * exposure_us) + settings.lag_s));
     amplify(levels, number);
     copy(levels, buffer);
+    hand_over(moment.angle_deg);
     const bool lost = settings.drop.contains(number);
     const bool cut = settings.incomplete.contains(number);
     g_object_set(server, "gvsp-lost-ratio", lost ? 1.0 : cut ? cut_ratio : 0.0, nullptr);
@@ -162,6 +167,13 @@ struct SimGvCamera::State {
          {"angle_deg", moment.angle_deg},
          {"lit_s", moment.lit_s},
          {"levels", fingerprint(levels)}});
+  }
+
+  void hand_over(double angle_deg) {
+    const int now = floor_int(std::abs(angle_deg) / 90);
+    if (!print || !settings.cured || now == quarters || print->lit_s() == 0) return;
+    quarters = now;
+    settings.cured(*print);
   }
 
   // Gain in dB, as many makers count GainRaw or Gain. While it is automatic, as cameras are delivered, it wanders, and
