@@ -53,6 +53,8 @@ std::vector<std::string> description() {
       "part of the print; they remain in the volume, and --report counts them.",
       "--live reads views as they arrive, keeps the last full turn and, after every turn (or every --volume-step "
       "degrees), writes a volume into the folder -o and a line of JSON to --log, and updates --projections and --page. "
+      "A name in the folder appears when the volume is whole, and that of scatter-NNNN.vdb after its "
+      "uncertainty-NNNN.vdb (--uncertainties), so that a program that watches the folder can take both. "
       "With --target the cured, missing and overcured fractions of the target are reported; with --until one line of "
       "JSON on standard output reports that the conditions hold, and vam-ost exits: the signal to switch off the "
       "projector. Views are read while a volume is computed; dark and saturated views are skipped and counted. A turn "
@@ -66,7 +68,8 @@ std::vector<std::string> notes() {
       "300 "
       "pixels on two cores.",
       "Uncertainty. The noise of the views is measured in them (variance a + b times the value, from second "
-      "differences between neighbouring pixels) and taken through the same reconstruction twice; --uncertainty holds "
+      "differences between neighbouring pixels) and taken through the same reconstruction twice; --uncertainty and "
+      "--uncertainties hold "
       "the RMS over 9 x 9 x 9 voxels. Noise that neighbouring pixels share, as in compressed video, is "
       "underestimated; systematic errors (isovalue, pixel pitch, indices, absorption) are not contained. It triples "
       "the time and doubles the memory.",
@@ -176,6 +179,9 @@ void declare_print(cli::App& app, Options& o) {
 void declare_live(cli::App& app, Options& o) {
   app.group("Live");
   app.flag("--live", o.live, "Reconstruct while views arrive; -o is a folder.").form();
+  app.flag("--uncertainties", o.uncertainties,
+           "Write the standard deviations of each volume's values into the folder, too, before the volume.")
+      .needs({"--live"});
   app.option("--volume-step", "DEG", o.every_deg, cli::positive, "Angle between reconstructed volumes.")
       .was("--every")
       .needs({"--live"});
@@ -215,13 +221,13 @@ void once(const cli::App& app, const Options& options) {
   if (!made) throw Error{Fault::data, io::input_name(options.views) + ": " + problem};
   model::Volume& volume = *made;
   print.require_in(volume);
-  session.write(volume, options.output, source.history());
+  session.write(volume, options.output, {source.history()});
   print.keep(volume);
   print.require_kept();
   std::optional<metrology::VoxelUncertainty> sigma;
   if (!options.uncertainty.empty()) {
     sigma = session.uncertainty(views);
-    session.write(*sigma, options.uncertainty, source.history());
+    session.write(*sigma, options.uncertainty, {source.history()});
   }
   print.write(volume, sigma ? &*sigma : nullptr);
   Json report = session.figures(volume);
@@ -244,9 +250,12 @@ void run(const cli::App& app, const Options& options) {
   }
   if (!options.projections.empty()) plot::require_figures();
   if (!options.uncertainty.empty() && options.live) {
-    throw Error{Fault::usage, "--uncertainty: describes one volume; not with --live"};
+    throw Error{Fault::usage, "--uncertainty: describes one volume; not with --live, which has --uncertainties"};
   }
-  if (!options.uncertainty.empty() && options.how.mlem_iterations > 0) {
+  if (options.uncertainties && options.output == "-") {
+    throw Error{Fault::usage, "--uncertainties: go where the volumes go; name a folder by -o"};
+  }
+  if ((!options.uncertainty.empty() || options.uncertainties) && options.how.mlem_iterations > 0) {
     throw Error{Fault::usage, "--uncertainty: is that of filtered back-projection; not with --mlem-iterations"};
   }
   options.live ? ost_tool::live(app, options) : once(app, options);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <span>
 #include <utility>
 
 #include "base/error.hpp"
@@ -36,6 +38,13 @@ void write_page(const Options& options, int index, const Json& line) {
           "\" style=\"max-width:100%\">\n");
 }
 
+// When its views were taken, for whoever compares volumes over time.
+std::map<std::string, std::string> facts_of(const std::vector<metrology::CameraView>& views, double turns) {
+  return {{"vam:turns", format_number(turns, 6)},
+          {"vam:time_s", format_number(views.back().time_s, 12)},
+          {"vam:span_s", format_number(views.back().time_s - views.front().time_s, 6)}};
+}
+
 std::vector<model::Condition> conditions_of(const Options& options) {
   if (options.until.empty()) return {};
   return model::parse_conditions(options.until, metrology::cured_names(), {"missing", "overcure"});
@@ -53,11 +62,9 @@ class Turns {
     if (options.output != "-") std::filesystem::create_directories(options.output);
   }
 
-  bool finish(model::Volume& volume, Json line, const std::vector<std::string>& history) {
-    char name[32];
-    std::snprintf(name, sizeof name, "scatter-%04d.vdb", index_++);
-    if (options_.output != "-")
-      session_.write(volume, (std::filesystem::path(options_.output) / name).string(), history);
+  bool finish(model::Volume& volume, std::span<const metrology::CameraView> views, Json line,
+              const Session::Origin& origin) {
+    hand_over(volume, views, origin);
     print_.keep(volume);
     print_.write(volume);
     const auto state = print_.state(volume);
@@ -75,6 +82,19 @@ class Turns {
     std::puts(line.dump().c_str());
     std::fflush(stdout);
     return true;
+  }
+
+  // Whoever watches the folder for a volume finds its uncertainty there.
+  void hand_over(const model::Volume& volume, std::span<const metrology::CameraView> views,
+                 const Session::Origin& origin) {
+    char number[16];
+    std::snprintf(number, sizeof number, "-%04d.vdb", index_++);
+    if (options_.output == "-") return;
+    const std::filesystem::path folder(options_.output);
+    if (options_.uncertainties) {
+      session_.write(session_.uncertainty(views), (folder / ("uncertainty" + std::string(number))).string(), origin);
+    }
+    session_.write(volume, (folder / ("scatter" + std::string(number))).string(), origin);
   }
 
   void say(const Json& line) {
@@ -113,7 +133,8 @@ void live(const cli::App& app, const Options& options) {
     const bool due = turn.push(session.take(frame));
     if (!due) continue;
     Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}, {"frames_left_out", left_out}};
-    auto [volume, reason] = session.attempt(turn.views(), pixel_mm);
+    const std::vector<metrology::CameraView> views = turn.views();
+    auto [volume, reason] = session.attempt(views, pixel_mm);
     if (!volume) {  // nothing has gelled yet, or frames are missing: the next turn may be better
       if (turns.count() > 0) warn("no volume after " + format_number(turn.turns(), 3) + " turns: " + reason);
       problem = reason;
@@ -122,7 +143,7 @@ void live(const cli::App& app, const Options& options) {
       continue;
     }
     line["frames_waiting"] = frames.waiting();
-    if (turns.finish(*volume, std::move(line), history)) return;
+    if (turns.finish(*volume, views, std::move(line), {history, facts_of(views, turn.turns())})) return;
   }
   if (turns.count() == 0) {
     throw Error{Fault::data,

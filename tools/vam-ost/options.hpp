@@ -26,6 +26,7 @@ struct Options {
   std::string resin_record;
   std::string mesh, projections, uncertainty;
   bool live = false;
+  bool uncertainties = false;
   double every_deg = 360;
   std::string target, until, log, page;
   std::string report;

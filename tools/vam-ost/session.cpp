@@ -37,7 +37,8 @@ Session::Session(const cli::App& app, const Options& options)
 }
 
 metrology::CameraView Session::take(const io::CameraFrame& frame) {
-  metrology::CameraView view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg};
+  metrology::CameraView view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg,
+                             frame.time_s};
   if (width_ == 0) {
     width_ = view.image.width;
     height_ = view.image.height;
@@ -84,10 +85,10 @@ metrology::VoxelUncertainty Session::uncertainty(std::span<const metrology::Came
   return rig_->uncertainty(views);
 }
 
-io::SparseVolume Session::sparse(const std::string& name, const model::Volume& volume,
-                                 const std::vector<std::string>& history) const {
+io::SparseVolume Session::sparse(const std::string& name, const model::Volume& volume, const Origin& origin) const {
   io::SparseVolume made(name, volume.grid);
-  made.history = history;
+  made.history = origin.history;
+  made.metadata = origin.facts;
   made.history.push_back(app_.history());
   made.metadata["vam:printer"] = io::printer_settings(printer_);
   made.units = "view units per mm";
@@ -95,15 +96,13 @@ io::SparseVolume Session::sparse(const std::string& name, const model::Volume& v
   return made;
 }
 
-void Session::write(const model::Volume& volume, const std::string& path,
-                    const std::vector<std::string>& history) const {
-  io::SparseVolume made = sparse("scatter", volume, history);
+void Session::write(const model::Volume& volume, const std::string& path, const Origin& origin) const {
+  io::SparseVolume made = sparse("scatter", volume, origin);
   io::write_volume(path, made);
 }
 
-void Session::write(const metrology::VoxelUncertainty& voxels, const std::string& path,
-                    const std::vector<std::string>& history) const {
-  io::SparseVolume made = sparse("uncertainty", voxels.sigma, history);
+void Session::write(const metrology::VoxelUncertainty& voxels, const std::string& path, const Origin& origin) const {
+  io::SparseVolume made = sparse("uncertainty", voxels.sigma, origin);
   made.metadata["vam:correlation_xy"] = format_number(voxels.correlation_xy, 4);
   made.metadata["vam:correlation_z"] = format_number(voxels.correlation_z, 4);
   io::write_volume(path, made);

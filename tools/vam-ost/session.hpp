@@ -2,6 +2,7 @@
 // One run of vam-ost, from views to volumes: their corrections, the axis, the rig.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,9 +35,13 @@ class Session {
   Attempt attempt(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   /// Standard deviations of its voxels.
   [[nodiscard]] metrology::VoxelUncertainty uncertainty(std::span<const metrology::CameraView> views) const;
-  void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
-  void write(const metrology::VoxelUncertainty& voxels, const std::string& path,
-             const std::vector<std::string>& history) const;
+  /// What a written volume tells of its views.
+  struct Origin {
+    std::vector<std::string> history;
+    std::map<std::string, std::string> facts = {};
+  };
+  void write(const model::Volume& volume, const std::string& path, const Origin& origin) const;
+  void write(const metrology::VoxelUncertainty& voxels, const std::string& path, const Origin& origin) const;
   /// What was taken out of the views of the last volume.
   [[nodiscard]] Json dirt() const { return metrology::to_json(dirt_); }
   [[nodiscard]] Json run_out() const { return metrology::to_json(run_out_); }
@@ -46,7 +51,7 @@ class Session {
 
  private:
   [[nodiscard]] io::SparseVolume sparse(const std::string& name, const model::Volume& volume,
-                                        const std::vector<std::string>& history) const;
+                                        const Origin& origin) const;
   void say_dirt() const;
   void say_axis() const;
   [[nodiscard]] metrology::AxisEstimate axis_of(std::span<const metrology::CameraView> views) const;

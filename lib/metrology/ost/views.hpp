@@ -12,10 +12,11 @@
 
 namespace vam::metrology {
 
-/// One frame: columns along x_c, rows downwards along the axis, and the stage angle at which it was taken.
+/// One frame: columns along x_c, rows downwards along the axis, and the stage angle and the time at which it was taken.
 struct CameraView {
   Image image;
   double angle_deg = 0;
+  double time_s = 0;
 };
 
 /// What the camera adds by itself. Empty images mean none.
