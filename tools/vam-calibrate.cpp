@@ -11,6 +11,7 @@ namespace {
 using namespace vam;
 using calibrate_tool::ResinOptions;
 using calibrate_tool::ScanOptions;
+using calibrate_tool::WorkingCurveOptions;
 
 cli::Manual manual() {
   return {
@@ -37,6 +38,14 @@ cli::Manual manual() {
        "resin determines the gelation threshold I_p from the scattering volume of a printed standard cylinder "
        "(vam-ost): the threshold at which its cross-section, averaged over its height, has the known diameter. Its "
        "record is the --resin of vam-ost and vam-sdf.",
+       "working-curve determines the dose with which the resin gels, and how scattering follows the light, from parts "
+       "that were given several doses in one vial (a staircase of heights or sectors, which the sinogram contains or "
+       "the part has by itself) while vam-ost --live reconstructed it: voxels are put together by their dose "
+       "(vam-dose), "
+       "and the density of each class over the turns is fitted by a rise at the critical dose, the saturation and a "
+       "delay (vam-physics(7), Working curve of scattering). One volume, of the time after the print, gives all but "
+       "the "
+       "delay. Its record is a --resin, too.",
        "A frame with more than 0.01 % of its pixels (and more than 3) at full scale is refused as over-exposed; the "
        "error states the fraction. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "
@@ -176,7 +185,21 @@ void add_resin(cli::App& app, std::string& command, ResinOptions& o) {
   resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.");
 }
 
-void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
+void add_working_curve(cli::App& app, std::string& command, WorkingCurveOptions& o) {
+  auto& curve =
+      app.subcommand("working-curve", "scattering against dose and its delay, from a staircase of doses", command);
+  curve.positional("SCATTER", o.scatter, "Folder of volumes of vam-ost --live, or one volume (VDB).").reads();
+  curve.option("--dose", "FILE.vdb", o.dose, "Dose of the staircase in mJ/cm3 (vam-dose).").reads().required();
+  curve.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
+  curve.option("--lit-from", "TURNS", o.lit_from_turn, {-1e6, 1e6}, "Turns of the views before the light came on.");
+  curve.option("--lit-turns", "TURNS", o.lit_turns, cli::positive, "Turns with light.")
+      .default_is("those of the dose, if it states them, for one volume; all for a folder");
+  curve.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.")
+      .default_is("half of the saturation");
+  curve.option("--classes", "N", o.classes, {4, 256}, "Classes of dose.");
+}
+
+void declare(cli::App& app, ScanOptions& o, ResinOptions& resin, WorkingCurveOptions& curve) {
   add_edges(app, o);
   add_response(app, o);
   add_flat(app, o);
@@ -185,10 +208,17 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
   add_delays(app, o);
   add_check(app, o);
   add_resin(app, o.command, resin);
+  add_working_curve(app, o.command, curve);
 }
 
-void run(const cli::App& app, const ScanOptions& scan, const ResinOptions& resin) {
-  scan.command == "resin" ? calibrate_tool::measure_resin(resin) : calibrate_tool::run_scan(app, scan);
+void run(const cli::App& app, const ScanOptions& scan, const ResinOptions& resin, const WorkingCurveOptions& curve) {
+  if (scan.command == "resin") {
+    calibrate_tool::measure_resin(resin);
+  } else if (scan.command == "working-curve") {
+    calibrate_tool::measure_working_curve(curve);
+  } else {
+    calibrate_tool::run_scan(app, scan);
+  }
 }
 
 }  // namespace
@@ -202,6 +232,7 @@ int main(int argc, char** argv) {
   cli::App app(manual());
   ScanOptions scan;
   ResinOptions resin;
-  declare(app, scan, resin);
-  return app.run(argc, argv, [&] { run(app, scan, resin); });
+  WorkingCurveOptions curve;
+  declare(app, scan, resin, curve);
+  return app.run(argc, argv, [&] { run(app, scan, resin, curve); });
 }

@@ -46,11 +46,25 @@ struct ResinOptions {
   double profile_pixel_mm = 0.05;
 };
 
+/// working-curve: volumes of a staircase of doses, and the doses.
+struct WorkingCurveOptions {
+  std::string scatter;
+  std::string dose;
+  std::string record = "-";
+  double lit_from_turn = 0;
+  std::optional<double> lit_turns;
+  std::optional<double> isovalue;
+  int classes = 16;
+};
+
 /// Throws as the scan does, Fault::judged when its result must not be used.
 void run_scan(const cli::App& app, const ScanOptions& options);
 
 /// Writes the gelation threshold as a resin record. Throws Error: usage, no_input, data, no_output.
 void measure_resin(const ResinOptions& options);
+
+/// Writes scattering against dose as a resin record. Throws Error: usage, no_input, data, no_output.
+void measure_working_curve(const WorkingCurveOptions& options);
 
 // ---- frames.cpp: which pattern frame each camera frame shows
 

@@ -21,7 +21,7 @@ double gelation_isovalue(const std::string& path) {
   try {
     const Json record = parse_json(read_all(path, Content::text, most_bytes));
     if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
-    if (record.at("schema") != "vam-resin/1")
+    if (record.at("schema") != "vam-resin/1" && record.at("schema") != "vam-working-curve/1")
       throw Error{Fault::data,
                   path + ": not a record of vam-calibrate resin, its schema is " + record["schema"].dump()};
     require_seal(record, path);

@@ -6,8 +6,8 @@
 
 namespace vam::io {
 
-/// The gelation threshold I_p in the record that vam-calibrate resin wrote. Throws Error: no_input, data (not such a
-/// record, or its isovalue is not above 0).
+/// The gelation threshold I_p in the record that vam-calibrate resin or working-curve wrote. Throws Error: no_input,
+/// data (not such a record, or its isovalue is not above 0).
 [[nodiscard]] double gelation_isovalue(const std::string& path);
 
 }  // namespace vam::io

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The working curve of scattering, on the simulated resin, whose kinetics are other equations than those of the fit.
+#include "metrology/ost/curing_curve.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "fault_of.hpp"
+#include "sim/bench/photoresin.hpp"
+
+using namespace vam;
+
+namespace {
+
+struct Truth {
+  sim::SimResin resin;
+  double turn_s = 12;
+  int turns = 9;
+  double noise = 0.01;  // of the saturation, in a reading
+};
+
+/// A staircase of eight doses, one voxel each, over the turns; readings are means over a turn.
+std::vector<metrology::CuringReading> staircase(const Truth& truth, unsigned seed) {
+  constexpr int steps = 8;
+  sim::Photoresin resin(truth.resin, model::centred_grid(1, 1, steps, 1));
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, truth.noise);
+  std::vector<metrology::CuringReading> readings;
+  constexpr int parts = 600;  // a step late by 0.02 s
+  for (int turn = 0; turn < truth.turns; ++turn) {
+    std::vector<double> sums(steps);
+    for (int part = 0; part < parts; ++part) {
+      for (int k = 0; k < steps; ++k) {
+        const double per_turn = truth.resin.critical_dose_mj_cm3 * (0.08 + 0.03 * k);
+        resin.absorbed()[k] += static_cast<float>(per_turn / parts);
+      }
+      resin.react(truth.turn_s / parts);
+      for (int k = 0; k < steps; ++k) sums[k] += static_cast<double>(resin.scatter().values[k]) / parts;
+    }
+    for (int k = 0; k < steps; ++k) {
+      const double per_turn = truth.resin.critical_dose_mj_cm3 * (0.08 + 0.03 * k);
+      readings.push_back({per_turn, turn + 0.0, turn + 1.0, 0.08 * (sums[k] + normal(random)), 0.08 * truth.noise});
+    }
+  }
+  return readings;
+}
+
+Truth drawn(unsigned seed) {
+  std::mt19937_64 random(1000 + seed);
+  const auto between = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Truth truth;
+  truth.resin.critical_dose_mj_cm3 = between(30, 120);
+  truth.resin.induction = between(0.2, 0.7);
+  truth.resin.delay_s = between(1, 8);
+  truth.resin.inhibitor_diffusion_mm2_s = 0;
+  return truth;
+}
+
+}  // namespace
+
+TEST_CASE("The working curve finds critical dose and delay of simulated resins within its sigmas") {
+  constexpr unsigned seeds = 24;
+  int dose_within = 0;
+  int delay_within = 0;
+  double bias = 0;
+  for (unsigned seed = 0; seed < seeds; ++seed) {
+    const Truth truth = drawn(seed);
+    const auto curve = metrology::fit_curing_curve(staircase(truth, seed), 1e9, std::nullopt);
+    REQUIRE(curve.delay_turns);
+    const double off = curve.critical_dose_mj_cm3.value / truth.resin.critical_dose_mj_cm3 - 1;
+    const double delay_off = curve.delay_turns->value * truth.turn_s - truth.resin.delay_s;
+    bias += off / seeds;
+    dose_within += std::abs(off) * truth.resin.critical_dose_mj_cm3 < 2 * curve.critical_dose_mj_cm3.sigma ? 1 : 0;
+    delay_within += std::abs(delay_off) < 2 * curve.delay_turns->sigma * truth.turn_s ? 1 : 0;
+  }
+  CHECK(dose_within >= 21);  // of 24 at 95 %: 23, less than 21 in one of 30 cases
+  CHECK(delay_within >= 21);
+  CHECK(std::abs(bias) < 0.005);
+}
+
+TEST_CASE("A working curve of the end of a print has no delay, and the dose at an isovalue that is given") {
+  std::vector<metrology::CuringReading> readings;
+  for (int k = 0; k < 16; ++k) {  // logistic, long after 4 turns of light
+    const double per_turn = 5 + k;
+    const double scatter = 0.08 / (1 + std::exp((50 - 4 * per_turn) / 4));
+    readings.push_back({per_turn, 9, 10, scatter, 0.0001});
+  }
+  const auto half = metrology::fit_curing_curve(readings, 4, std::nullopt);
+  CHECK_FALSE(half.delay_turns);
+  CHECK(half.isovalue == doctest::Approx(0.04).epsilon(1e-4));
+  CHECK(half.critical_dose_mj_cm3.value == doctest::Approx(50).epsilon(1e-4));
+  CHECK(half.induction_dose_mj_cm3.value == doctest::Approx(42).epsilon(1e-3));
+  CHECK(half.rate_per_mj_cm3.value == doctest::Approx(1.0 / 16).epsilon(1e-3));
+  const auto lower = metrology::fit_curing_curve(readings, 4, 0.02);
+  CHECK(lower.critical_dose_mj_cm3.value == doctest::Approx(50 - 4 * std::log(3.0)).epsilon(1e-3));
+  CHECK(fault_of([&] { (void)metrology::fit_curing_curve(readings, 4, 0.1); }) == Fault::data);
+  readings.resize(7);  // none above three quarters
+  CHECK(fault_of([&] { (void)metrology::fit_curing_curve(readings, 4, std::nullopt); }) == Fault::data);
+  CHECK(fault_of([&] { (void)metrology::fit_curing_curve({}, 4, std::nullopt); }) == Fault::data);
+}
+
+TEST_CASE("Readings of a working curve are the steps of a staircase, whose heights are stretched; edges are none") {
+  model::Volume scatter{model::centred_grid(20, 20, 36, 0.2, -3.5), {}};
+  model::Volume dose{model::centred_grid(30, 30, 80, 0.15, -5.925), {}};
+  scatter.values.resize(scatter.grid.size());
+  dose.values.resize(dose.grid.size());
+  constexpr double stretch = 1.05;
+  for (int k = 0; k < dose.grid.nz; ++k) {  // three steps of 2 mm of the print
+    const int step = std::clamp(static_cast<int>(std::floor(dose.grid.z_mm(k) / stretch / 2 + 1.5)), 0, 2);
+    std::fill_n(dose.slice(k), dose.grid.slice_size(), static_cast<float>(10 + 10 * step));
+  }
+  for (int k = 0; k < scatter.grid.nz; ++k) {
+    const int step = std::clamp(static_cast<int>(std::floor(scatter.grid.z_mm(k) / 2 + 1.5)), 0, 2);
+    std::fill_n(scatter.slice(k), scatter.grid.slice_size(), 0.01F * static_cast<float>(step * step));
+  }
+  const auto readings = metrology::curing_readings(scatter, dose, stretch, 16, 2, 3);
+  REQUIRE(readings.size() == 3);
+  for (int step = 0; step < 3; ++step) {
+    CHECK(readings[step].dose_per_turn_mj_cm3 == doctest::Approx(10 + 10 * step).epsilon(1e-6));
+    CHECK(readings[step].scatter == doctest::Approx(0.01 * step * step).epsilon(1e-5));
+    CHECK(readings[step].last_turn == 3);
+  }
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// vam-calibrate working-curve: what of the dose scatters, and when, from volumes of a staircase of doses.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "io/settings/report.hpp"
+#include "io/vdb/vdb.hpp"
+#include "metrology/ost/curing_curve.hpp"
+#include "vam-calibrate/scan.hpp"
+
+namespace vam::calibrate_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<double> fact(const io::SparseVolume& volume, const char* name) {
+  const auto found = volume.metadata.find(name);
+  return found == volume.metadata.end() ? std::nullopt : parse_number(found->second);
+}
+
+model::Volume dense(const io::SparseVolume& sparse) {
+  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
+  sparse.read_slices(0, volume.grid.nz, volume.values.data());
+  return volume;
+}
+
+/// The dose of one turn, and where it is in the print.
+struct TurnDose {
+  model::Volume volume;
+  double stretch_z = 1;
+  std::optional<double> turns;  // that the file holds
+};
+
+TurnDose read_dose(const std::string& path) {
+  const io::SparseVolume sparse = io::read_volume(path, "dose");
+  if (sparse.units != "mJ/cm3") {
+    throw Error{Fault::data,
+                path + ": its doses are " + sparse.units +
+                    ", not mJ/cm3; set resin.absorption_per_mm and resin.critical_dose_mj_cm3 for vam-dose"};
+  }
+  TurnDose dose{dense(sparse), fact(sparse, "vam:stretch_z").value_or(1), fact(sparse, "vam:full_intensity_turns")};
+  if (!dose.turns) return dose;
+  for (float& value : dose.volume.values) value /= static_cast<float>(*dose.turns);
+  return dose;
+}
+
+// In the order of their names, which is that of the turns.
+std::vector<std::string> volumes_of(const std::string& path) {
+  if (!fs::is_directory(path)) return {path};
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("scatter-") && name.ends_with(".vdb")) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty()) throw Error{Fault::data, path + ": has no scatter-NNNN.vdb of vam-ost --live"};
+  return files;
+}
+
+}  // namespace
+
+void measure_working_curve(const WorkingCurveOptions& options) {
+  const TurnDose dose = read_dose(options.dose);
+  const std::vector<std::string> files = volumes_of(options.scatter);
+  constexpr double for_ever = 1e9;
+  const bool one = files.size() == 1;
+  const double lit_turns = options.lit_turns.value_or(one ? dose.turns.value_or(1) : for_ever);
+  std::vector<metrology::CuringReading> readings;
+  double turn_s = 0;
+  for (const std::string& file : files) {
+    const io::SparseVolume sparse = io::read_volume(file, "scatter");
+    const auto turns = fact(sparse, "vam:turns");
+    if (!turns && !one) throw Error{Fault::data, file + ": does not state its turns; use volumes of vam-ost --live"};
+    turn_s = std::max(turn_s, fact(sparse, "vam:span_s").value_or(0));
+    const double last = turns ? *turns - options.lit_from_turn : for_ever;
+    if (last <= 0) continue;
+    const auto of_turn =
+        metrology::curing_readings(dense(sparse), dose.volume, dose.stretch_z, options.classes, last - 1, last);
+    readings.insert(readings.end(), of_turn.begin(), of_turn.end());
+  }
+  Json figures = to_json(metrology::fit_curing_curve(readings, lit_turns, options.isovalue), turn_s);
+  figures["volumes"] = files.size();
+  io::write_report(options.record, "vam-working-curve/1", figures);
+}
+
+}  // namespace vam::calibrate_tool
