@@ -76,10 +76,11 @@ struct Curve {
   // Radicals, which live for the delay, come up after the inhibitor, and act on after the light.
   [[nodiscard]] double dose_that_has_acted(double per_turn, double turn, double lit_turns) const {
     const double given = per_turn * std::clamp(turn, 0.0, lit_turns);
-    if (!(delay > 0)) return given;
     const double lit = std::min(turn, lit_turns) - inhibition / per_turn;
     if (!(lit > 0)) return given;
-    return given - per_turn * delay * -std::expm1(-lit / delay) * std::exp(-std::max(0.0, turn - lit_turns) / delay);
+    const double life = std::max(std::abs(delay), 1e-9);  // noise can make the delay of a prompt resin negative
+    const double lacking = -std::expm1(-lit / life) * std::exp(-std::max(0.0, turn - lit_turns) / life);
+    return given - per_turn * delay * lacking;
   }
 };
 

@@ -9,7 +9,11 @@
 #include <random>
 
 #include "fault_of.hpp"
-#include "sim/bench/photoresin.hpp"
+#include "light/simulation/simulation.hpp"
+#include "metrology/ost/ost.hpp"
+#include "model/magnification.hpp"
+#include "resin/absolute_dose.hpp"
+#include "sim/bench/print.hpp"
 
 using namespace vam;
 
@@ -83,6 +87,18 @@ TEST_CASE("The working curve finds critical dose and delay of simulated resins w
   CHECK(std::abs(bias) < 0.005);
 }
 
+TEST_CASE("The delay of a prompt resin is none, within its sigma") {
+  Truth truth;
+  truth.resin.critical_dose_mj_cm3 = 60;
+  truth.resin.delay_s = 0;
+  truth.resin.inhibitor_diffusion_mm2_s = 0;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const auto curve = metrology::fit_curing_curve(staircase(truth, seed), 1e9, std::nullopt);
+    REQUIRE(curve.delay_turns);
+    CHECK(std::abs(curve.delay_turns->value) < 3 * curve.delay_turns->sigma);
+  }
+}
+
 TEST_CASE("A working curve of the end of a print has no delay, and the dose at an isovalue that is given") {
   std::vector<metrology::CuringReading> readings;
   for (int k = 0; k < 16; ++k) {  // logistic, long after 4 turns of light
@@ -125,4 +141,97 @@ TEST_CASE("Readings of a working curve are the steps of a staircase, whose heigh
     CHECK(readings[step].scatter == doctest::Approx(0.01 * step * step).epsilon(1e-5));
     CHECK(readings[step].last_turn == 3);
   }
+}
+
+namespace {
+
+constexpr int angles = 60;
+
+/// Six bands of rows, each brighter than the one below, all around.
+GreyImage bands(const model::Projector& projector) {
+  GreyImage frame(projector.columns, projector.rows, 8);
+  for (int r = 4; r < 28; ++r) {
+    for (int c = 18; c < 46; ++c) frame(c, r) = static_cast<std::uint16_t>(100 + 25 * ((27 - r) / 4));
+  }
+  return frame;
+}
+
+/// The planner's dose of a turn of it, mJ/cm3, in its stretched frame.
+model::Volume planned_dose(const model::Printer& printer, const GreyImage& frame) {
+  model::StackInfo info;
+  info.space = model::Space::projector;
+  info.width = frame.width;
+  info.height = angles;
+  info.count = frame.height;
+  info.pixel_mm = info.row_mm = printer.projector.pixel_mm;
+  info.z_start_mm = -(frame.height - 1 - printer.projector.axis_row) * info.row_mm;
+  info.angle_step_deg = 360.0 / angles;
+  std::vector<Image> rows(frame.height, Image(frame.width, angles));
+  for (int r = 0; r < frame.height; ++r) {
+    for (int a = 0; a < angles; ++a) {
+      for (int c = 0; c < frame.width; ++c) {
+        rows[frame.height - 1 - r](c, a) = static_cast<float>(frame(c, r)) / 255.0F;
+      }
+    }
+  }
+  const model::Grid grid = model::centred_grid(36, 36, 30, 0.2, -2.9);
+  std::vector<Image> slices(grid.nz);
+  light::Simulation(printer, {}, info, grid).dose(rows, slices);
+  model::Volume dose{grid, {}};
+  const auto per_radian = static_cast<float>(*resin::dose_per_radian_mj_cm3(printer));
+  for (const Image& slice : slices) {
+    for (const float value : slice.values) dose.values.push_back(per_radian * value);
+  }
+  return dose;
+}
+
+}  // namespace
+
+TEST_CASE("A working curve by planned doses and reconstructed views has the critical dose of the simulated vial") {
+  sim::SimBench bench;
+  auto& printer = bench.printer;
+  printer.projector.columns = 64;
+  printer.projector.rows = 32;
+  printer.projector.pixel_mm = 0.2;
+  printer.projector.lens_distance_mm = 90;
+  printer.projector.axis_column = 31.5;
+  printer.projector.axis_row = 15.5;
+  printer.projector.max_intensity_mw_cm2 = 3.5;
+  printer.vial = {6, 0.5, 1.52};
+  printer.resin.index = 1.49;
+  printer.resin.absorption_per_mm = 0.06;
+  printer.resin.critical_dose_mj_cm3 = 60;
+  printer.camera.index_resin = 1.48;
+  printer.camera.pixel_mm = 0.15;
+  printer.stage.speed_deg_s = 30;
+  bench.columns = 90;
+  bench.rows = 52;
+  bench.noise = 0.002;
+  bench.resin = sim::SimResin{};
+  sim::SimPrint print(bench);
+  const sim::SimScene scene(bench, 1, 16);
+  const GreyImage frame = bands(printer.projector);
+  const std::vector<GreyImage> frames(angles, frame);
+  const model::Volume dose = planned_dose(printer, frame);
+  const metrology::OstReconstructor rig(printer, printer.camera.pixel_mm, bench.columns, bench.rows,
+                                        {0.5 * (bench.columns - 1), 0}, {});
+  std::vector<metrology::CuringReading> readings;
+  for (int turn = 0; turn < 9; ++turn) {
+    std::vector<metrology::CameraView> views;
+    for (const sim::SimView& seen : sim::play_turn(bench, scene, print, frames, angles, angles * turn)) {
+      Image image(seen.levels.width, seen.levels.height);
+      for (std::size_t p = 0; p < image.size(); ++p) {
+        image.values[p] = static_cast<float>(seen.levels.values[p]) / 65535.0F;
+      }
+      views.push_back({image, seen.angle_deg});
+    }
+    const auto of_turn = metrology::curing_readings(rig.reconstruct(views), dose,
+                                                    1 / model::vertical_magnification(printer), 16, turn, turn + 1.0);
+    readings.insert(readings.end(), of_turn.begin(), of_turn.end());
+  }
+  const auto curve = metrology::fit_curing_curve(readings, 1e9, std::nullopt);
+  CHECK(std::abs(curve.critical_dose_mj_cm3.value - 60) < 2 * curve.critical_dose_mj_cm3.sigma);
+  CHECK(curve.critical_dose_mj_cm3.sigma < 3);  // 5 %
+  CHECK(std::abs(curve.delay_turns->value * 12 - 3) < 2 * curve.delay_turns->sigma * 12);
+  CHECK(curve.saturation.value == doctest::Approx(0.08).epsilon(0.03));
 }
