@@ -2,6 +2,7 @@
 #include "sim/bench/world.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "base/index.hpp"
@@ -15,8 +16,8 @@ constexpr double kept_s = 5;  // of the logs, for a camera that looks back
 constexpr double finest_turn_deg = 0.5;
 constexpr int most_parts = 8;
 constexpr double cured_turn_deg = 1;
-constexpr double most_cured_s = 4;  // at once
-constexpr double late_s = 0.2;      // that logs may come after what they tell
+constexpr std::chrono::milliseconds most_at_once{300};
+constexpr double late_s = 0.2;  // that logs may come after what they tell
 }  // namespace
 
 SimWorld::SimWorld(SimSources sources, double start_s, SimPrint* print)
@@ -68,12 +69,12 @@ void SimWorld::forget() {
 void SimWorld::cure(double until_s) {
   if (print_ == nullptr) return;
   if (!cured_s_) cured_s_ = flips_.empty() ? start_s_ : std::min(start_s_, flips_.front().t_s);
-  until_s = std::min(until_s, *cured_s_ + most_cured_s);
   std::vector<double> cuts{*cured_s_};
   for (const Shown& flip : flips_) {
     if (flip.t_s > *cured_s_ && flip.t_s < until_s) cuts.push_back(flip.t_s);
   }
   cuts.push_back(until_s);
+  const auto stop = std::chrono::steady_clock::now() + most_at_once;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double seconds = cuts[i + 1] - cuts[i];
     if (!(seconds > 0)) continue;
@@ -83,9 +84,10 @@ void SimWorld::cure(double until_s) {
     for (int n = 0; n < parts; ++n) {
       const SimMoment now = moment(cuts[i] + (n + 0.5) * seconds / parts);
       print_->pass(now.image, now.angle_deg, seconds / parts);
+      cured_s_ = cuts[i] + (n + 1) * seconds / parts;
+      if (std::chrono::steady_clock::now() > stop) return;
     }
   }
-  cured_s_ = std::max(*cured_s_, until_s);
 }
 
 double SimWorld::angle_deg(double t_s) const {
