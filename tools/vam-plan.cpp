@@ -25,5 +25,8 @@ int main(int argc, char** argv) {
   cli::App app(plan_tool::manual());
   plan_tool::Options options;
   declare(app, options);
-  return app.run(argc, argv, [&] { run(options); });
+  return app.run(argc, argv, [&] {
+    options.unit_known = app.given("--unit") || app.given("--scale");
+    run(options);
+  });
 }

@@ -76,7 +76,7 @@ fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --turns 3 part.vdb -o out
 fails 64 'omit --max-intensity' vam-optimize --turns 3 --max-intensity 1 part.vdb -o out.exr
 fails 64 'method fbp has no maximum intensity' vam-optimize --method fbp --turns 3 part.vdb -o out.exr
 vam-optimize --angles 60 --iterations 1 --max-intensity 0.12 part.vdb -o out.exr 2>missed.txt
-is "a part that does not print for its maximum intensity is reported" "$(grep -c 'does not print after 1 iterations: .*--max-intensity above 0.12' missed.txt)" 1
+is "a part that does not print for its maximum intensity is reported" "$(grep -c 'does not print after 1 iteration: .*; more --iterations, or a --max-intensity above 0.12' missed.txt)" 1
 
 quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o handle.vdb &&
   vam-optimize --angles 180 --report handle.json handle.vdb -o handle.exr'
@@ -254,6 +254,8 @@ fails 64 '--preview: does not apply to --robust; omit it' vam-optimize --preview
 quiet "in ten seconds" vam-optimize --budget 10 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json part.vdb -o out.exr
 is "time stops the run" "$(value budget.json stopped_by)" time
 holds "its light is of use" "$(value budget.json iou) > 0.95"
+vam-optimize --budget 0.01 --turns 1 --set resin.critical_dose_mj_cm3=1 --set resin.absorption_per_mm=0.05 part.vdb -o out.exr 2>short.txt
+is "which is named where it is too short" "$(grep -c 'does not print after 1 iteration within --budget: .*; a larger --budget' short.txt)" 1
 fails 64 '--budget: does not apply to --checkpoint' vam-optimize --budget 10 --checkpoint b.state part.vdb -o out.exr
 
 # Printers off their settings.

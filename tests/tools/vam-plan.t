@@ -57,6 +57,15 @@ vam-optimize part.vdb --angles 90 --iterations 20 --set resin.critical_dose_mj_c
 holds 'as long as that of vam-optimize' "$(json resin.json duration_s) < 2 * $(json full.json duration_s) && $(json resin.json duration_s) > 0.5 * $(json full.json duration_s)"
 is 'and with the same verdict' "$(awk "BEGIN { print ($(json resin.json pw) >= 0) }")" "$(awk "BEGIN { print ($(json full.json pw) >= 0) }")"
 
+# A part that is in metres, and one whose walls no voxel of 4 pixels is inside of.
+box 0.02 0.012 0.016 >metres.off
+ok 'a file in metres' sh -c 'vam-plan metres.off >metres 2>metres.log'
+ok 'is doubted' grep -q 'metres.off: the part is only 0.02 mm large; is its unit m?' metres.log
+ok 'and has no voxel to judge' grep -q '^will it print  *not known: no voxel of 0.065 mm is wholly inside the part' metres
+ok 'its unit is believed' sh -c 'vam-plan metres.off --unit mm --no-preview >said 2>said.log && ! test -s said.log'
+ok 'a tiny part in mm' sh -c 'vam-plan metres.off --scale 12 --report thin.json >thin 2>thin.log && ! test -s thin.log'
+ok 'is judged on finer voxels' grep -q '^will it print .*estimate on voxels of [12] pixels*)' thin
+
 fails 66 'none.stl' vam-plan none.stl
 echo hello >text.stl
 fails 65 'text.stl' vam-plan text.stl

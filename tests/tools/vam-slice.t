@@ -184,6 +184,9 @@ fails 65 'nan.stl' vam-slice nan.stl -o x.vdb
 fails 65 'empty.stl' vam-slice empty.stl -o x.vdb
 fails 65 'no size' vam-slice point.stl -o x.vdb
 fails 65 'cannot be determined.*encloses no volume' vam-slice sheet.stl --no-centre --voxel 0.3 -o x.vdb
+vam-slice lidless.stl --scale 0.01 --voxel 0.3 -o x.vdb 2>tiny.txt
+is "an open mesh in metres" "$?" 0
+ok "is small, not open" grep -q 'no voxel of 0.3 mm is wholly inside the part, which is .* mm large' tiny.txt
 fails 65 'not closed.*boundary edges' vam-slice lidless.stl --fill exact -o x.vdb
 fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
 fails 65 'omit --no-centre; give --scale 0.0572 or --fit-writable to make it fit' vam-slice far.stl --no-centre -o x.vdb

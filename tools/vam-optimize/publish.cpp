@@ -33,10 +33,12 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
   const model::DoseMetrics& m = outcome.metrics;
   const bool has_goal = !options.until.empty() || options.max_intensity || options.turns;
   if (!has_goal || outcome.stop == optimize::StopReason::goal || options.demands.grey || m.ver == 0) return;
+  const bool by_time = outcome.stop == optimize::StopReason::time;
   const bool limited = outcome.max_intensity > 0 && outcome.peak_intensity > 0.98 * outcome.max_intensity;
   warn(io::input_name(options.input) + ": does not print after " + std::to_string(outcome.iterations) +
-       " iterations: voxel error rate " + format_number(m.ver, 2) + ", process window " + format_number(m.pw, 2) +
-       "; more --iterations" +
+       (outcome.iterations == 1 ? " iteration" : " iterations") + (by_time ? " within --budget" : "") +
+       ": voxel error rate " + format_number(m.ver, 2) + ", process window " + format_number(m.pw, 2) +
+       (by_time ? "; a larger --budget" : "; more --iterations") +
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
 }
 

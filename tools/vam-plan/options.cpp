@@ -16,12 +16,14 @@ cli::Manual manual() {
        "index-matching bath would help; whether it will print, how long that takes, and how wide the process window "
        "remains if the printer deviates from its settings. If the part does not fit, all that follows is of the part "
        "at the scale that fits.",
-       "Whether it prints is estimated on voxels of " + std::to_string(least_coarseness) + " pixels, with " +
+       "Whether it prints is estimated on voxels of " + std::to_string(usual_coarseness) + " pixels, with " +
            std::to_string(optimize::PreviewTask{}.angles) + " angles and " +
            std::to_string(optimize::PreviewTask{}.iterations) +
            " iterations of the default method of vam-optimize; voxels are larger by a power of 2 where the part has "
            "more than " +
-           std::to_string(most_estimated) + " million of them. The deviations, one at a time and either way, are " +
+           std::to_string(most_estimated) +
+           " million of them, and smaller where none would be wholly inside the part. The deviations, one at a time "
+           "and either way, are " +
            deviations +
            " (as in --robust of vam-optimize): the smaller process window of the two is stated, as a fraction of the "
            "largest dose. Features below a voxel of the estimate are blurred; at full resolution windows are wider and "

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
@@ -109,6 +110,12 @@ void require_plausible(const Fit& fit, const model::Printer& printer, const std:
   }
 }
 
+void warn_of_unit(const Fit& fit, const Options& options, const solid::Writable& room, const std::string& subject) {
+  if (!options.shape.empty() || options.unit_known) return;
+  const std::string doubt = solid::unit_doubt(subject, *std::max_element(fit.size_mm.begin(), fit.size_mm.end()), room);
+  if (!doubt.empty()) warn(doubt);
+}
+
 /// Moved by whole voxels until the rows light it.
 solid::Part within_rows(solid::Part part, const solid::Writable& room, double voxel_mm) {
   const auto& box = part.extent.box;
@@ -143,23 +150,33 @@ void add_walls(Plan& plan, const solid::Part& part) {
   if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
 }
 
-int coarseness_for(const model::Grid& grid) {
-  int by = least_coarseness;
-  while (static_cast<double>(grid.size()) / std::pow(by, 3) > 1e6 * most_estimated) by *= 2;
-  return by;
+bool is_estimated_at(const model::Grid& grid, int coarseness) {
+  return static_cast<double>(grid.size()) / std::pow(coarseness, 3) <= 1e6 * most_estimated;
 }
 
-optimize::Preview preview_of(const solid::Part& part, const model::Printer& printer, int coarseness) {
+/// None where no voxel is wholly inside the part.
+std::optional<optimize::Preview> preview_of(const solid::Part& part, const model::Printer& printer, int coarseness) {
   optimize::PreviewTask task;
   task.printer = printer;
   for (int by = 1; by < coarseness; by *= 2) task.printer = model::coarser(task.printer);
   auto [target, farthest_mm] = filled(part, task.printer.projector.pixel_mm);
+  if (std::none_of(target.values.begin(), target.values.end(),
+                   [](float coverage) { return model::label_of(coverage) == model::Label::part; }))
+    return std::nullopt;
   task.part = model::covered_box(target, model::coverage_rounding);
   task.radius_mm = optics::judged_radius_mm(task.printer, farthest_mm);
   task.target = std::move(target);
   task.tolerances = model::parse_tolerances(deviations);
   task.tolerances[static_cast<std::size_t>(model::Deviating::axis)] /= coarseness;  // of the printer's pixels
   return optimize::preview(task);
+}
+
+/// On voxels that are larger for large parts, and smaller for those of thin walls.
+void add_preview(Plan& plan, const solid::Part& part, const model::Printer& printer) {
+  int& by = plan.coarseness = usual_coarseness;
+  while (!is_estimated_at(plan.grid, by)) by *= 2;
+  for (plan.preview = preview_of(part, printer, by); !plan.preview && by > 1 && is_estimated_at(plan.grid, by / 2);)
+    plan.preview = preview_of(part, printer, by /= 2);
 }
 
 }  // namespace
@@ -176,6 +193,7 @@ Plan plan(const Options& options, const model::Printer& printer) {
     made.bath = fit_of(source, matched);
   }
   require_plausible(made.now, printer, source.subject());
+  warn_of_unit(made.now, options, room_of(printer), source.subject());
   made.given_scale = options.scale;
   made.scale = made.now.fits() ? options.scale : solid::three_digits(options.scale * made.now.factor);
   const solid::Part part =
@@ -184,8 +202,8 @@ Plan plan(const Options& options, const model::Printer& printer) {
   made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
   add_walls(made, part);
   if (options.no_preview) return made;
-  made.coarseness = coarseness_for(made.grid);
-  made.preview = preview_of(part, printer, made.coarseness);
+  add_preview(made, part, printer);
+  if (!made.preview) return made;
   const optimize::VolumeOutcome& outcome = made.preview->outcome;
   const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   made.resin_known = per_radian.has_value();

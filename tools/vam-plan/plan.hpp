@@ -15,7 +15,7 @@
 
 namespace vam::plan_tool {
 
-inline constexpr int least_coarseness = 4;  // pixels per voxel of the estimate
+inline constexpr int usual_coarseness = 4;  // pixels per voxel of the estimate
 inline constexpr int most_estimated = 2;    // million voxels: those of larger parts are larger by a power of 2
 inline constexpr const char* deviations = "axis=0.5px,index=0.005,angle=0.25deg";
 
@@ -31,14 +31,14 @@ struct Fit {
 struct Plan {
   std::string subject;
   Fit now;
-  std::optional<Fit> bath;            // with a bath of the resin's index; none: it has one
-  double given_scale = 1;             // by the options
-  double scale = 1;                   // of what follows, of the file's coordinates
-  model::Grid grid;                   // at the printer's pixels
-  std::optional<double> wall_voxels;  // of that grid; none: there is no wall as thick as the resolution
-  int wall_resolution = 1;            // in voxels
-  std::optional<optimize::Preview> preview;
-  int coarseness = least_coarseness;  // pixels per voxel of the preview
+  std::optional<Fit> bath;                   // with a bath of the resin's index; none: it has one
+  double given_scale = 1;                    // by the options
+  double scale = 1;                          // of what follows, of the file's coordinates
+  model::Grid grid;                          // at the printer's pixels
+  std::optional<double> wall_voxels;         // of that grid; none: there is no wall as thick as the resolution
+  int wall_resolution = 1;                   // in voxels
+  int coarseness = 0;                        // pixels per voxel of the estimate; 0: none is wanted
+  std::optional<optimize::Preview> preview;  // none: none of its voxels is wholly inside the part
   bool resin_known = false;
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
 };

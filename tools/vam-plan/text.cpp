@@ -44,12 +44,17 @@ std::string deviation_name(std::size_t tolerance) {
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
 
 std::string print_rows(const Plan& plan) {
+  if (!plan.preview) {
+    return row("will it print", "not known: no voxel of " + number(plan.coarseness * plan.grid.voxel_mm) +
+                                    " mm is wholly inside the part");
+  }
   const optimize::Printed& nominal = plan.preview->trials.nominal;
   const bool prints = nominal.figures.pw > 0;
-  std::string text = row("will it print", std::string(prints ? "yes" : "not everywhere") + ": process window " +
-                                              signed_number(window(nominal)) + " of the largest dose, VER " +
-                                              number(nominal.figures.ver) + " (estimate on voxels of " +
-                                              std::to_string(plan.coarseness) + " pixels)");
+  std::string text =
+      row("will it print", std::string(prints ? "yes" : "not everywhere") + ": process window " +
+                               signed_number(window(nominal)) + " of the largest dose, VER " +
+                               number(nominal.figures.ver) + " (estimate on voxels of " +
+                               std::to_string(plan.coarseness) + (plan.coarseness == 1 ? " pixel)" : " pixels)"));
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
   if (!plan.exposure) {
@@ -97,7 +102,7 @@ std::string table(const Plan& plan) {
   }
   text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm) + " mm");
   text += row("thinnest wall", wall_words(plan));
-  return plan.preview ? text + print_rows(plan) : text;
+  return plan.coarseness > 0 ? text + print_rows(plan) : text;
 }
 
 Json report(const Plan& plan) {

@@ -49,9 +49,16 @@ Part lifted(Part part, double lift_mm) {
 
 namespace {
 
+/// No larger than some voxels, none of which need be half covered.
+bool is_tiny(const PlacedExtent& extent, double voxel_mm) {
+  constexpr double some = 4;
+  const Point size = extent.box.size();
+  return *std::max_element(size.begin(), size.end()) < some * voxel_mm;
+}
+
 // A vote that did not settle: nothing enclosed, or too much left open.
-void require_settled(const Vote& vote, const Repair& repair, const std::string& subject) {
-  if (vote.inside > 0 && vote.undecided <= vote.inside / 100) return;
+void require_settled(const Vote& vote, const Repair& repair, bool tiny, const std::string& subject) {
+  if (vote.inside == 0 ? tiny : vote.undecided <= vote.inside / 100) return;
   const std::string found = vote.inside == 0 ? "it encloses no volume"
                                              : std::to_string(vote.undecided) + " of " + std::to_string(vote.inside) +
                                                    " voxels are undecided";
@@ -75,10 +82,10 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
   part.voted = mode == FillMode::vote || !part.repair->closed();
   part.extent = extent(mesh);
   const auto kept = std::make_shared<model::TriangleSoup>(std::move(mesh));
-  part.fill = [kept, subject, repair = *part.repair, voted = part.voted](const model::Grid& grid,
-                                                                         const SliceSink& sink) {
+  part.fill = [kept, subject, repair = *part.repair, voted = part.voted, extent = part.extent](const model::Grid& grid,
+                                                                                               const SliceSink& sink) {
     const Vote vote = voxelize(*kept, grid, voted ? Fill::vote : Fill::exact, sink);
-    if (voted) require_settled(vote, repair, subject);
+    if (voted) require_settled(vote, repair, is_tiny(extent, grid.voxel_mm), subject);
     return vote;
   };
   return part;

@@ -38,7 +38,7 @@ enum class FillMode { automatic, exact, vote };
 
 /// The part of a mesh: moved by `map`, then repaired. Automatic fills exactly where the mesh is closed and votes where
 /// it is not. Throws Fault::data when `exact` is requested of an open mesh; filling throws Fault::data when inside is
-/// ambiguous: no volume is enclosed, or more than 1 % of it stays undecided.
+/// ambiguous: no volume is enclosed by a part of at least 4 voxels, or more than 1 % of it stays undecided.
 [[nodiscard]] Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affine& map, FillMode mode);
 
 /// Numbered images, from the lowest slice up; row 0 of an image is at the largest y.

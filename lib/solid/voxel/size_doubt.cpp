@@ -13,6 +13,17 @@ namespace {
 
 constexpr std::pair<const char*, double> units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"um", 1e-3}};
 
+/// "; is its unit m?"
+std::string likely_unit(double largest_mm, const Writable& room) {
+  if (largest_mm >= 0.1 * 2 * room.radius_mm) return "";
+  std::vector<std::string> likely;
+  for (const auto& [name, mm] : units) {
+    const double widths = largest_mm * mm / (2 * room.radius_mm);
+    if (mm != 1 && widths > 0.25 && widths < 12) likely.emplace_back(name);
+  }
+  return likely.empty() ? "" : "; is its unit " + join(likely, " or ") + "?";
+}
+
 }  // namespace
 
 const std::vector<std::string>& unit_names() {
@@ -28,21 +39,16 @@ double mm_per(const std::string& unit) {
   return std::find_if(std::begin(units), std::end(units), [&](const auto& one) { return unit == one.first; })->second;
 }
 
-std::string likely_unit(double largest_mm, const Writable& room) {
-  std::vector<std::string> likely;
-  for (const auto& [name, mm] : units) {
-    const double widths = largest_mm * mm / (2 * room.radius_mm);
-    if (mm != 1 && widths > 0.25 && widths < 12) likely.emplace_back(name);
-  }
-  return likely.empty() ? "" : "; is its unit " + join(likely, " or ") + "?";
+std::string unit_doubt(const std::string& subject, double largest_mm, const Writable& room) {
+  const std::string unit = likely_unit(largest_mm, room);
+  return unit.empty() ? "" : subject + ": the part is only " + format_number(largest_mm, 3) + " mm large" + unit;
 }
 
 std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
                        const Writable& room, bool unit_known) {
   const Point size = part.extent.box.size();
   const double largest_mm = std::max({size[0], size[1], size[2] / stretch_z});
-  const bool small = largest_mm < 0.1 * 2 * room.radius_mm;
-  const std::string unit = small && !unit_known ? likely_unit(largest_mm, room) : "";
+  const std::string unit = unit_known ? "" : likely_unit(largest_mm, room);
   if (content.solid_voxels == 0) {
     const double thinner = 0.5 * grid.voxel_mm * static_cast<double>(content.most);
     return part.subject + ": no voxel of " + format_number(grid.voxel_mm) + " mm is wholly inside the part, which is " +
@@ -59,7 +65,7 @@ std::string size_doubt(const Part& part, const FillSummary& content, const model
            " mm no voxel of theirs is half covered, and they will not be printed; voxels of " +
            format_number(grid.voxel_mm * static_cast<double>(content.lost.most), 2) + " mm or thicker walls may help";
   }
-  return unit.empty() ? "" : part.subject + ": the part is only " + format_number(largest_mm, 3) + " mm large" + unit;
+  return unit_known ? "" : unit_doubt(part.subject, largest_mm, room);
 }
 
 }  // namespace vam::solid
