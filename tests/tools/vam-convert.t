@@ -162,6 +162,19 @@ holds "within the 8 bits: $worst of the largest dose" "$worst < 0.004 && $worst 
 python3 compare.py turned.npy back.npy >difference; read -r sizes worst <difference
 holds "turns are averaged: $worst" "$worst < 1e-5"
 
+# Rays climb: rows above and below the part light it, too.
+sizes() { vam-view "$1" --export /dev/stdout | grep -a '^sizes\|^axis mins' | tr '\n' ' '; }
+# shellcheck disable=SC2086
+{
+  vam-optimize part.vdb --angles 60 --iterations 4 $set -o climb.exr 2>err
+  vam-project climb.exr $set --turns 1 --fps 12 --speed 72 -o climb
+  quiet 'frames whose light climbs' vam-convert climb --geometry vial --like part.vdb $set -o risen.exr
+}
+is 'have the slices of the stack' "$(sizes risen.exr)" "$(sizes climb.exr)"
+vam-convert sino.npy --geometry parallel --pixel 0.2 --like part.vdb -o short.exr 2>err
+is 'slices that end within the volume are reported' \
+  "$(grep -c 'sino.npy: its slices are at z = .* mm, those of part.vdb at .*, and the rest is dark; check --slice-height' err)" 1
+
 # What is said of foreign frames moves them.
 middle() { vam-convert frames --geometry parallel --pixel 0.5 "$@" -o m.exr; vam-view m.exr --export /dev/stdout | grep -a '^sizes\|^axis mins\|^spacings' | tr '\n' ' '; }
 is 'a parallel beam: the middle is the axis' "$(middle)" 'sizes: 64 360 48 spacings: 0.5 1 0.5 axis mins: -15.75 0 -11.75 '

@@ -36,8 +36,9 @@ void declare_projections(cli::App& app, Options& options) {
   app.option("--slice-height", "MM", options.slice_height_mm, {1e-4, 5}, "Height of a slice.").was("--slice-pitch");
   app.default_is("that of the columns");
   app.option("--like", "FILE", options.like,
-             "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer. vam-dose "
-             "--like FILE needs them.")
+             "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer; with "
+             "--geometry "
+             "vial also those above and below that climbing rays light. vam-dose --like FILE needs them.")
       .reads();
   app.default_is("the slices of the array, the rows of the images");
   app.option(

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
@@ -12,7 +14,11 @@
 #include "io/exr/stack.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
+#include "light/grids/lit_grid.hpp"
+#include "model/dose_metrics.hpp"
+#include "optics/writable_radius.hpp"
 #include "vam-convert/images.hpp"
 #include "vam-convert/resliced.hpp"
 #include "vam-convert/slices.hpp"
@@ -169,9 +175,35 @@ Heights own_heights(const Options& options, const model::Projector& projector, i
   return {slices, -slice_of_zero(options, projector, slices, from_top) * pitch_mm, pitch_mm};
 }
 
-std::optional<model::Grid> grid_like(const Options& options) {
+/// Of the part, or of the only grid.
+std::optional<io::SparseVolume> volume_like(const Options& options) {
   if (options.like.empty()) return std::nullopt;
-  return io::read_volumes(options.like).front().grid();
+  std::vector<io::SparseVolume> volumes = io::read_volumes(options.like);
+  for (io::SparseVolume& volume : volumes) {
+    if (volume.name() == "target") return std::move(volume);
+  }
+  return std::move(volumes.front());
+}
+
+/// Its slices, and those above and below that the projector's climbing rays light as well.
+model::Grid lit_slices(const io::SparseVolume& like, const Options& options, const model::Printer& printer) {
+  if (!options.in_vial()) return like.grid();
+  const double radius_mm = optics::judged_radius_mm(printer, io::farthest_mm(like, model::coverage_rounding));
+  light::Margin margin = light::lit_margin(printer, like.grid(), radius_mm);
+  margin.side = 0;
+  return light::extended(like.grid(), margin);
+}
+
+void warn_of_dark(const Options& options, const Heights& own, const model::Grid& grid) {
+  const double low_mm = own.z0_mm - 0.5 * own.pitch_mm;
+  const double high_mm = low_mm + own.count * own.pitch_mm;
+  const double bottom_mm = grid.z_mm(-0.5);
+  const double top_mm = grid.z_mm(grid.nz - 0.5);
+  const double spare_mm = own.pitch_mm + grid.voxel_mm;
+  if (low_mm < bottom_mm + spare_mm && high_mm > top_mm - spare_mm) return;
+  const auto mm = [](double from, double to) { return format_number(from, 3) + " to " + format_number(to, 3) + " mm"; };
+  warn(io::input_name(options.input) + ": its slices are at z = " + mm(low_mm, high_mm) + ", those of " + options.like +
+       " at " + mm(bottom_mm, top_mm) + ", and the rest is dark; check --slice-height and --axis-row");
 }
 
 /// Filtered projections have negative values, images that a projector shows have none.
@@ -200,9 +232,12 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   Plan plan;
   plan_turns(options, slices, plan);
   plan_columns(options, printer.projector, slices.size().columns, plan);
-  const std::optional<model::Grid> grid = grid_like(options);
+  const std::optional<io::SparseVolume> like = volume_like(options);
+  std::optional<model::Grid> grid;
+  if (like) grid = lit_slices(*like, options, printer);
   const bool from_top = frames || slices.views().top_first;
   const Heights own = own_heights(options, printer.projector, slices.size().images, from_top);
+  if (like) warn_of_dark(options, own, like->grid());
   Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
   const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
   io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, frames), options.stack);
