@@ -9,6 +9,9 @@ $exr make part.exr space=projector width=64 height=36 count=3   # slices at z = 
 
 # Forms
 quiet "a folder of images" vam-project part.exr -o frames/
+$exr make between.exr space=projector width=64 height=36 count=3 row=0.4
+vam-project between.exr -o between/ 2>err
+is "slices that are no whole rows are reported" "$(grep -c 'between.exr: its slices are 1.54 rows .*; vam-slice --voxel 0.52 makes' err)" 1
 is "one frame per time step" "$(ls frames | grep -c png)" 36
 is "the first names" "$(ls frames | head -n 2 | tr '\n' ' ')" "00000.png 00001.png "
 is "size and depth" "$($png size frames/00000.png)" "64 8 8 1"

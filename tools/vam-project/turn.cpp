@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-project/turn.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -23,6 +24,17 @@ void read_into(Source& source, io::StackReader& reader) {
   Image slice;
   for (model::ImageInfo about; reader.next(slice, about); progress.tick()) source.add(slice, about.z_mm);
   source.check();
+}
+
+void warn_of_pitch(const model::StackInfo& info, double pixel_mm, const std::string& name) {
+  constexpr double same = 1e-3;
+  const double rows = info.row_mm / pixel_mm;
+  const double whole = std::max(std::round(rows), 1.0);
+  if (info.count < 2 || !info.poses.empty() || std::abs(rows - whole) < same) return;
+  warn(name + ": its slices are " + format_number(rows, 3) +
+       " rows of the projector high, not a whole number, so that rows show means of neighbouring slices and the print "
+       "is less sharp than vam-dose says; vam-slice --voxel " +
+       format_number(whole * pixel_mm) + " makes whole rows");
 }
 
 void warn_beside_rows(double rows, const std::string& name) {
@@ -53,6 +65,7 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   const auto place = optics::frame_place(projector, right, down);
   const auto composer = std::make_shared<optics::FrameComposer>(options.input, info, place);
   read_into(*composer, reader);
+  warn_of_pitch(info, projector.pixel_mm, options.input);
   if (down == 0) warn_beside_rows(optics::beside_rows(info, place), options.input);
   return {[composer](double angle, double span, const PixelRect& part, Image former) {
             return composer->frame(angle, span, part, std::move(former));

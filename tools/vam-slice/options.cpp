@@ -79,7 +79,9 @@ void declare(cli::App& app, Options& options) {
       .reads();
   app.option("--damping", "FRACTION", options.damping, {0.05, 1}, "Fraction of each deviation that is corrected.")
       .needs({"--compensate"});
-  app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");
+  app.option("--voxel", "MM", options.voxel_mm, cli::positive,
+             "Edge of a voxel, and of an image pixel. Multiples of projector.pixel_mm are slices of whole rows, which "
+             "the projector shows as they are; those between mix neighbouring slices.");
   app.default_is("projector.pixel_mm");
   app.choice("--extent", options.extent, {"part", "writable", "resin"},
              "Lateral size of the volume: the bounding circle of the part, the writable circle, or the whole "
