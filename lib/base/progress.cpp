@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "base/json.hpp"
@@ -25,9 +26,10 @@ bool shown_as(ProgressStyle style) {
   return style == ProgressStyle::json || status_line::possible();
 }
 
-double left_s(long done, long total, double elapsed) {
-  if (done <= 0 || total <= done) return 0;
-  return elapsed * static_cast<double>(total - done) / static_cast<double>(done);
+/// None before the first step is done, or where their number is not known.
+std::optional<double> left_s(long done, long total, double elapsed) {
+  if (done <= 0 || total <= 0) return std::nullopt;
+  return elapsed * static_cast<double>(std::max(total - done, 0L)) / static_cast<double>(done);
 }
 
 }  // namespace
@@ -88,7 +90,8 @@ std::string Progress::line(long done, int width) const {
   std::vector<std::string> parts{std::to_string(done)};
   if (total > 0) {
     const std::string percent = std::to_string(std::min(100L, 100 * done / total));
-    parts = {(percent.size() < 2 ? " " : "") + percent + " %", clock_text(left_s(done, total, elapsed_s())) + " left"};
+    parts = {(percent.size() < 2 ? " " : "") + percent + " %"};
+    if (const auto left = left_s(done, total, elapsed_s())) parts.push_back(clock_text(*left) + " left");
   }
   const std::size_t least = parts.size();
   for (const Figure& figure : figures_) parts.push_back(figure.name + (" " + format_number(figure.value, 3)));
@@ -102,11 +105,11 @@ std::string Progress::line(long done, int width) const {
   return begin + '[' + std::string(filled, '#') + std::string(bar - filled, ' ') + "] " + join(parts, ", ");
 }
 
-void Progress::print_json(long done, double left_s) const {
+void Progress::print_json(long done, std::optional<double> left_s) const {
   Json line{{"tool", program_name()}, {"task", what_}, {"done", done}};
   if (total_ > 0) line["total"] = total_.load();
   line["elapsed_s"] = std::round(1000 * elapsed_s()) / 1000;
-  line["left_s"] = std::round(1000 * left_s) / 1000;
+  if (left_s) line["left_s"] = std::round(1000 * *left_s) / 1000;
   for (const Figure& figure : figures_) {
     std::string key = figure.name;
     std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -9,7 +9,8 @@ vam-slice --shape gyroid --voxel 0.2 -o part.vdb
 ok 'on a terminal' seen 100 "$work" ; mv .log/out rows
 grep '^vam-optimize: optimising' rows >drawn
 holds 'there is a line' "$(wc -l <drawn) > 0"
-is 'which says where it stands' "$(grep -Evc '^vam-optimize: optimising( at [0-9.]+ mm)? \[#* *\] [ 0-9][0-9]+ %, [0-9]+:[0-9]{2} left, iteration [0-9]+, VER [0-9.e-]+, PW [0-9.e-]+\$$' drawn)" 0
+is 'which says where it stands' "$(grep -Evc '^vam-optimize: optimising( at [0-9.]+ mm)? \[#* *\] ( 0 %|[ 0-9][0-9]+ %, [0-9]+:[0-9]{2} left), iteration [0-9]+, VER [0-9.e-]+, PW [0-9.e-]+\$$' drawn)" 0
+is 'the time left as soon as it is known' "$(grep -c ' 0 %, 0:00 left' drawn)" 0
 holds 'in the terminal' "$(awk '{ n = length($0) - 1; if (n > most) most = n } END { print most }' drawn) <= 99"
 is 'and goes' "$(grep -A 1 '^vam-optimize: optimising' rows | tail -n 1 | cut -c1)" '$'
 ok 'on a narrow one' seen 39 "$work"
@@ -46,7 +47,8 @@ lines = [json.loads(line) for line in sys.stdin]
 last = [line for line in lines if line["task"] == "optimising"]
 print(all(a["iteration"] <= b["iteration"] and a["elapsed_s"] <= b["elapsed_s"] for a, b in zip(last, last[1:])),
       all(line["tool"] == "vam-optimize" and 0 <= line["done"] <= line["total"] for line in lines),
-      all(0 <= line["ver"] <= 1 and -2 <= line["pw"] <= 1 for line in lines), last[-1]["left_s"], len(last) > 1)
+      all(0 <= line["ver"] <= 1 and -2 <= line["pw"] <= 1 for line in lines),
+      all(("left_s" in line) == (line["done"] > 0) for line in lines), last[-1]["left_s"], len(last) > 1)
 PY
-is 'is lines of JSON' "$(python3 judge.py <.log/err)" 'True True True 0.0 True'
+is 'is lines of JSON' "$(python3 judge.py <.log/err)" 'True True True True 0.0 True'
 done_testing
