@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "base/index.hpp"
 #include "plot/canvas.hpp"
@@ -107,16 +108,37 @@ Vector3 normal_of(const Body& body, const std::array<int, 3>& triangle) {
   return cross(points[triangle[1]] - points[triangle[0]], points[triangle[2]] - points[triangle[0]]);
 }
 
-/// Means of the triangles around each point, by their area.
-std::vector<Vector3> normals_of(const Body& body) {
-  std::vector<Vector3> normals(body.mesh.points.size());
-  for (const auto& triangle : body.mesh.triangles) {
-    const Vector3 normal = normal_of(body, triangle);
-    for (const int corner : triangle) normals[corner] = normals[corner] + normal;
+/// Normals at corners: means of the triangles around a point, by their area, as far as no sharp edge parts them.
+class Smoothed {
+ public:
+  explicit Smoothed(const Body& body) : begin_(body.mesh.points.size() + 1) {
+    for (const auto& triangle : body.mesh.triangles) {
+      normals_.push_back(normal_of(body, triangle));
+      units_.push_back(unit(normals_.back()));
+      for (const int corner : triangle) ++begin_[corner + 1];
+    }
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    around_.resize(begin_.back());
+    std::vector<std::size_t> next = begin_;
+    for (std::size_t t = 0; t < normals_.size(); ++t) {
+      for (const int corner : body.mesh.triangles[t]) around_[next[corner]++] = t;
+    }
   }
-  for (Vector3& normal : normals) normal = unit(normal);
-  return normals;
-}
+  [[nodiscard]] Vector3 at(std::size_t triangle, int point) const {
+    constexpr double sharp = 0.8;  // the cosine of some 35 degrees
+    Vector3 sum{};
+    for (std::size_t n = begin_[point]; n < begin_[point + 1]; ++n) {
+      if (dot(units_[around_[n]], units_[triangle]) > sharp) sum = sum + normals_[around_[n]];
+    }
+    return unit(sum);
+  }
+
+ private:
+  std::vector<Vector3> normals_;     // as long as the area
+  std::vector<Vector3> units_;       // of length 1
+  std::vector<std::size_t> begin_;   // of each point, in around_
+  std::vector<std::size_t> around_;  // triangles
+};
 
 }  // namespace
 
@@ -138,16 +160,13 @@ RgbImage render(const std::vector<const Body*>& bodies, const Vector3& centre, d
   const double scale = size / side;
   Screen screen(size);
   for (const Body* body : bodies) {
-    const std::vector<Vector3> normals = normals_of(*body);
-    for (const auto& triangle : body->mesh.triangles) {
-      const Vector3 flat = unit(normal_of(*body, triangle));
+    const Smoothed normals(*body);
+    for (std::size_t t = 0; t < body->mesh.triangles.size(); ++t) {
       std::array<Corner, 3> corners;
       for (std::size_t n = 0; n < 3; ++n) {
-        const int at = triangle[n];
+        const int at = body->mesh.triangles[t][n];
         const Vector3 place = body->mesh.points[at] - centre;
-        // An edge is sharp where the faces around a point differ by more than some 35 degrees.
-        const Vector3& normal = dot(flat, normals[at]) > 0.8 ? normals[at] : flat;
-        const double shade = ambient + (1 - ambient) * std::abs(dot(normal, view.light));
+        const double shade = ambient + (1 - ambient) * std::abs(dot(normals.at(t, at), view.light));
         const Rgb own = body->colours.empty() ? paint::light_grey : body->colours[at];
         corners[n] = {0.5 * size + scale * dot(place, view.right), 0.5 * size - scale * dot(place, view.up),
                       dot(place, view.towards), shade * Vector3{double(own[0]), double(own[1]), double(own[2])}};
