@@ -56,8 +56,8 @@ class VideoSource : public ImageSource {
     if (!reader_.next(grey)) return false;
     image = fractions(grey);
     about = {};
-    about.time_s = reader_.format().fps > 0 ? taken_ / reader_.format().fps : 0;
     about.has_time = reader_.format().fps > 0;
+    if (about.has_time) about.time_s = taken_ / reader_.format().fps;
     ++taken_;
     return true;
   }

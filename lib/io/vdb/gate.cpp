@@ -85,10 +85,9 @@ int first_outside(const float* values, const Promise& promise) {
     low = std::min(low, values[i]);
     high = std::max(high, values[i]);
   }
-  if (low >= promise.low && high <= promise.high) return count;
-  int at = 0;
-  while (values[at] >= promise.low && values[at] <= promise.high) ++at;
-  return at;
+  const auto is_outside = [&](float value) { return !(value >= promise.low && value <= promise.high); };
+  if (!is_outside(low) && !is_outside(high)) return count;
+  return static_cast<int>(std::find_if(values, values + count, is_outside) - values);
 }
 
 openvdb::Coord in_block(int place) { return {place >> 6, place >> 3 & 7, place & 7}; }

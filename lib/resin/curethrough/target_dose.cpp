@@ -28,7 +28,7 @@ TargetDose::TargetDose(const CureLimits& limits, const DoseLimit& limit, int sli
     put(strong, filled);
     put(drain, std::clamp(drained, 1.0, unlimited_dose));
     put(open, unlimited_dose);
-    put(fall, -std::min(lowest + (1 - lowest) * power, 1.0));
+    put(fall, -(lowest + (1 - lowest) * power));
     put(rise, std::clamp((highest * (1 - power) - 1) / power, -1.0, unlimited_dose));
     put(dark, -lowest * (1 - power));
     put(none, unlimited_dose);

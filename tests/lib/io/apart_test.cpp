@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "fault_of.hpp"
+#include "io/stream/private/confine.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::Error;
@@ -159,4 +160,13 @@ TEST_CASE("a sandboxed parser can neither open files nor use the network") {
   CHECK(read(given, rest, sizeof rest) == 9);  // its place is shared
   close(given);
   close(other);
+}
+
+TEST_CASE(
+    "a child may take 256 MiB, 64 times its file and what that unpacks to, and 10 s and one for 64 MiB of these") {
+  constexpr std::uint64_t mib = std::uint64_t{1} << 20;
+  CHECK(vam::io::bounds_of(mib, 0).memory_bytes == (256 + 64) * mib);
+  CHECK(vam::io::bounds_of(mib, 64 * mib).memory_bytes == (256 + 128) * mib);
+  CHECK(vam::io::bounds_of(mib, 0).cpu_s == 11);
+  CHECK(vam::io::bounds_of(mib, 64 * mib).cpu_s == 12);
 }

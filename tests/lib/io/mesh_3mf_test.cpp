@@ -175,3 +175,19 @@ TEST_CASE("3MF: the unit and the place of the build item count") {
   CHECK(low[2] == doctest::Approx(30));
   CHECK(has(refusal(folder, box_3mf("furlong", "")), "unknown 3MF unit 'furlong'"));
 }
+
+TEST_CASE("3MF: the relations name the model, wherever they are in the archive") {
+  const scratch::Folder folder;
+  const std::string relations =
+      "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+      "Target=\"/3D/part.model\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
+      "</Relationships>";
+  for (const bool first : {true, false}) {
+    Zip zip;
+    if (first) zip.add("_rels/.rels", relations);
+    zip.add("3D/another.model", model(object(1, mesh_xml(box())), item(1) + item(1)));
+    zip.add("3D/part.model", model(object(1, mesh_xml(box())), item(1)));
+    if (!first) zip.add("_rels/.rels", relations);
+    CHECK(read_mesh(folder.write("a", zip.done())).triangles.size() == 12);
+  }
+}

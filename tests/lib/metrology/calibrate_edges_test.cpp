@@ -101,3 +101,16 @@ TEST_CASE("Vial edges: a sweep without an edge, a dark one, and an image without
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 100, 0, 1000, random), printer_of(truth)); }) == Fault::data);
   CHECK(fault_of([] { (void)band_readings(Image(4, 2), 3); }) == Fault::data);
 }
+
+TEST_CASE("Vial edges: a camera from 60 to 91 degrees beside the beam is accepted, to the last bit") {
+  const auto problem = [](double azimuth_deg) {
+    model::Printer printer = printer_of({});
+    printer.camera.azimuth_deg = azimuth_deg;
+    return error_of([&] { (void)find_edges({}, printer); }, Fault::data);
+  };
+  for (const double side : {-1.0, 1.0}) {
+    for (const double azimuth_deg : {60.0, 90.0, 91.0})
+      CHECK_FALSE(has(problem(side * azimuth_deg), "the camera is at"));
+    for (const double azimuth_deg : {59.9, 91.1, 180.0}) CHECK(has(problem(side * azimuth_deg), "the camera is at"));
+  }
+}

@@ -84,7 +84,10 @@ TEST_CASE("statistics of given numbers") {
   CHECK(d.sigma_mm == doctest::Approx(std::sqrt(10.0)));
   CHECK(d.mad_mm == doctest::Approx(1));
   CHECK(d.max_abs_mm == 7);
+  // Between -2 and -1, and between 1 and 7, at 4 x 0.05 and 4 x 0.95.
+  CHECK(d.percentiles_mm[1].second == doctest::Approx(-1.8));
   CHECK(d.percentiles_mm[3].second == doctest::Approx(0));
+  CHECK(d.percentiles_mm[5].second == doctest::Approx(5.8));
   CHECK_THROWS_AS((void)metrology::deviation({}), Error);
 }
 

@@ -83,6 +83,13 @@ TEST_CASE("exact data give the exact curve") {
   CHECK(curve.samples == 18);
 }
 
+TEST_CASE("R squared is the square of the correlation") {
+  // About a line of 100 um a decade, 10 um up and down: of the squares 4 x 100^2 and 6 x 10^2.
+  const std::vector<CuredSample> repeated{{10, 90}, {10, 110}, {100, 190}, {100, 210}, {1000, 290}, {1000, 310}};
+  CHECK(resin::fit_working_curve(repeated).r_squared == doctest::Approx(40000.0 / 40600.0));
+  CHECK(resin::fit_working_curve(measured(0, 0)).r_squared == doctest::Approx(1));
+}
+
 TEST_CASE("confidence intervals cover the true value at their stated rate") {
   int slope = 0;
   int exposure = 0;
