@@ -47,7 +47,7 @@ void SealCheck::judge(std::size_t first, std::size_t end) const {
 
 void SealCheck::finish(const std::function<void(char* to, std::size_t size)>& take) {
   if (!sealed()) return;
-  if (in_order_ && places_.digest() != table_.digest()) {
+  if (in_order_ && places_ != table_) {
     throw std::runtime_error("its offset table is damaged, so that other programs cannot read it; make the file again");
   }
   if (seals_.front().values) return;

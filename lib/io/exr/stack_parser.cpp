@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -15,7 +16,6 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/exr/private/attributes.hpp"
-#include "io/stream/finite.hpp"
 #include "io/stream/signature.hpp"
 
 namespace vam::io::exr {
@@ -30,26 +30,23 @@ constexpr std::size_t max_waiting_bytes = std::size_t{1} << 30;
 constexpr std::size_t batch = 16;  // compressed images decoded at a time, in parallel
 constexpr std::size_t absent = ~std::size_t{0};
 
-void check_finite(const Image& image, std::size_t index) {
-  if (all_finite(image.values.data(), image.size())) return;
-  const auto bad = std::find_if(image.values.begin(), image.values.end(), [](float v) { return !std::isfinite(v); });
-  const auto at = bad - image.values.begin();
-  throw std::runtime_error("pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
-                           " of image " + std::to_string(index) + " is not a finite number");
-}
-
 // Intensities of projections are relative to what cures the resin; a value beyond has another unit, or is damaged, and
 // would leave all others dark.
-void check_intensity(const Image& image, std::size_t index) {
-  constexpr float most = 1e9F;
-  unsigned beyond = 0;  // without an early exit: vector code
-  for (const float value : image.values) beyond |= static_cast<unsigned>(value > most);
-  if (beyond == 0) return;
-  const auto peak = std::max_element(image.values.begin(), image.values.end());
-  const auto at = peak - image.values.begin();
-  throw std::runtime_error("pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
-                           " of image " + std::to_string(index) + " is " + format_number(*peak, 3) +
-                           ", more than 1e9, which is no intensity; scale or mend it");
+constexpr float most_intensity = 1e9F;
+
+void check_values(const Image& image, std::size_t index, model::Space space) {
+  constexpr float largest = std::numeric_limits<float>::max();
+  const float most = space == model::Space::camera ? largest : most_intensity;
+  const auto is_good = [most](float value) { return (value >= -largest) & (value <= most); };  // NaN is not
+  unsigned good = 1;
+  for (const float value : image.values) good &= static_cast<unsigned>(is_good(value));  // no early exit: vector code
+  if (good != 0) return;
+  const auto bad = std::find_if_not(image.values.begin(), image.values.end(), is_good);
+  const auto at = bad - image.values.begin();
+  const std::string pixel = "pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
+                            " of image " + std::to_string(index) + " is ";
+  if (!std::isfinite(*bad)) throw std::runtime_error(pixel + "not a finite number");
+  throw std::runtime_error(pixel + format_number(*bad, 3) + ", more than 1e9, which is no intensity; scale or mend it");
 }
 
 void decode_whole(const Imf::Header& layout, const Chunks& chunks, std::size_t index, Image& image) {
@@ -262,8 +259,7 @@ void StackParser::refill(bool alone) {
     const auto at = static_cast<std::size_t>(i);
     take_size(ready_[at], info_);
     decode_whole(layouts_[layout_of_[first + at]].header, taken[at], first + at, ready_[at]);
-    check_finite(ready_[at], first + at);
-    if (info_.space != model::Space::camera) check_intensity(ready_[at], first + at);
+    check_values(ready_[at], first + at, info_.space);
     seals_->note_image(first + at, ready_[at]);
   };
   if (count == 1) {

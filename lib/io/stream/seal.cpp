@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/stream/seal.hpp"
 
-#include <xxhash.h>
-
 #include <charconv>
 #include <cstdio>
-#include <new>
 
 #include "base/simd.hpp"
 #include "io/stream/private/hash_kernel.hpp"
@@ -18,7 +15,10 @@ constexpr std::string_view seal_head = "xxh3:";
 constexpr std::string_view chain_head = "# sealed ";
 constexpr std::size_t digits = 16;  // of one half
 
-Digest digest_from(const XXH128_hash_t& hash) { return {hash.high64, hash.low64}; }
+// The library itself is compiled for the oldest machines.
+const HashKernels& kernels() { return VAM_KERNEL(hash_kernels, simd_level()); }
+
+Digest digest_from(const HashHalves& hash) { return {hash.high, hash.low}; }
 
 std::string hexadecimal(std::uint64_t half) {
   char text[digits + 1];
@@ -34,19 +34,14 @@ bool parse_half(std::string_view text, std::uint64_t& half) {
 }  // namespace
 
 struct Sealer::State {
-  struct FreeHash {
-    void operator()(XXH3_state_t* hash) const { XXH3_freeState(hash); }
-  };
-  std::unique_ptr<XXH3_state_t, FreeHash> hash{XXH3_createState()};
+  HashState hash;
 };
 
-Sealer::Sealer() : state_(std::make_unique<State>()) {
-  if (state_->hash == nullptr || XXH3_128bits_reset(state_->hash.get()) == XXH_ERROR) throw std::bad_alloc();
-}
+Sealer::Sealer() : state_(std::make_unique<State>()) { kernels().begin(state_->hash); }
 Sealer::~Sealer() = default;
 
 void Sealer::add(const void* bytes, std::size_t size) {
-  if (size > 0) (void)XXH3_128bits_update(state_->hash.get(), bytes, size);
+  if (size > 0) kernels().add(state_->hash, bytes, size);
 }
 
 void Sealer::add(const std::string& text) {
@@ -54,13 +49,9 @@ void Sealer::add(const std::string& text) {
   add(text.data(), text.size());
 }
 
-Digest Sealer::digest() const { return digest_from(XXH3_128bits_digest(state_->hash.get())); }
+Digest Sealer::digest() const { return digest_from(kernels().end(state_->hash)); }
 
-// The library itself is compiled for the oldest machines.
-Digest digest_of(const void* bytes, std::size_t size) {
-  const HashHalves hash = VAM_KERNEL(hash_bytes, simd_level())(bytes, size);
-  return {hash.high, hash.low};
-}
+Digest digest_of(const void* bytes, std::size_t size) { return digest_from(kernels().of(bytes, size)); }
 
 std::string seal_text(const Digest& digest) {
   return std::string(seal_head) + hexadecimal(digest.high) + hexadecimal(digest.low);

@@ -17,6 +17,14 @@ std::string text(const openvdb::FloatGrid& sparse, const char* key) {
   return found ? found->value() : "";
 }
 
+using ActiveWords = decltype(LeafRecord::active);
+
+ActiveWords active_of(const openvdb::FloatTree::LeafNodeType& leaf) {
+  ActiveWords words{};
+  for (openvdb::Index i = 0; i < words.size(); ++i) words[i] = leaf.valueMask().getWord<openvdb::Index64>(i);
+  return words;
+}
+
 }  // namespace
 
 Digest facts_digest(const openvdb::FloatGrid& sparse) {
@@ -38,7 +46,8 @@ void VoxelSealer::begin(const openvdb::FloatTree& tree) {
   sealer_.add(tree.background());
   for_tiles(tree, [this](const TileRecord& tile) { sealer_.add(&tile, sizeof tile); });
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
-    for (openvdb::Index word = 0; word < 8; ++word) sealer_.add(leaf->valueMask().getWord<openvdb::Index64>(word));
+    const ActiveWords active = active_of(*leaf);
+    sealer_.add(active.data(), sizeof active);
   }
 }
 
@@ -46,9 +55,7 @@ LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf, const float* 
   LeafRecord record;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled at once
   record.corner = {leaf.origin().x(), leaf.origin().y(), leaf.origin().z()};
   record.padding = 0;
-  for (openvdb::Index word = 0; word < record.active.size(); ++word) {
-    record.active[word] = leaf.valueMask().getWord<openvdb::Index64>(word);
-  }
+  record.active = active_of(leaf);
   std::copy_n(values, record.values.size(), record.values.data());
   return record;
 }

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <doctest/doctest.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -343,9 +344,32 @@ TEST_CASE("the hash is XXH3 as published") {
   sealer.add(noise.data(), 1000);
   sealer.add(noise.data() + 1000, noise.size() - 1000);
   CHECK(sealer.digest() == digest_of(noise.data(), noise.size()));
+  const XXH128_hash_t library = XXH3_128bits(noise.data(), noise.size());
+  CHECK(sealer.digest() == Digest{library.high64, library.low64});
   Digest parsed;
   CHECK(parse_seal("xxh3:99aa06d3014798d86001c324468d497f", parsed));
   CHECK(parsed == digest_of("", 0));
   CHECK_FALSE(parse_seal("xxh3:99aa06d3014798d86001c324468d497", parsed));
   CHECK_FALSE(parse_seal("xxh3:99aa06d3014798d86001c324468d497g", parsed));
 }
+
+#ifdef __x86_64__
+TEST_CASE("the hash leaves no vector registers in use, which would make code without AVX slow") {
+  if (!__builtin_cpu_supports("xsavec")) return;  // processors since 2015 tell what is in use
+  const auto in_use = [] {
+    unsigned low = 0;
+    unsigned high = 0;
+    asm volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(1));
+    constexpr unsigned upper_halves = 4;
+    return (low & upper_halves) != 0;
+  };
+  const std::vector<char> bytes(100'000, 'x');
+  (void)digest_of(bytes.data(), bytes.size());
+  CHECK_FALSE(in_use());
+  Sealer sealer;
+  sealer.add(bytes.data(), bytes.size());
+  CHECK_FALSE(in_use());
+  (void)sealer.digest();
+  CHECK_FALSE(in_use());
+}
+#endif

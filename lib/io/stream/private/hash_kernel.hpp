@@ -12,14 +12,26 @@ struct HashHalves {
   std::uint64_t low;
 };
 
+/// Room for what XXH3 keeps between pieces.
+struct alignas(64) HashState {
+  unsigned char room[576];
+};
+
+struct HashKernels {
+  HashHalves (*of)(const void* bytes, std::size_t size);
+  void (*begin)(HashState& state);
+  void (*add)(HashState& state, const void* bytes, std::size_t size);
+  HashHalves (*end)(const HashState& state);
+};
+
 namespace baseline {
-[[nodiscard]] HashHalves hash_bytes(const void* bytes, std::size_t size);
+extern const HashKernels hash_kernels;
 }
 namespace avx2 {
-[[nodiscard]] HashHalves hash_bytes(const void* bytes, std::size_t size);
+extern const HashKernels hash_kernels;
 }
 namespace avx512 {
-[[nodiscard]] HashHalves hash_bytes(const void* bytes, std::size_t size);
+extern const HashKernels hash_kernels;
 }
 
 }  // namespace vam::io
