@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What OpenImageIO writes of a stack again has the seals of the stack, and only if its values are the same.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+command -v oiiotool >/dev/null || { echo '1..0 # SKIP no oiiotool; apt-get install openimageio-tools'; exit 77; }
+
+box 6 6 3 >a.off
+vam-slice a.off --voxel 0.3 -o part.vdb
+vam-sinogram part.vdb --half -o sino.exr
+sealed() { vam-check "$1" | sed -n '1s/.*, sealed //p'; }
+compression() { oiiotool --info -v "$1" | sed -n 's/ *compression: "\(.*\)"/\1/p' | sort -u; }
+# DWAA and DWAB are of three channels and more: of one, oiiotool makes ZIP (tests/lib/io/seal_test.cpp has DWAA).
+for asked in none rle zip zips piz pxr24 b44 b44a dwaa dwab; do
+  oiiotool sino.exr --compression $asked -o again.exr
+  case $(compression again.exr) in
+    b44 | b44a | dwaa | dwab) fails 65 'again.exr: image 0 changed after it was written' vam-check again.exr
+      fails 65 'again.exr: image 0 changed after it was written' vam-resample again.exr -o frames.exr ;;
+    *) is "$asked keeps the seal" "$(sealed again.exr)" "$(sealed sino.exr)" ;;
+  esac
+done
+is 'b44 is with loss' "$(oiiotool sino.exr --compression b44 -o again.exr && compression again.exr)" b44
+vam-sinogram part.vdb -o float.exr
+oiiotool float.exr -d half -o half.exr
+fails 65 'half.exr: image 0 changed after it was written' vam-check half.exr
+oiiotool -a float.exr --mulc 1.000001 -o scaled.exr
+fails 65 'scaled.exr: image [0-9]* changed after it was written' vam-check scaled.exr
+
+done_testing
