@@ -7,10 +7,13 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/index.hpp"
 
 #ifdef __SANITIZE_THREAD__
@@ -59,6 +62,18 @@ void ask_for_no_more_than_there_are() {
   });
 }
 
+// Another program may have taken a thread that was there when they were counted.
+template <class Loop>
+void with_threads(const Loop& loop) {
+  try {
+    loop();
+  } catch (const std::runtime_error& problem) {
+    if (!std::string_view(problem.what()).starts_with("pthread_create has failed")) throw;  // the words of oneTBB
+    throw Error{Fault::memory,
+                "needs more threads than the system gives; raise its limit (ulimit -u), or use --threads 1"};
+  }
+}
+
 // ThreadSanitizer sees nothing of oneTBB's own synchronisation, as the library is not instrumented. It is informed that
 // what was done before a loop is seen by its items, and what these did by what follows.
 #ifdef __SANITIZE_THREAD__
@@ -75,14 +90,16 @@ void parallel_for(int count, const std::function<void(int)>& work) {
   char begun = 0;
   char done = 0;
   hand_over(begun);
-  tbb::parallel_for(
-      tbb::blocked_range<int>(0, count, 1),
-      [&](const tbb::blocked_range<int>& range) {
-        take_over(begun);
-        for (int i = range.begin(); i != range.end(); ++i) work(i);
-        hand_over(done);
-      },
-      tbb::simple_partitioner{});
+  with_threads([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, count, 1),
+        [&](const tbb::blocked_range<int>& range) {
+          take_over(begun);
+          for (int i = range.begin(); i != range.end(); ++i) work(i);
+          hand_over(done);
+        },
+        tbb::simple_partitioner{});
+  });
   take_over(done);
 }
 

@@ -21,6 +21,10 @@ else
   ok 'and the part is the same' vam-score alone.vdb --grid target --target part.vdb --require 'iou>=1'
   quiet 'also for sinograms' refused vam-sinogram part.vdb --angles 8 -o alone.exr
   quiet 'and stacks' refused vam-resample alone.exr -o resampled.exr
+  # Tools without volumes need no thread but their own.
+  quiet 'a tool without volumes starts with one thread' refused_from 1 vam-stack alone.exr --slices 1/2 -o half.exr
+  fails 71 '^vam-stack: needs more threads than the system gives; raise its limit \(ulimit -u\), or use --threads 1$' \
+    refused_from 2 vam-stack alone.exr --slices 1/2 --threads 2 -o half.exr
   fails 71 'figure: needs one thread more than the system gives; raise its limit' refused vam-view part.vdb -o x.png
 fi
 if ! sanitized; then
