@@ -67,6 +67,10 @@ ok 'a sealed printer file is read' vam-slice --print-printer --printer printer.t
 sed 's/^radius_mm = 11.5/radius_mm = 17.5/' printer.toml >changed.toml
 fails 65 "changed.toml: changed after it was written .* remove its last line '# sealed" vam-slice --print-printer --printer changed.toml -o x.toml
 fails 65 'changed.toml: changed' vam-check changed.toml
+for damage in s/^#.sealed/#.sealex/ s/^#.sealed/sealed/ s/xxh3:/xxi3:/; do
+  sed "\$$damage" printer.toml >seal.toml
+  fails 65 'seal.toml: (changed|.*not TOML)' vam-check seal.toml
+done
 head -c -9 printer.toml >cut.toml
 fails 65 'cut.toml: changed' vam-slice --print-printer --printer cut.toml -o x.toml
 
@@ -103,6 +107,9 @@ is 'one without checksums, whatever its name' "$(vam-check looks.mkv | head -n 1
 fails 66 'none.exr: cannot open' vam-check none.exr
 : >empty.vdb
 fails 65 'empty.vdb: is empty' vam-check empty.vdb
+{ cat part.vdb; echo more; } >long.vdb
+fails 65 'long.vdb: trailing data after the last grid, from byte [0-9]+ on, is not a volume' vam-check long.vdb
+fails 65 'stdin: trailing data after the last grid' sh -c 'vam-sinogram - -o x.exr <long.vdb'
 fails 64 -- vam-check --slow
 fails 74 'No space left' sh -c 'vam-check part.vdb >/dev/full'
 fails 65 'a.off' vam-check --seal a.off

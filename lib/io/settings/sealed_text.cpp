@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/sealed_text.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "io/stream/seal.hpp"
@@ -29,6 +31,19 @@ void require_equal(const std::string& seal, const Digest& read, const std::strin
                                " if the change was intentional"};
 }
 
+// The line feed before it. Damage leaves one half of its head at least.
+std::size_t seal_line(const std::string& text) {
+  const std::size_t line = text.rfind("\n" + text_head);
+  if (line != std::string::npos) return line;
+  const std::size_t mark = text.rfind(" xxh3:");
+  return mark == std::string::npos ? mark : text.rfind('\n', mark);
+}
+
+bool is_seal(const Json& value) {
+  Digest ignored;
+  return value.is_string() && parse_seal(value.get<std::string>(), ignored);
+}
+
 }  // namespace
 
 void seal_json(Json& object) {
@@ -37,8 +52,9 @@ void seal_json(Json& object) {
 }
 
 bool require_seal(const Json& object, const std::string& name) {
-  if (!object.is_object() || !object.contains(json_key)) return false;
-  const Json& seal = object.at(json_key);
+  if (!object.is_object()) return false;
+  if (!object.contains(json_key) && std::none_of(object.begin(), object.end(), is_seal)) return false;
+  const Json seal = object.value(json_key, Json());  // whose key may be damaged
   require_equal(seal.is_string() ? seal.get<std::string>() : "", digest_of_json(object), name,
                 std::string("its key ") + json_key);
   return true;
@@ -50,12 +66,12 @@ std::string sealed_text(std::string text) {
 }
 
 bool require_text_seal(const std::string& text, const std::string& name) {
-  const std::size_t line = text.rfind("\n" + text_head);
+  const std::size_t line = seal_line(text);
   if (line == std::string::npos) return false;
-  std::string seal = text.substr(line + 1 + text_head.size());
-  const bool ended = !seal.empty() && seal.back() == '\n';
-  if (ended) seal.pop_back();
-  require_equal(ended ? seal : "", digest_of(text.data(), line + 1), name, "its last line '" + text_head + "...'");
+  std::string seal = text.substr(line + 1);
+  const bool whole = seal.starts_with(text_head) && seal.back() == '\n';
+  if (whole) seal = seal.substr(text_head.size(), seal.size() - text_head.size() - 1);
+  require_equal(whole ? seal : "", digest_of(text.data(), line + 1), name, "its last line '" + text_head + "...'");
   return true;
 }
 

@@ -35,7 +35,11 @@ void for_archives(InputFile& file, const std::function<void(std::istream&)>& arc
   openvdb::initialize();  // grid and metadata types must be registered before anything is read
   try {
     if (file.at_end()) throw std::runtime_error("is empty; the program that should have written it failed");
-    while (!file.at_end()) {
+    for (const std::uint64_t begin = file.position(); !file.at_end();) {
+      if (file.position() > begin && !is_archive(file.peek())) {
+        throw std::runtime_error("trailing data after the last grid, from byte " + std::to_string(file.position()) +
+                                 " on, is not a volume; write the file again, or truncate it there");
+      }
       check_head(file.peek());
       const Quiet quiet;
       InputBuffer buffer(file);

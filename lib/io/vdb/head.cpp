@@ -64,6 +64,8 @@ class Walk {
 
 }  // namespace
 
+bool is_archive(std::span<const char> bytes) { return Walk(bytes).number<std::int64_t>() == openvdb::OPENVDB_MAGIC; }
+
 void check_head(std::span<const char> bytes) {
   Walk walk(bytes);
   if (walk.number<std::int64_t>() != openvdb::OPENVDB_MAGIC) {

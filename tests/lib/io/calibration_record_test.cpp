@@ -185,6 +185,9 @@ TEST_CASE("a changed digit in a record, or in its response table, is refused; it
   CHECK(refusal(bare.dump()).empty());  // as a record of before, or by hand
   bare["seal"] = 7;
   CHECK(has(refusal(bare.dump()), "seal unreadable"));
+  std::string renamed = changed;
+  renamed.replace(renamed.find("\"seal\""), 6, "\"sebl\"");
+  CHECK(has(refusal(renamed), "seal unreadable"));
 
   const std::string table = (std::filesystem::path(calibration.folder) / "r.csv").string();
   scratch::spill(table, "grey,intensity\n0,0\n255,3.5\n");
