@@ -24,6 +24,7 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = tool::load_printer(printer_of(options));
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
+  take_full_scale(options);
 
   io::StackReader in(options.input);
   io::require(options.input, in.info(), model::Kind::sinogram);

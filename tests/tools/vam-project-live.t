@@ -76,17 +76,19 @@ is 'every frame is the one nearest to the angle' "$(cat angles)" True
 
 # New projections between turns: the frames change at a turn's begin, without a dark image; what does not fit is refused.
 mkdir new
-cp part.exr new/earlier.exr
-vam-project part.exr -o null: --speed 180 --turns 4 --max-missed 0.9 --log renewed --frames-from new &
+$exr make one.exr space=projector width=64 height=36 count=3 value=1
+cp one.exr new/earlier.exr
+vam-project one.exr -o null: --speed 180 --turns 4 --max-missed 0.9 --log renewed --frames-from new &
 tool=$!
 await grep -qs '"frame":[0-9]' renewed
 $exr make small.exr space=projector width=64 height=12 count=3
 mv small.exr new/a.exr
 $exr make other.part space=projector width=64 height=36 count=3 value=0.25
+await grep -q frames-refused renewed  # of several the last counts
 mv other.part new/b.exr
 wait $tool
 is 'a print whose projections were renewed' $? 0
-is 'one was refused' "$(grep '"event":"frames-refused"' renewed | grep -c 'new/a.exr: 64 columns x 12 angles, but the print shows 64 x 36; compute it')" 1
+is 'one was refused' "$(grep '"event":"frames-refused"' renewed | grep -c 'new/a.exr: has 64 columns x 12 angles .*, but the print shows 64 columns x 36 angles .*; compute it')" 1
 is 'one was shown' "$(grep -c '"event":"frames",' renewed)" 1
 is 'with its hash' "$(grep '"event":"frames",' renewed | grep -c "$(sha256sum <new/b.exr | cut -d' ' -f1)")" 1
 python3 - >between <<'PY'
@@ -99,9 +101,14 @@ lit = [i for i, flip in enumerate(flips) if flip["frame"] >= 0]
 print(all(flips[i]["frame"] >= 0 for i in range(lit[0], lit[-1])), flips[at]["frame"], abs(flips[at]["angle_deg"] - 360 * turn) <= 10)
 PY
 is 'nothing dark between, the first frame at the begin of a turn' "$(cat between)" 'True 0 True'
-for one in part new/b; do vam-dose $one.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o dose.vdb --report ${one#new/}.json; done
+for one in one new/b; do vam-dose $one.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o dose.vdb --report ${one#new/}.json; done
 holds 'each was shown for whole turns, all of them together' \
-  "($(json part.json shown_turns) + $(json b.json shown_turns) - 4) ^ 2 < 0.1 ^ 2 && $(json b.json shown_turns) > 0.9"
+  "($(json one.json shown_turns) + $(json b.json shown_turns) - 4) ^ 2 < 0.1 ^ 2 && $(json b.json shown_turns) > 0.9"
+holds 'and its dose is that of its intensities, at the full scale of the first' \
+  "($(json one.json dose_shown_max_relative) / $(json one.json shown_turns) - 4 * $(json b.json dose_shown_max_relative) / $(json b.json shown_turns)) ^ 2 < 1e-4 * $(json one.json dose_shown_max_relative) ^ 2"
+fails 64 'full-scale: renewed showed one.exr at a full scale of 1, not 2; omit it' vam-dose one.exr --shown renewed --full-scale 2 --size 2 --set stage.speed_deg_s=180 -o x.vdb
+vam-project part.exr -o null: --speed 360 --turns 1 --max-missed 0.9 --log /dev/full --frames-from new 2>full
+is 'a log that cannot be written ends the print in good order' "$? $(grep -c '/dev/full: write failed' full)" '74 1'
 fails 66 'nowhere: cannot read the folder' vam-project part.exr -o null: --turns 1 --speed 180 --frames-from nowhere
 fails 64 'frames-from: applies only to a display' vam-project part.exr -o x.mkv --frames-from new
 

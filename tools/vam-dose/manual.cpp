@@ -35,8 +35,10 @@ std::vector<std::string> description() {
       "With --shown the dose is that delivered by a print according to its log: each image for the time and at the "
       "stage angles at which it was displayed, including missed vertical blanks, an abort and a stop by --until. "
       "Without --printer the settings are those of the run, its printer.toml; others are rejected where they "
-      "change the light. A resumption may have had another intensity, which is converted. An image on which the "
-      "projector hung counts at the angle where it began. The report then contains dose_shown instead of "
+      "change the light. The full scale is that of the print; a resumption may have had another one, and another "
+      "intensity, which are converted. Where a print showed several sinograms (vam-project --frames-from), the dose is "
+      "that of SINOGRAM, for the time in which it was shown. An image on which the projector hung counts at the angle "
+      "where it began. The report then contains dose_shown instead of "
       "dose_per_turn, and shown_turns, the mean number of turns over the stage angles.",
       "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print (resin.diffusion_mm2_s) "
       "blur the volume; the dose beyond its faces is assumed to be 0."};

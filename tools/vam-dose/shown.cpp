@@ -92,6 +92,19 @@ cli::PrinterOptions printer_of(const Options& options) {
   return printer;
 }
 
+void take_full_scale(Options& options) {
+  if (options.shown.empty()) return;
+  const std::string& run = options.shown.front();
+  const double stated = io::read_showing(run, options.input).full_scale;
+  if (!(stated > 0)) return;
+  constexpr double same = 1e-6;
+  if (options.full_scale && std::abs(*options.full_scale / stated - 1) > same) {
+    throw Error{Fault::usage, "--full-scale: " + run + " showed " + options.input + " at a full scale of " +
+                                  format_number(stated) + ", not " + format_number(*options.full_scale) + "; omit it"};
+  }
+  options.full_scale = stated;
+}
+
 std::vector<double> shown_turns(const Options& options, const model::StackInfo& info, const model::Printer& printer) {
   if (options.shown.empty()) return {};
   if (info.space != model::Space::projector) {
@@ -106,8 +119,10 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
   std::vector<double> turns(info.height);
   for (const std::string& run : options.shown) {
     require_unchanged(run);
-    const double intensity = intensity_of(run, run == options.shown.front(), printer);
-    const auto of_run = io::turns_shown(io::read_shown(run, options.input), rows, printer.stage.speed_deg_s);
+    const io::Showing showing = io::read_showing(run, options.input);
+    double intensity = intensity_of(run, run == options.shown.front(), printer);
+    if (options.full_scale && showing.full_scale > 0) intensity *= *options.full_scale / showing.full_scale;
+    const auto of_run = io::turns_shown(showing.images, rows, printer.stage.speed_deg_s);
     std::transform(turns.begin(), turns.end(), of_run.begin(), turns.begin(),
                    [&](double sum, double one) { return sum + intensity * one; });
   }

@@ -16,6 +16,10 @@ namespace vam::dose_tool {
 /// The printer that the options name; where none is named, that of the run: what it froze.
 [[nodiscard]] cli::PrinterOptions printer_of(const Options& options);
 
+/// Takes the full scale at which a run of --shown showed the sinogram, if it states it. Throws Fault::usage where
+/// --full-scale says otherwise.
+void take_full_scale(Options& options);
+
 /// Turns for which each row of the sinogram was shown, summed over the runs of --shown; empty without. Throws
 /// Fault::data where nothing was shown at all, the stack is none of a projector, or a run used another stack or other
 /// settings of the light.

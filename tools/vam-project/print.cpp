@@ -11,6 +11,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-project/live.hpp"
@@ -65,21 +66,36 @@ void warn_of_dose(const Options& options, const io::StackReader& reader, const m
        format_number(turns / reached, 4) + " turns (--turns)");
 }
 
-/// The light of a sinogram that is to take the place of another. Throws Fault::data unless it is as large, for the same
-/// printer.
+std::string size_text(const model::StackInfo& info) {
+  return std::to_string(info.width) + " columns x " + std::to_string(info.height) + " angles from " +
+         format_number(info.angle_start_deg) + " deg in steps of " + format_number(info.angle_step_deg) + " deg, " +
+         std::to_string(info.poses.size()) + " poses";
+}
+
+/// The light of a sinogram that is to take the place of another. Throws Fault::data unless it has the same columns,
+/// angles and poses and is for the same printer.
 Light read_renewed(const std::string& path, Options options, const model::StackInfo& former,
                    const model::Printer& printer) {
   options.input = path;
   io::StackReader reader(path);
   const model::StackInfo& info = reader.info();
-  if (info.width != former.width || info.height != former.height || info.angle_step_deg != former.angle_step_deg) {
-    throw Error{Fault::data, path + ": " + std::to_string(info.width) + " columns x " + std::to_string(info.height) +
-                                 " angles, but the print shows " + std::to_string(former.width) + " x " +
-                                 std::to_string(former.height) + "; compute it with the same options"};
+  if (info.width != former.width || info.height != former.height || info.angle_start_deg != former.angle_start_deg ||
+      info.angle_step_deg != former.angle_step_deg || info.poses != former.poses) {
+    throw Error{Fault::data, path + ": has " + size_text(info) + ", but the print shows " + size_text(former) +
+                                 "; compute it with the same options"};
   }
   (void)require_printer(options, info, printer);
   return read_light(options, reader, printer.projector);
 }
+
+/// What vam-dose --shown needs to know of a sinogram, `full_scale` its value at full intensity.
+Json facts_of(const std::string& path, const std::string& sha256, double full_scale) {
+  Json facts{{"sinogram", io::input_name(path)}, {"full_scale", full_scale}};
+  if (!sha256.empty()) facts["sinogram_sha256"] = sha256;
+  return facts;
+}
+
+std::string hash_of(const std::string& path) { return path == "-" ? "" : io::sha256_of(path); }
 
 // One turn's frames, or those of the turns that differ, into the display, then the print: the angle of the stage
 // chooses the frame.
@@ -94,15 +110,20 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const Dithering dithering = dithering_of(options, frames, turns);
   const auto schedule = optics::frame_schedule(frames, 360, std::max(1, dithering.turns));
   const auto scale = static_cast<float>(options.multiplier / peak);
-  const auto renew = [&](const std::string& path) {
+  const double full_scale = peak / options.multiplier;
+  const auto renew = [&](const std::string& path, const std::atomic<bool>& ended) {
+    const std::string hash = hash_of(path);
     const Light renewed = read_renewed(path, options, reader.info(), printer);
-    ScreenSink screen(live.mode());
+    if (hash_of(path) != hash) throw Error{Fault::data, path + ": was changed while it was read; rename whole files"};
+    ScreenSink screen(live.mode(), ended);
     const auto seen = show(frames_of(renewed, schedule, dithering), scale, printer.projector, false, dithering, screen);
-    live.offer(std::move(screen.bytes),
-               {{"sinogram", path}, {"sinogram_sha256", io::sha256_of(path)}, {"clipped", seen.clipped}});
+    Json facts = facts_of(path, hash, full_scale);
+    facts["clipped"] = seen.clipped;
+    live.offer(std::move(screen.bytes), facts);
   };
   LiveSink sink(live, [&] {
-    std::optional<Renewal> renewal;
+    live.note("sinogram", facts_of(options.input, hash_of(options.input), full_scale));
+    std::optional<Renewal> renewal;  // its thread begins before the print hurries
     if (!options.live.frames_from.empty()) renewal.emplace(options.live.frames_from, live, renew);
     return live.play(frames, printer.stage.speed_deg_s, turns);
   });

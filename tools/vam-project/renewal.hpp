@@ -8,17 +8,18 @@
 #include <string>
 #include <thread>
 
-#include "base/json_fwd.hpp"
+#include "base/error.hpp"
 #include "vam-project/live.hpp"
 
 namespace vam::project {
 
-/// Sinograms that appear in a folder, by a thread of its own. Those that are there when it begins are of an earlier
-/// print.
+/// Sinograms that appear in a folder or take the place of others in it, by a thread of its own; of several the last.
+/// Those that are there when it begins are of an earlier print. Whatever goes wrong is logged, and the print goes on.
 class Renewal {
  public:
-  /// Offers what is made of a sinogram; throws Error where it is not for this print.
-  using Make = std::function<void(const std::string& path)>;
+  /// Offers what is made of a sinogram; throws Error where it is not for this print, and may throw anything once it
+  /// has ended.
+  using Make = std::function<void(const std::string& path, const std::atomic<bool>& ended)>;
   /// Throws Fault::no_input when the folder cannot be read.
   Renewal(std::string folder, Live& live, Make make);
   ~Renewal();
@@ -28,11 +29,13 @@ class Renewal {
  private:
   void watch();
   void look();
+  void refuse(const std::string& message);
 
   std::string folder_;
   Live& live_;
   Make make_;
-  std::set<std::string> seen_;
+  std::set<std::string> seen_;  // by name and what the file system knows of the file
+  std::string refused_;         // last
   std::atomic<bool> ended_{false};
   std::thread thread_;
 };
@@ -40,8 +43,9 @@ class Renewal {
 /// The frames as a screen takes them.
 class ScreenSink final : public io::FrameSink {
  public:
-  explicit ScreenSink(const device::DisplayMode& mode) : mode_(mode) {}
+  ScreenSink(const device::DisplayMode& mode, const std::atomic<bool>& ended) : mode_(mode), ended_(ended) {}
   void write(std::span<const io::ProjectorFrame> frames) override {
+    if (ended_) throw Error{Fault::busy, "the print has ended"};
     for (const auto& frame : frames) bytes.push_back(device::screen_bytes(frame.levels, mode_));
   }
   void commit() override {}
@@ -50,6 +54,7 @@ class ScreenSink final : public io::FrameSink {
 
  private:
   device::DisplayMode mode_;
+  const std::atomic<bool>& ended_;
 };
 
 }  // namespace vam::project

@@ -83,10 +83,11 @@ void RunFolder::load_settings() {
 std::string RunFolder::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
 
 std::vector<io::ShownImage> RunFolder::shown() const {
-  return flips_ ? flips_->shown_of("") : std::vector<io::ShownImage>{};
+  if (!flips_) return {};
+  return flips_->sinograms().empty() ? flips_->shown() : flips_->shown_of(flips_->sinograms().front().sha256);
 }
 
-bool RunFolder::renewed() const { return flips_ && !flips_->renewals().empty(); }
+bool RunFolder::renewed() const { return flips_ && flips_->sinograms().size() > 1; }
 
 void RunFolder::read() {
   load_settings();

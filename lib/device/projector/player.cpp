@@ -155,7 +155,8 @@ PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, 
       light_is_on = switched = true;
     }
     const auto nearest = static_cast<long>(std::lround(predicted->angle_deg / step_deg));
-    if (lit && nearest / plan.frames_per_turn > turn) {
+    // The last half step belongs to the first frame of a turn that is not shown.
+    if (lit && nearest / plan.frames_per_turn > turn && nearest < long{plan.frames_per_turn} * plan.turns) {
       turn = static_cast<int>(nearest / plan.frames_per_turn);
       if (plan.next_turn) plan.next_turn(turn);
     }

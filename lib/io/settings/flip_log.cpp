@@ -7,10 +7,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -35,12 +38,22 @@ std::string log_of(const std::string& run) {
   return std::filesystem::is_directory(run) ? (std::filesystem::path(run) / "flips.jsonl").string() : run;
 }
 
-// SHA-256 of the sinograms that took the place of others; none while there is no log.
-std::vector<std::string> renewals_of(const std::string& run) {
-  if (!std::filesystem::exists(log_of(run))) return {};
-  FlipLog log(run);
-  log.read();
-  return log.renewals();
+// The hashes that a run states; none while there is no log.
+std::set<std::string> hashes_of(const std::string& run) {
+  std::set<std::string> hashes{armed_sinogram(run)};
+  if (std::filesystem::exists(log_of(run))) {
+    FlipLog log(run);
+    log.read();
+    for (const ShownSinogram& one : log.sinograms()) hashes.insert(one.sha256);
+  }
+  hashes.erase("");
+  return hashes;
+}
+
+std::string beginnings(const std::set<std::string>& hashes) {
+  std::vector<std::string> short_ones;
+  for (const std::string& hash : hashes) short_ones.push_back(hash.substr(0, 8));
+  return join(short_ones, ", ");
 }
 
 }  // namespace
@@ -62,12 +75,12 @@ void FlipLog::read() {
     const Json event = parse_json(text);
     try {
       if (event.at("event") == "display") begin_run();
-      if (event.at("event") == "frames") {
-        renewals_.push_back(event.at("sinogram_sha256"));
-        renewal_ = renewals_.size();
+      if (event.at("event") == "sinogram" || event.at("event") == "frames") {
+        sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale")});
+        sinogram_ = count_of(sinograms_) - 1;
       }
       if (event.at("event") != "flip") continue;
-      const LoggedFlip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false, renewal_};
+      const LoggedFlip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false, sinogram_};
       flips_.push_back(flip);
       if (flip.angle_deg < last_run_up_deg) continue;
       const long missed = event.value("missed", 0L);
@@ -81,7 +94,7 @@ void FlipLog::read() {
 
 void FlipLog::begin_run() {
   if (!flips_.empty()) flips_.back().last = true;
-  renewal_ = 0;
+  sinogram_ = -1;
 }
 
 template <class Counts>
@@ -102,10 +115,12 @@ std::vector<ShownImage> FlipLog::shown() const {
   return images([](const LoggedFlip&) { return true; });
 }
 
-std::vector<ShownImage> FlipLog::shown_of(const std::string& sinogram_sha256) const {
-  const bool renewed = std::find(renewals_.begin(), renewals_.end(), sinogram_sha256) != renewals_.end();
+std::vector<ShownImage> FlipLog::shown_of(const std::string& sha256) const {
+  const auto is_it = [&](const ShownSinogram& one) { return !one.sha256.empty() && one.sha256 == sha256; };
+  const bool stated = std::any_of(sinograms_.begin(), sinograms_.end(), is_it);
   return images([&](const LoggedFlip& flip) {
-    return renewed ? flip.renewal > 0 && renewals_[flip.renewal - 1] == sinogram_sha256 : flip.renewal == 0;
+    const bool is_unknown = flip.sinogram < 0 || sinograms_[flip.sinogram].sha256.empty();
+    return is_unknown ? !stated : is_it(sinograms_[flip.sinogram]);
   });
 }
 
@@ -115,25 +130,30 @@ std::vector<ShownImage> read_shown(const std::string& run) {
   return log.shown();
 }
 
-std::vector<ShownImage> read_shown(const std::string& run, const std::string& sinogram) {
+Showing read_showing(const std::string& run, const std::string& sinogram) {
   require_sinogram_of(run, sinogram);
   FlipLog log(run);
   log.read();
-  return log.renewals().empty() ? log.shown() : log.shown_of(sha256_of(sinogram));
+  const std::string given = sinogram == "-" ? "" : sha256_of(sinogram);
+  Showing showing{sinogram == "-" ? log.shown() : log.shown_of(given)};
+  for (const ShownSinogram& one : log.sinograms()) {
+    if (one.sha256 == given || sinogram == "-") showing.full_scale = one.full_scale;
+  }
+  return showing;
 }
 
 void require_sinogram_of(const std::string& run, const std::string& sinogram) {
-  const std::vector<std::string> later = renewals_of(run);
-  const std::string armed = armed_sinogram(run);
-  if (later.empty() && (armed.empty() || sinogram == "-")) return;
+  const std::set<std::string> hashes = hashes_of(run);
+  if (hashes.empty() || (sinogram == "-" && hashes.size() == 1)) return;
   if (sinogram == "-") {
-    throw Error{Fault::data, run + ": showed " + std::to_string(1 + later.size()) +
+    throw Error{Fault::data, run + ": showed " + std::to_string(hashes.size()) +
                                  " sinograms one after the other; give one of them as a file"};
   }
-  const std::string given = sha256_of(sinogram);
-  if (armed.empty() || armed == given || std::find(later.begin(), later.end(), given) != later.end()) return;
-  throw Error{Fault::data, sinogram + ": is not the sinogram of " + run + ", whose SHA-256 begins " +
-                               armed.substr(0, 8) + "; give the one that was shown"};
+  if (hashes.count(sha256_of(sinogram)) > 0) return;
+  throw Error{Fault::data, sinogram + ": is " +
+                               (hashes.size() == 1 ? "not the sinogram of " + run + ", whose SHA-256 begins "
+                                                   : "none of the sinograms of " + run + ", whose SHA-256 begin ") +
+                               beginnings(hashes) + "; give one that was shown"};
 }
 
 std::vector<double> turns_shown(const std::vector<ShownImage>& shown, const StageRows& rows, double speed_deg_s) {

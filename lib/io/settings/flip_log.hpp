@@ -14,6 +14,12 @@ struct ShownImage {
   double seconds = 0;    // until the next flip; of the last one of a run that was killed, as long as the one before
 };
 
+/// A sinogram as the log states it.
+struct ShownSinogram {
+  std::string sha256;     // empty: it came through a pipe
+  double full_scale = 0;  // its value at full intensity
+};
+
 /// The log of a print, also of one that goes on.
 class FlipLog {
  public:
@@ -25,11 +31,10 @@ class FlipLog {
 
   /// The lit images so far, in order.
   [[nodiscard]] std::vector<ShownImage> shown() const;
-  /// Those of a sinogram that took the place of another while printing, by its SHA-256; of any other hash those before
-  /// the first one did.
-  [[nodiscard]] std::vector<ShownImage> shown_of(const std::string& sinogram_sha256) const;
-  /// SHA-256 of the sinograms that took the place of others, in order.
-  [[nodiscard]] const std::vector<std::string>& renewals() const { return renewals_; }
+  /// Those of a sinogram, by its SHA-256; where the log does not state it, those of which it states none.
+  [[nodiscard]] std::vector<ShownImage> shown_of(const std::string& sha256) const;
+  /// The sinograms that were shown, one after the other; the first of a print, and those that took its place.
+  [[nodiscard]] const std::vector<ShownSinogram>& sinograms() const { return sinograms_; }
   /// Vertical blanks from the last run-up turn on: those at which the image changed late, of all.
   [[nodiscard]] long missed() const { return missed_; }
   [[nodiscard]] long blanks() const { return blanks_; }
@@ -39,8 +44,8 @@ class FlipLog {
     double t_s;
     int frame;
     double angle_deg;
-    bool last;            // of its run
-    std::size_t renewal;  // how many times the frames had been renewed
+    bool last;     // of its run
+    int sinogram;  // -1: not stated, as by former versions
   };
   void begin_run();
   template <class Counts>
@@ -50,8 +55,8 @@ class FlipLog {
   std::ifstream stream_;
   int line_ = 0;
   std::vector<LoggedFlip> flips_;
-  std::vector<std::string> renewals_;
-  std::size_t renewal_ = 0;  // of the run that is read
+  std::vector<ShownSinogram> sinograms_;
+  int sinogram_ = -1;  // that is shown
   long missed_ = 0;
   long blanks_ = 0;
 };
@@ -59,12 +64,18 @@ class FlipLog {
 /// The lit images in order, of flips.jsonl or of the run folder (vam-print) that holds it. A last line that is cut is
 /// left out. Throws Fault::no_input, Fault::data for another kind of file.
 [[nodiscard]] std::vector<ShownImage> read_shown(const std::string& run);
-/// Those of a sinogram. Throws as require_sinogram_of().
-[[nodiscard]] std::vector<ShownImage> read_shown(const std::string& run, const std::string& sinogram);
 
-/// Throws Fault::data when a sinogram is none of a run folder's: neither that in its events.jsonl nor one that took its
-/// place while printing, by their hashes. A log alone, and a sinogram that comes through a pipe ("-"), are taken on
-/// trust, unless the run showed several.
+/// What a run showed of a sinogram.
+struct Showing {
+  std::vector<ShownImage> images;
+  double full_scale = 0;  // 0: not stated
+};
+/// Throws as read_shown() and require_sinogram_of().
+[[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram);
+
+/// Throws Fault::data when a sinogram is none of a run's, by the hashes in its events.jsonl and in the log of its
+/// flips; and for one that comes through a pipe ("-") where the run showed several. What states no hash is taken on
+/// trust.
 void require_sinogram_of(const std::string& run, const std::string& sinogram);
 
 /// Stage angles of a sinogram's rows, which are spread evenly over one turn, in either sense.

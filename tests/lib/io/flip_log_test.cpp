@@ -10,6 +10,7 @@
 #include "lib/io/scratch.hpp"
 
 using vam::Fault;
+using vam::io::read_showing;
 using vam::io::read_shown;
 using vam::io::turns_shown;
 
@@ -50,28 +51,48 @@ TEST_CASE("in a log of several runs an image ends with its run") {
   CHECK(shown[2].seconds == 2);
 }
 
-TEST_CASE("flips count for the sinogram whose frames were on") {
+namespace {
+
+std::string sinogram(const char* event, const std::string& file, double full_scale) {
+  return R"({"event":")" + std::string(event) + R"(","full_scale":)" + std::to_string(full_scale) +
+         (file == "-" ? "" : R"(,"sinogram_sha256":")" + vam::io::sha256_of(file) + '"') + "}\n";
+}
+
+}  // namespace
+
+TEST_CASE("flips count for the sinogram whose frames were on, also when it comes back and in the next run") {
   const scratch::Folder folder;
-  const std::string first = folder.write("first.exr", "one");
-  const std::string second = folder.write("second.exr", "two");
-  const auto renewal = [](const std::string& file) {
-    return R"({"event":"frames","turn":1,"sinogram_sha256":")" + vam::io::sha256_of(file) + "\"}\n";
+  const std::string a = folder.write("a.exr", "one");
+  const std::string b = folder.write("b.exr", "two");
+  const std::string display = R"({"event":"display"})"
+                              "\n";
+  const std::string log =
+      folder.write("flips.jsonl", display + sinogram("sinogram", a, 2) + flip(10, 0, 0) + flip(11, 1, 90) +
+                                      sinogram("frames", b, 3) + flip(13, 0, 360) + flip(14, 1, 450) +
+                                      sinogram("frames", a, 2) + flip(18, 0, 720) + flip(19, -1, 800) + display +
+                                      sinogram("sinogram", b, 3) + flip(30, 0, 0) + flip(37, -1, 90));
+  const auto seconds = [&](const std::string& file) {
+    double sum = 0;
+    for (const auto& image : read_showing(log, file).images) sum += image.seconds;
+    return sum;
   };
-  const std::string log = folder.write("flips.jsonl", flip(10, 0, 0) + flip(11, 1, 90) + renewal(second) +
-                                                          flip(13, 0, 360) + flip(14, 1, 450) + flip(18, -1, 720));
-  const auto before = read_shown(log, first);
-  REQUIRE(before.size() == 2);
-  CHECK(before.back().seconds == 2);
-  const auto after = read_shown(log, second);
-  REQUIRE(after.size() == 2);
-  CHECK(after.front().angle_deg == 360);
-  CHECK(after.back().seconds == 4);
-  CHECK(read_shown(log).size() == 4);
-  error_of([&] { (void)read_shown(log, "-"); }, Fault::data);
-  const std::string armed = R"({"event":"arm","sinogram_sha256":")" + vam::io::sha256_of(first) + "\"}\n";
-  (void)folder.write("events.jsonl", armed);
-  CHECK(read_shown(folder.path.string(), second).size() == 2);
-  error_of([&] { (void)read_shown(folder.path.string(), folder.write("third.exr", "three")); }, Fault::data);
+  CHECK(seconds(a) == 1 + 2 + 1);
+  CHECK(seconds(b) == 1 + 4 + 7);
+  CHECK(read_showing(log, a).full_scale == 2);
+  CHECK(read_showing(log, b).full_scale == 3);
+  CHECK(read_shown(log).size() == 6);
+  error_of([&] { (void)read_showing(log, "-"); }, Fault::data);
+  error_of([&] { (void)read_showing(log, folder.write("c.exr", "three")); }, Fault::data);
+}
+
+TEST_CASE("a log that states no sinogram, or one from a pipe, is taken on trust") {
+  const scratch::Folder folder;
+  const std::string a = folder.write("a.exr", "one");
+  for (const std::string& begin : {std::string(), sinogram("sinogram", "-", 2)}) {
+    const std::string log = folder.write("flips.jsonl", begin + flip(10, 0, 0) + flip(12, -1, 90));
+    CHECK(read_showing(log, a).images.size() == 1);
+    CHECK(read_showing(log, "-").images.size() == 1);
+  }
 }
 
 TEST_CASE("a log with a truncated last line is read, another file is refused") {
