@@ -14,7 +14,7 @@ box 4 4 2 >box.off
 vam-sinogram part.vdb --angles 36 --filter ram-lak --negative clip -o sinogram.exr
 vam-resample sinogram.exr -o projector.exr
 vam-dose sinogram.exr --like part.vdb -o dose.vdb
-printf '%s\n' '[projector]' 'columns = 64' 'rows = 32' 'pixel_mm = 0.26' 'axis_column = 31.5' 'axis_row = 15' 'fps = 1' >small.toml
+printf '%s\n' '[projector]' 'columns = 64' 'rows = 32' 'pixel_mm = 0.2' 'axis_column = 31.5' 'axis_row = 15.5' 'fps = 1' >small.toml
 vam-resample sinogram.exr --printer small.toml -o small.exr
 vam-project small.exr --printer small.toml -o views
 vam-convert part.vdb -o array.npy
