@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "sim/bench/print.hpp"
@@ -18,20 +19,22 @@ constexpr int most_parts = 8;
 constexpr double cured_turn_deg = 1;
 constexpr std::chrono::milliseconds most_at_once{300};
 constexpr double late_s = 0.2;  // that logs may come after what they tell
+
+// What the camera sees of it; with a filter that lets no projector light through (no images), nothing.
+const GreyImage* image(const std::vector<GreyImage>& images, int frame) {
+  if (frame < 0 || images.empty()) return nullptr;
+  return &images[std::min(static_cast<std::size_t>(frame), images.size() - 1)];
+}
+
 }  // namespace
 
 SimWorld::SimWorld(SimSources sources, double start_s, SimPrint* print)
     : sources_(std::move(sources)),
       start_s_(start_s),
       print_(print),
+      images_(std::make_shared<const Images>(std::move(sources_.images))),
       angles_(sources_.angles),
       shown_(sources_.shown) {}
-
-// What the camera sees of it; with a filter that lets no projector light through (no images), nothing.
-const GreyImage* SimWorld::image(int frame) const {
-  if (frame < 0 || sources_.images.empty()) return nullptr;
-  return &sources_.images[std::min(static_cast<std::size_t>(frame), sources_.images.size() - 1)];
-}
 
 void SimWorld::read_logs() {
   for (const Json& line : angles_.fresh()) {
@@ -43,17 +46,26 @@ void SimWorld::read_logs() {
       stage_.push_back({t_s, line.value("angle_deg", stage_.empty() ? 0.0 : stage_.back().angle_deg), 0});
     }
   }
-  for (const Json& line : shown_.fresh()) {
-    if (line.value("event", "") == "pattern" && sources_.draw) sources_.images = sources_.draw(line);
-    if (line.value("event", "") != "flip") continue;
-    const double t_s = line.value("t_monotonic_s", 0.0) + sources_.latency_s;
-    double lit_s = 0;
-    if (!flips_.empty()) {
-      lit_s = flips_.back().lit_before_s;
-      if (flips_.back().frame >= 0) lit_s += t_s - flips_.back().t_s;
-    }
-    flips_.push_back({t_s, line.value("frame", -1), lit_s});
+  for (const Json& line : shown_.fresh()) show(line);
+}
+
+// Light that is still to be followed is that of the images of its own flips.
+void SimWorld::show(const Json& event) {
+  const std::string name = event.value("event", "");
+  if (name == "pattern" && sources_.draw) images_ = std::make_shared<const Images>(sources_.draw(event));
+  if (name == "frames" && !images_->empty()) {
+    throw Error{Fault::data, sources_.shown + ": shows other frames since turn " +
+                                 std::to_string(event.value("turn", 0)) +
+                                 ", which the simulated camera does not follow; print without --frames-from"};
   }
+  if (name != "flip") return;
+  const double t_s = event.value("t_monotonic_s", 0.0) + sources_.latency_s;
+  double lit_s = 0;
+  if (!flips_.empty()) {
+    lit_s = flips_.back().lit_before_s;
+    if (flips_.back().frame >= 0) lit_s += t_s - flips_.back().t_s;
+  }
+  flips_.push_back({t_s, event.value("frame", -1), lit_s, images_});
 }
 
 void SimWorld::forget() {
@@ -105,7 +117,7 @@ SimMoment SimWorld::moment(double t_s) const {
   moment.print = print_;
   moment.angle_deg = angle_deg(t_s);
   if (sources_.shown.empty()) {
-    moment.image = image(0);
+    moment.image = image(*images_, 0);
     moment.lit_s = std::max(0.0, t_s - start_s_);
     return moment;
   }
@@ -114,21 +126,23 @@ SimMoment SimWorld::moment(double t_s) const {
   const Shown& now = *(after - 1);
   moment.lit_s = now.lit_before_s;
   if (now.frame >= 0) moment.lit_s += t_s - now.t_s;
-  moment.image = image(now.frame);
+  moment.image = image(*now.images, now.frame);
   return moment;
 }
 
-SimMoment SimWorld::at(double t_s) {
+void SimWorld::follow(double until_s) {
   read_logs();
-  cure(t_s - late_s);
+  cure(until_s - late_s);
   forget();
+}
+
+SimMoment SimWorld::at(double t_s) {
+  follow(t_s);
   return moment(t_s);
 }
 
 std::vector<SimMoment> SimWorld::during(double from_s, double to_s) {
-  read_logs();
-  cure(from_s - late_s);
-  forget();
+  follow(from_s);
   const double turn_deg = std::abs(angle_deg(to_s) - angle_deg(from_s));
   const int parts = std::clamp(ceil_int(turn_deg / finest_turn_deg), 1, most_parts);
   std::vector<double> cuts;

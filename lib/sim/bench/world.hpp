@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,32 +30,38 @@ class SimWorld {
  public:
   /// print: that the light cures, from the first flip on.
   SimWorld(SimSources sources, double start_s, SimPrint* print = nullptr);
-  /// The moment t_s; times must not fall by more than a second from call to call.
+  /// The moment t_s; times must not fall by more than a second from call to call. Throws Fault::data where the
+  /// projector shows frames of which there are no images.
   SimMoment at(double t_s);
   /// What an exposure sees: cut where the image changes, and so finely that the stage turns by half a degree at most
-  /// in a part (but into no more than eight).
+  /// in a part (but into no more than eight). Throws as `at`.
   std::vector<SimMoment> during(double from_s, double to_s);
+  /// A moment by what `at` or `during` has read of the logs; the light cures nothing meanwhile.
+  [[nodiscard]] SimMoment moment(double t_s) const;
 
  private:
   struct TableSample {
     double t_s, angle_deg, speed_deg_s;
   };
+  using Images = std::vector<GreyImage>;
   struct Shown {
     double t_s;
     int frame;
-    double lit_before_s;  // light there had been until then
+    double lit_before_s;                   // light there had been until then
+    std::shared_ptr<const Images> images;  // that the frames are
   };
+  void follow(double until_s);
   void read_logs();
+  void show(const Json& event);
   void cure(double until_s);
   void forget();
-  [[nodiscard]] const GreyImage* image(int frame) const;
   [[nodiscard]] double angle_deg(double t_s) const;
-  [[nodiscard]] SimMoment moment(double t_s) const;
 
   SimSources sources_;
   double start_s_;
   SimPrint* print_;
-  std::optional<double> cured_s_;  // all light until then has reached the resin
+  std::shared_ptr<const Images> images_;  // of the flips to come
+  std::optional<double> cured_s_;         // all light until then has reached the resin
   LogTail angles_;
   LogTail shown_;
   std::deque<TableSample> stage_;

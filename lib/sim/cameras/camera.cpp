@@ -119,7 +119,7 @@ class SimCamera final : public device::Camera {
       const double half_s = 0.5e-6 * sim_.exposure_us;
       frame.levels =
           scene_.render(world_->during(middle_s - half_s, middle_s + half_s), sim_.exposure_us, frame.number);
-      const SimMoment moment = world_->at(middle_s);
+      const SimMoment moment = world_->moment(middle_s);
       frame.device_s = frame.time_s - start_s_;
       if (log_) {
         log_({{"t_monotonic_s", frame.time_s},

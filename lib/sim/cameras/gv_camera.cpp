@@ -149,7 +149,7 @@ struct SimGvCamera::State {
     const double middle_s = end_s - 0.5e-6 * exposure_us;
     GreyImage levels =
         region(scene->render(world->during(end_s - 1e-6 * exposure_us, end_s), exposure_us, number), buffer);
-    const SimMoment moment = world->at(middle_s);
+    const SimMoment moment = world->moment(middle_s);
     arv_buffer_set_timestamp(buffer,
                              clock->ns(middle_s - device::to_middle_s(stamp, 1e-6 * exposure_us) + settings.lag_s));
     amplify(levels, number);
@@ -252,8 +252,11 @@ SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& a
       [](ArvBuffer* buffer, void* state, guint32 exposure_us, guint32, ArvPixelFormat format) {
         try {
           static_cast<State*>(state)->fill(buffer, exposure_us, format);
-        } catch (const std::exception& problem) {  // glib's frames are no way out for exceptions
-          warn(problem.what());
+        } catch (const Error& problem) {  // glib's frames are no way out for exceptions
+          say(problem.what());
+          std::_Exit(static_cast<int>(problem.fault));
+        } catch (const std::exception& problem) {
+          say(problem.what());
           std::_Exit(static_cast<int>(Fault::io));
         }
       },

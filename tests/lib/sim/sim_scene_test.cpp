@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
 #include "sim/bench/scene.hpp"
 #include "sim/bench/world.hpp"
@@ -192,7 +193,33 @@ TEST_CASE("The simulated bench shows the test pattern that the projector's log n
   flips << R"({"t_monotonic_s":101.0,"event":"pattern","name":"row","width_px":9})"
         << "\n"
         << std::flush;
+  CHECK(world.at(101.2).image->width == 7);  // until a flip shows it
+  flips << R"({"t_monotonic_s":101.4,"event":"flip","frame":0})"
+        << "\n"
+        << std::flush;
   CHECK(world.at(101.5).image->width == 9);
+  CHECK(world.at(101.2).image->width == 7);
+  std::filesystem::remove(shown);
+}
+
+TEST_CASE("The simulated bench refuses frames of which it has no images, and follows them where it shows none") {
+  const std::string shown = std::filesystem::temp_directory_path() / ("vam-world-frames-" + std::to_string(getpid()));
+  std::ofstream(shown) << R"({"t_monotonic_s":100.0,"event":"flip","frame":0})"
+                       << "\n"
+                       << R"({"t_monotonic_s":101.0,"event":"frames","turn":2,"sinogram":"new.exr"})"
+                       << "\n"
+                       << R"({"t_monotonic_s":101.1,"event":"flip","frame":0})"
+                       << "\n";
+  SimSources sources;
+  sources.shown = shown;
+  CHECK(SimWorld(sources, 100).at(102).lit_s == doctest::Approx(2));
+  sources.images.resize(1, GreyImage(2, 2, 8));
+  SimWorld world(sources, 100);
+  CHECK_THROWS_WITH_AS(world.at(102),
+                       (shown + ": shows other frames since turn 2, which the simulated camera does not follow; print "
+                                "without --frames-from")
+                           .c_str(),
+                       Error);
   std::filesystem::remove(shown);
 }
 
