@@ -10,6 +10,7 @@
 #include "base/json.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/text.hpp"
+#include "metrology/ost/cured.hpp"
 
 namespace vam::metrology {
 
@@ -17,38 +18,13 @@ namespace {
 
 constexpr double least_share = 0.1;   // of the highest dose
 constexpr double least_sigma = 0.01;  // of the highest scatter: what sigmas do not contain, as streaks
-constexpr double together = 27;       // voxels whose noise is one
+// Voxels whose noise is one: a voxel and its neighbours, over which rays are interpolated and filtered.
+constexpr double together = 27;
 // Share of the dose at half of the saturation that the inhibitor takes, which the readings hardly show: between these.
 constexpr std::array<double, 3> inhibited{0.5, 0.2, 0.8};
 constexpr int moments = 8;  // of a turn, over which a volume is the mean
 
-// Trilinear; beyond the volume its last values.
-double value_at(const model::Volume& volume, const std::array<double, 3>& place) {
-  const model::Grid& g = volume.grid;
-  const std::array<int, 3> count{g.nx, g.ny, g.nz};
-  std::array<int, 3> low{};
-  std::array<double, 3> part{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double at = std::clamp((place[a] - g.origin_mm[a]) / g.voxel_mm, 0.0, std::max(0.0, count[a] - 1.001));
-    low[a] = static_cast<int>(at);
-    part[a] = count[a] > 1 ? at - low[a] : 0;
-  }
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    std::array<int, 3> at{};
-    double weight = 1;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const bool high = (corner >> a & 1) != 0;
-      weight *= high ? part[a] : 1 - part[a];
-      at[a] = std::min(low[a] + (high ? 1 : 0), count[a] - 1);
-    }
-    if (weight == 0) continue;
-    sum += weight * static_cast<double>(volume.slice(at[2])[flat_index(at[1], g.nx, at[0])]);
-  }
-  return sum;
-}
-
-struct Class {
+struct DoseClass {
   double dose = 0, scatter = 0, squares = 0;
   double voxels = 0;
 };
@@ -78,8 +54,8 @@ struct Curve {
     const double given = per_turn * std::clamp(turn, 0.0, lit_turns);
     const double lit = std::min(turn, lit_turns) - inhibition / per_turn;
     if (!(lit > 0)) return given;
-    const double life = std::max(std::abs(delay), 1e-9);  // noise can make the delay of a prompt resin negative
-    const double lacking = -std::expm1(-lit / life) * std::exp(-std::max(0.0, turn - lit_turns) / life);
+    const double lifetime = std::max(std::abs(delay), 1e-9);  // noise can make the delay of a prompt resin negative
+    const double lacking = -std::expm1(-lit / lifetime) * std::exp(-std::max(0.0, turn - lit_turns) / lifetime);
     return given - per_turn * delay * lacking;
   }
 };
@@ -188,29 +164,39 @@ void widen(stats::Measured& number, const stats::Measured& one, const stats::Mea
   number.sigma = std::hypot(number.sigma, 0.5 * (one.value - other.value));
 }
 
+double dose_at(const model::Volume& dose, const std::array<double, 3>& place) {
+  return static_cast<double>(value_at(dose, place[0], place[1], place[2]));
+}
+
+// Where a neighbour has another dose, scatter is a mixture.
+bool is_even(const model::Volume& dose, const std::array<double, 3>& place, double here, double voxel_mm,
+             double most_change) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const double step_mm : {-voxel_mm, voxel_mm}) {
+      std::array<double, 3> beside = place;
+      beside[a] += step_mm;
+      if (std::abs(dose_at(dose, beside) - here) >= most_change) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<CuringReading> curing_readings(const model::Volume& scatter, const model::Volume& dose, double stretch_z,
                                            int classes, double first_turn, double last_turn) {
   const double most = static_cast<double>(*std::max_element(dose.values.begin(), dose.values.end()));
   const double wide = most / classes;
-  std::vector<Class> found(classes);
+  std::vector<DoseClass> found(classes);
   const model::Grid& g = scatter.grid;
   for (int k = 0; k < g.nz; ++k) {
     for (int j = 0; j < g.ny; ++j) {
       for (int i = 0; i < g.nx; ++i) {
         const std::array<double, 3> place{g.x_mm(i), g.y_mm(j), g.z_mm(k) * stretch_z};
-        const double here = value_at(dose, place);
-        if (!(here > least_share * most)) continue;
-        bool even = true;
-        for (std::size_t a = 0; a < 3 && even; ++a) {
-          std::array<double, 3> beside = place;
-          beside[a] += g.voxel_mm;
-          even = std::abs(value_at(dose, beside) - here) < 0.25 * wide;
-        }
-        if (!even) continue;
+        const double here = dose_at(dose, place);
+        if (!(here > least_share * most) || !is_even(dose, place, here, g.voxel_mm, 0.25 * wide)) continue;
         const double value = static_cast<double>(scatter.slice(k)[flat_index(j, g.nx, i)]);
-        Class& one = found[std::min(floor_int(here / wide), classes - 1)];
+        DoseClass& one = found[std::min(floor_int(here / wide), classes - 1)];
         one.dose += here;
         one.scatter += value;
         one.squares += value * value;
@@ -219,7 +205,7 @@ std::vector<CuringReading> curing_readings(const model::Volume& scatter, const m
     }
   }
   std::vector<CuringReading> readings;
-  for (const Class& one : found) {
+  for (const DoseClass& one : found) {
     if (one.voxels < together) continue;
     const double mean = one.scatter / one.voxels;
     const double spread = std::sqrt(std::max(0.0, one.squares / one.voxels - mean * mean));

@@ -22,8 +22,8 @@ struct CuringReading {
 };
 
 /// The voxels of a volume by their dose in so many equal classes up to the highest one, without the lowest tenth of it
-/// and where it changes by more than a quarter of a class from voxel to voxel. The dose is that of a turn, of a part
-/// that was stretched along z by stretch_z. Views of turns first_turn to last_turn.
+/// and where it differs by a quarter of a class or more from that of a neighbouring voxel. The dose is that of a turn,
+/// of a part that was stretched along z by stretch_z, none beyond its volume. Views of turns first_turn to last_turn.
 [[nodiscard]] std::vector<CuringReading> curing_readings(const model::Volume& scatter, const model::Volume& dose,
                                                          double stretch_z, int classes, double first_turn,
                                                          double last_turn);

@@ -143,15 +143,33 @@ TEST_CASE("Readings of a working curve are the steps of a staircase, whose heigh
   }
 }
 
+TEST_CASE("Readings of a working curve are of voxels without a step on either side, which views blur") {
+  model::Volume dose{model::centred_grid(12, 12, 31, 0.2), {}};
+  dose.values.resize(dose.grid.size());
+  model::Volume scatter = dose;
+  const auto of_dose = [](int k) { return 10.0F + 10.0F * static_cast<float>(std::clamp(k / 10, 0, 2)); };
+  for (int k = 0; k < dose.grid.nz; ++k) {
+    std::fill_n(dose.slice(k), dose.grid.slice_size(), of_dose(k));
+    const float blurred = 0.25F * (of_dose(k - 1) + 2 * of_dose(k) + of_dose(k + 1));
+    std::fill_n(scatter.slice(k), scatter.grid.slice_size(), 0.001F * blurred);
+  }
+  const auto readings = metrology::curing_readings(scatter, dose, 1, 16, 2, 3);
+  REQUIRE(readings.size() == 3);
+  for (int step = 0; step < 3; ++step) {
+    CHECK(readings[step].scatter == doctest::Approx(0.01 * (step + 1)).epsilon(1e-5));
+    CHECK(readings[step].sigma < 1e-6);
+  }
+}
+
 namespace {
 
 constexpr int angles = 60;
 
-/// Six bands of rows, each brighter than the one below, all around.
+/// Six bands of six rows, each brighter than the one below, all around.
 GreyImage bands(const model::Projector& projector) {
   GreyImage frame(projector.columns, projector.rows, 8);
-  for (int r = 4; r < 28; ++r) {
-    for (int c = 18; c < 46; ++c) frame(c, r) = static_cast<std::uint16_t>(100 + 25 * ((27 - r) / 4));
+  for (int r = 4; r < 40; ++r) {
+    for (int c = 18; c < 46; ++c) frame(c, r) = static_cast<std::uint16_t>(100 + 25 * ((39 - r) / 6));
   }
   return frame;
 }
@@ -174,7 +192,7 @@ model::Volume planned_dose(const model::Printer& printer, const GreyImage& frame
       }
     }
   }
-  const model::Grid grid = model::centred_grid(36, 36, 30, 0.2, -2.9);
+  const model::Grid grid = model::centred_grid(36, 36, 42, 0.2, -4.1);
   std::vector<Image> slices(grid.nz);
   light::Simulation(printer, {}, info, grid).dose(rows, slices);
   model::Volume dose{grid, {}};
@@ -191,11 +209,11 @@ TEST_CASE("A working curve by planned doses and reconstructed views has the crit
   sim::SimBench bench;
   auto& printer = bench.printer;
   printer.projector.columns = 64;
-  printer.projector.rows = 32;
+  printer.projector.rows = 44;
   printer.projector.pixel_mm = 0.2;
   printer.projector.lens_distance_mm = 90;
   printer.projector.axis_column = 31.5;
-  printer.projector.axis_row = 15.5;
+  printer.projector.axis_row = 21.5;
   printer.projector.max_intensity_mw_cm2 = 3.5;
   printer.vial = {6, 0.5, 1.52};
   printer.resin.index = 1.49;
@@ -205,7 +223,7 @@ TEST_CASE("A working curve by planned doses and reconstructed views has the crit
   printer.camera.pixel_mm = 0.15;
   printer.stage.speed_deg_s = 30;
   bench.columns = 90;
-  bench.rows = 52;
+  bench.rows = 68;
   bench.noise = 0.002;
   bench.resin = sim::SimResin{};
   sim::SimPrint print(bench);
