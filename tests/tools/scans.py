@@ -133,4 +133,5 @@ def main(verb, folder, *rest):
         write_png(os.path.join(folder, "%05d.png" % n), rows)
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -36,4 +36,45 @@ fails 65 'does not state its turns' vam-calibrate working-curve turns --dose dos
 fails 65 'is not below the saturation 0.08' vam-calibrate working-curve scatter.vdb --dose dose.vdb --lit-turns 1 --isovalue 1
 fails 64 'dose' vam-calibrate working-curve scatter.vdb
 fails 66 'absent' vam-calibrate working-curve absent.vdb --dose dose.vdb
+
+# Views of a staircase, half a turn of them before the light; radicals live for 1.5 s of a turn of 6 s. Those of a turn
+# show its mean.
+mkdir views
+PYTHONPATH=$VAM_SOURCE/tests/tools python3 - <<'PY'
+import json, math, random, struct
+from scans import write_png
+per_turn = lambda k: 4 + 1.5 * (k // 4)  # ten steps of four rows, mJ/cm3
+def density(k, turn):
+    lit = turn - 0.5 * 50 / per_turn(k)
+    dose = per_turn(k) * max(0, turn) - per_turn(k) * 0.25 * (1 - math.exp(-lit / 0.25) if lit > 0 else 0)
+    return 0.08 / (1 + math.exp((50 - dose) / 4))
+chord = [2 * math.sqrt(max(0, 3 ** 2 - (0.2 * (c - 23.5)) ** 2)) for c in range(48)]
+random.seed(1)
+with open("views/manifest.jsonl", "w") as manifest:  # as vam-capture writes it
+    print('{"schema": "vam-capture/1"}', file=manifest)
+    for n in range(300):
+        if n % 30 == 0:
+            rows = [sum(density(39 - r, (n + m + 0.5) / 30 - 0.5) for m in range(30)) / 30 for r in range(40)]
+        write_png("views/%06d.png" % n, [[65535 * (0.002 + random.gauss(0, 0.0005) + s * c) for c in chord]
+                                         for s in rows])
+        print(json.dumps({"frame": n, "number": n, "t_monotonic_s": 100 + 0.2 * n, "angle_deg": 12 * n, "complete": True,
+                          "levels": ""}), file=manifest)
+head = "{'descr': '<f4', 'fortran_order': False, 'shape': (40, 32, 32), }"
+head += " " * (-(len(head) + 11) % 64) + "\n"
+with open("turn.npy", "wb") as out:
+    out.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode())
+    for k in range(40):
+        out.write(struct.pack("<1024f", *(per_turn(k) * (math.hypot(j - 15.5, i - 15.5) < 13)
+                                          for j in range(32) for i in range(32))))
+PY
+vam-convert turn.npy --voxel 0.2 --grid dose --value-unit mJ/cm3 -o turn.vdb
+ok 'volumes of ten turns' vam-ost views --live --no-refraction --pixel 0.2 --axis-column 23.5 --tilt 0 --keep-run-out -o live
+curve() { vam-calibrate working-curve live --dose turn.vdb "$@"; }
+quiet 'their working curve' curve --lit-from 0.5 -o delayed.json
+holds 'the delay in seconds' "($(json delayed.json delay_s) - 1.5) ^ 2 < 0.05 ^ 2"  # a view is 0.2 s
+holds 'and the critical dose' "($(json delayed.json critical_dose_mj_cm3) - 50) ^ 2 < 0.1 ^ 2"
+quiet 'with the light from the first view on' curve -o early.json
+holds 'it is half a turn longer, or more' "$(json early.json delay_s) > 4"
+quiet 'in four classes' curve --lit-from 0.5 --classes 4 -o coarse.json
+is 'fewer readings, one a class and turn' "$(json delayed.json readings) $(json coarse.json readings)" '100 40'
 done_testing

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/vdb/vdb.hpp"
@@ -73,19 +74,19 @@ void measure_working_curve(const WorkingCurveOptions& options) {
   const bool one = files.size() == 1;
   const double lit_turns = options.lit_turns.value_or(one ? dose.turns.value_or(1) : for_ever);
   std::vector<metrology::CuringReading> readings;
-  double turn_s = 0;
+  std::vector<double> turn_s;
   for (const std::string& file : files) {
     const io::SparseVolume sparse = io::read_volume(file, "scatter");
     const auto turns = fact(sparse, "vam:turns");
     if (!turns && !one) throw Error{Fault::data, file + ": does not state its turns; use volumes of vam-ost --live"};
-    turn_s = std::max(turn_s, fact(sparse, "vam:span_s").value_or(0));
+    turn_s.push_back(fact(sparse, "vam:turn_s").value_or(0));
     const double last = turns ? *turns - options.lit_from_turn : for_ever;
     if (last <= 0) continue;
     const auto of_turn =
         metrology::curing_readings(dense(sparse), dose.volume, dose.stretch_z, options.classes, last - 1, last);
     readings.insert(readings.end(), of_turn.begin(), of_turn.end());
   }
-  Json figures = to_json(metrology::fit_curing_curve(readings, lit_turns, options.isovalue), turn_s);
+  Json figures = to_json(metrology::fit_curing_curve(readings, lit_turns, options.isovalue), stats::median(turn_s));
   figures["volumes"] = files.size();
   io::write_report(options.record, "vam-working-curve/1", figures);
 }

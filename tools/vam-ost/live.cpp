@@ -39,10 +39,10 @@ void write_page(const Options& options, int index, const Json& line) {
 }
 
 // When its views were taken, for whoever compares volumes over time.
-std::map<std::string, std::string> facts_of(const std::vector<metrology::CameraView>& views, double turns) {
-  return {{"vam:turns", format_number(turns, 6)},
-          {"vam:time_s", format_number(views.back().time_s, 12)},
-          {"vam:span_s", format_number(views.back().time_s - views.front().time_s, 6)}};
+std::map<std::string, std::string> facts_of(const metrology::SlidingTurn& turn, double time_s) {
+  return {{"vam:turns", format_number(turn.turns(), 6)},
+          {"vam:time_s", format_number(time_s, 12)},
+          {"vam:turn_s", format_number(turn.turn_s(), 6)}};
 }
 
 std::vector<model::Condition> conditions_of(const Options& options) {
@@ -143,7 +143,7 @@ void live(const cli::App& app, const Options& options) {
       continue;
     }
     line["frames_waiting"] = frames.waiting();
-    if (turns.finish(*volume, views, std::move(line), {history, facts_of(views, turn.turns())})) return;
+    if (turns.finish(*volume, views, std::move(line), {history, facts_of(turn, frame.time_s)})) return;
   }
   if (turns.count() == 0) {
     throw Error{Fault::data,

@@ -21,11 +21,14 @@ class SlidingTurn {
 
   /// The views of the last turn, oldest first.
   [[nodiscard]] std::vector<CameraView> views() const { return {views_.begin(), views_.end()}; }
-  /// Degrees turned since the first view.
-  [[nodiscard]] double turned_deg() const { return turned_deg_; }
-  [[nodiscard]] double turns() const { return turned_deg_ / 360; }
+  /// Turns of the views, each of which stands for one mean step: a full turn with the last view before its closing one.
+  [[nodiscard]] double turns() const { return (turned_deg_ + step_deg()) / 360; }
+  /// Duration of a turn, from the times of the views of the last one; 0 where they have none.
+  [[nodiscard]] double turn_s() const;
 
  private:
+  [[nodiscard]] double step_deg() const;  // mean, of the last turn
+
   double every_deg_;
   double turned_deg_ = 0;
   double last_angle_deg_ = 0;

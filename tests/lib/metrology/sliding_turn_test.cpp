@@ -11,13 +11,16 @@ TEST_CASE("a volume is due after each full turn, of one turn's views") {
   SlidingTurn turn(360);
   int volumes = 0;
   for (int i = 0; i < 3 * 90 + 10; ++i) {
-    if (!turn.push({{}, std::fmod(4.0 * i, 360.0)})) continue;
+    if (!turn.push({{}, std::fmod(4.0 * i, 360.0), 50 + 0.1 * i})) continue;
     ++volumes;
     CHECK(turn.views().size() == 90);
     CHECK((i + 1) % 90 == 0);
+    CHECK(turn.turns() == doctest::Approx(volumes));
+    CHECK(turn.turn_s() == doctest::Approx(9));
   }
   CHECK(volumes == 3);
-  CHECK(turn.turns() == doctest::Approx((279 * 4) / 360.0));
+  CHECK(turn.turns() == doctest::Approx((280 * 4) / 360.0));
+  CHECK(SlidingTurn(360).turn_s() == 0);
 }
 
 TEST_CASE("volumes more often than each turn, and in the opposite direction") {
