@@ -250,13 +250,14 @@ void run(const cli::App& app, const Options& options) {
   }
   if (!options.projections.empty()) plot::require_figures();
   if (!options.uncertainty.empty() && options.live) {
-    throw Error{Fault::usage, "--uncertainty: describes one volume; not with --live, which has --uncertainties"};
+    throw Error{Fault::usage, "--uncertainty: describes one volume; omit it, --live has --uncertainties"};
   }
   if (options.uncertainties && options.output == "-") {
     throw Error{Fault::usage, "--uncertainties: go where the volumes go; name a folder by -o"};
   }
   if ((!options.uncertainty.empty() || options.uncertainties) && options.how.mlem_iterations > 0) {
-    throw Error{Fault::usage, "--uncertainty: is that of filtered back-projection; not with --mlem-iterations"};
+    throw Error{Fault::usage, std::string(options.uncertainties ? "--uncertainties" : "--uncertainty") +
+                                  ": is that of filtered back-projection; omit it, or --mlem-iterations"};
   }
   options.live ? ost_tool::live(app, options) : once(app, options);
 }

@@ -62,8 +62,9 @@ holds 'a tenth of a pixel or so' "$(json known.json uncertainty_budget.surface_m
 quiet 'or of the mesh' vam-sdf known.ply standard-design.vdb --report mesh.json
 is 'which says so, too' "$(json mesh.json uncertainty_budget.source)" mesh
 holds 'and knows as much' "$(json mesh.json uncertainty_budget.surface_mm) / $(json known.json uncertainty_budget.surface_mm) > 0.99 && $(json mesh.json uncertainty_budget.surface_mm) / $(json known.json uncertainty_budget.surface_mm) < 1.01"
-fails 64 'not with --live' vam-ost standard.exr $glass --live -o x --uncertainty x.vdb
-fails 64 'not with --mlem-iterations' vam-ost standard.exr $glass -o x.vdb --mlem-iterations 3 --uncertainty y.vdb
+fails 64 'omit it, --live has --uncertainties' vam-ost standard.exr $glass --live -o x --uncertainty x.vdb
+fails 64 '--uncertainty: is that of filtered .*; omit it, or --mlem-iterations' vam-ost standard.exr $glass -o x.vdb --mlem-iterations 3 --uncertainty y.vdb
+fails 64 '--uncertainties: is that of filtered' vam-ost standard.exr $glass --live -o x --mlem-iterations 3 --uncertainties
 holds 'the standard is as high as it was drawn' "$(json glass.json height_mm) > 3.8 && $(json glass.json height_mm) < 4.2"
 python3 - <<'PY'
 import struct, zlib
