@@ -185,7 +185,8 @@ TEST_CASE("Inhibitor: its gradient delays the upper slices, diffusion brings it 
   CHECK(conversion[0] > 1);
   CHECK(conversion[1] == doctest::Approx(1).epsilon(0.002));
   CHECK(conversion[2] < 1);
-  // A lit voxel among dark ones cures more slowly where inhibitor comes in.
+  // A lit voxel among dark ones cures more slowly where inhibitor comes in: through four faces 4 x 1e-3 / 0.2^2 of the
+  // neighbours' a second, which takes 2 mJ/cm3 of the light's 1; of its 50 less than 5 escape, 30 without diffusion.
   const auto lit_alone = [&](double diffusion_mm2_s) {
     SimResin other = still_resin();
     other.inhibitor_diffusion_mm2_s = diffusion_mm2_s;
@@ -196,7 +197,7 @@ TEST_CASE("Inhibitor: its gradient delays the upper slices, diffusion brings it 
     }
     return small.conversion().values[12];
   };
-  CHECK(lit_alone(1e-3) < 0.8F * lit_alone(0));
+  CHECK(lit_alone(1e-3) < 0.2F * lit_alone(0));
 }
 
 TEST_CASE("A cured ball looks to the camera as the traced one, wherever it stands") {
@@ -297,7 +298,7 @@ TEST_CASE("Faults of the lamp and of the axis reach the resin") {
   CHECK(usual > 0);
   bench.lamp_drift_per_min = -0.4;  // on average -20 % in a minute
   const double drifted = converted(bench);
-  CHECK(drifted < 0.97 * usual);
+  CHECK(drifted < 0.97 * usual);  // three times what it may differ by from a lamp of less light below
   bench.lamp_drift_per_min = 0;
   bench.printer.projector.max_intensity_mw_cm2 *= 0.8;
   CHECK(drifted == doctest::Approx(converted(bench)).epsilon(0.01));
@@ -341,8 +342,11 @@ TEST_CASE("The simulated bench cures by the flips of its log, each at the angle 
         << std::flush;
   SimPrint followed(bench);
   SimWorld world(sources, 150, &followed);
-  for (int n = 0; n < 20; ++n) CHECK(world.at(150).print == &followed);  // what is behind, a few seconds a frame
+  constexpr int enough = 10000;  // frames, each of which makes up for some of what is behind
+  for (int n = 0; n < enough && followed.lit_s() < 30 - 1e-6; ++n) world.during(149.9, 150);
   CHECK(followed.lit_s() == doctest::Approx(30));
+  CHECK(world.moment(150).print == &followed);
+  world.at(150);  // the dark time in one step
   SimPrint direct(bench);
   direct.pass(&frame, 40, 30);
   direct.pass(nullptr, 40, 18.8);
