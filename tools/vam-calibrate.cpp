@@ -19,11 +19,9 @@ cli::Manual manual() {
       "measure the instrument and write calibration records",
       {"Each scan command reads frames recorded by vam-capture, most of them while vam-project shows a test pattern, "
        "measures one property of the instrument and writes a calibration record. --flips is the log of vam-project, "
-       "which states "
-       "which pattern frame was on and when. check reports the records in force. vam-calibrate all, which is "
-       "vam-calibrate-all(1), shows the "
-       "patterns, captures the frames and runs lag, latency, response, axis and edges in this order; flat and beam on "
-       "request.",
+       "which states which pattern frame was on and when. check reports the records in force. vam-calibrate all, which "
+       "is vam-calibrate-all(1), shows the patterns, captures the frames and runs lag, latency, response, axis and "
+       "edges in this order; flat and beam on request.",
        "lag determines the delay of the camera's time stamps from a bead that turns with the stage at known angles, in "
        "both directions, captured with --lag 0 and the exposure in use. Its record is the default of --lag in "
        "vam-capture. latency relies on the times of the frames and is therefore measured after lag.",
@@ -33,19 +31,16 @@ cli::Manual manual() {
        "stacks concatenated in one file) give both: the axis, and the wobble as its radius and the stage angle of the "
        "greatest column.",
        "beam: either a bare sensor is moved along the beam, with one frame per plane, or, with --side, the camera "
-       "beside "
-       "the vial sees one lit row in fluorescent resin, where each image column is a different plane.",
+       "beside the vial sees one lit row in fluorescent resin, where each image column is a different plane.",
        "resin determines the gelation threshold I_p from the scattering volume of a printed standard cylinder "
        "(vam-ost): the threshold at which its cross-section, averaged over its height, has the known diameter. Its "
        "record is the --resin of vam-ost and vam-sdf.",
        "working-curve determines the dose with which the resin gels, and how scattering follows the light, from parts "
        "that were given several doses in one vial (a staircase of heights or sectors, which the sinogram contains or "
        "the part has by itself) while vam-ost --live reconstructed it: voxels are put together by their dose "
-       "(vam-dose), "
-       "and the density of each class over the turns is fitted by a rise at the critical dose, the saturation and a "
-       "delay (vam-physics(7), Working curve of scattering). One volume, of the time after the print, gives all but "
-       "the "
-       "delay. Its record is a --resin, too.",
+       "(vam-dose), and the density of each class over the turns is fitted by a rise at the critical dose, the "
+       "saturation and a delay (vam-physics(7), Working curve of scattering). One volume, of the time after the print, "
+       "gives all but the delay. Its record is a --resin, too.",
        "A frame with more than 0.01 % of its pixels (and more than 3) at full scale is refused as over-exposed; the "
        "error states the fraction. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "

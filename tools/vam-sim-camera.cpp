@@ -54,13 +54,13 @@ cli::Manual manual() {
        "The vial rotates as recorded in the log of vam-sim-stage (--follow), or at a constant --speed. The projector "
        "shows the frames recorded in the log of vam-project (--flips): those of the test pattern that the log "
        "describes, else those of --projected or --pattern. They also determine how the print grows. Without a log "
-       "the first frame is shown throughout. A camera frame integrates over its whole exposure, also across changes "
-       "of the image.",
+       "the first frame is shown throughout. Frames of another sinogram that follow in a print (vam-project "
+       "--frames-from) are not known here: the program ends with an error that states the turn (status 65). A camera "
+       "frame integrates over its whole exposure, also across changes of the image.",
        "With --cure the print is what the light makes of the resin, voxel by voxel: the frames that --flips states, at "
        "the stage angles of --follow, along rays that climb, are first spent on the inhibitor, then convert the resin, "
        "which scatters from its gel point on (vam-physics(7), Simulated print). The model shares nothing with that of "
-       "the "
-       "tools that plan a print. The printer file is the true one: what it states otherwise than that of vam-print "
+       "the tools that plan a print. The printer file is the true one: what it states otherwise than that of vam-print "
        "(absorption, intensity, axis, vial) is what vam-print is wrong about. The camera then has a filter that no "
        "light of the projector passes (--glow 0).",
        "Its own log is the reference for tests of the tools: for each frame the number, the stage angle, the exposed "
@@ -81,13 +81,10 @@ cli::Manual manual() {
        "only some. --unplug N disconnects the cable before frame N: the program ends without informing its client. "
        "--shrink N sends images of half the agreed height from frame N on, until a client sets the size again.",
        "Misalignment. The options of that group are the quantities that vam-calibrate measures.",
-       "Resin. resin.critical_dose_mj_cm3 is the dose with which resin of the mean inhibition just gels in the end, "
-       "resin.diffusion_mm2_s the diffusion of radicals; both it and resin.absorption_per_mm are required. Voxels "
-       "cover "
-       "what the projector lights and the camera sees. A turn of 72 views of 96 x 60 pixels under 360 frames of a part "
-       "of "
-       "7 mm takes 0.6 s of a processor; where curing cannot keep up with the light, it comes later: use a larger "
-       "--cure-voxel.",
+       "Resin. resin.absorption_per_mm and resin.critical_dose_mj_cm3 are required, the latter being the dose with "
+       "which resin of the mean inhibition just gels in the end; resin.diffusion_mm2_s is the diffusion of radicals. "
+       "Voxels cover what the projector lights and the camera sees. Where curing cannot keep up with the light, it "
+       "comes later: use a larger --cure-voxel.",
        "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
       {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
       {},
@@ -126,7 +123,7 @@ void declare_resin(cli::App& app, Options& o) {
   app.option("--inhibitor-diffusion", "MM2/S", o.resin.inhibitor_diffusion_mm2_s, {0, 1},
              "Diffusion coefficient of the inhibitor.")
       .needs({"--cure"});
-  app.option("--cure-delay", "S", o.resin.delay_s, {0, 1e4}, "Life of radicals, by which curing follows the light.")
+  app.option("--cure-delay", "S", o.resin.delay_s, {0, 1e4}, "Lifetime of radicals, by which curing follows the light.")
       .needs({"--cure"});
   app.option("--lamp-drift", "1/MIN", o.camera.bench.lamp_drift_per_min, {-10, 10},
              "Relative change of the lamp's intensity per minute of light.")
@@ -278,7 +275,7 @@ void cure(const cli::App& app, Options& o) {
   auto& camera = o.camera;
   camera.bench.resin = o.resin;
   if (!app.given("--glow")) camera.bench.glow = 0;
-  (void)sim::SimPrint(camera.bench);
+  (void)sim::SimPrint(camera.bench);  // a printer that does not do ends the program before it serves a camera
   if (o.cured.empty()) return;
   camera.cured = [&app, &o](const sim::SimPrint& print) {
     const model::Volume volume = print.resin().conversion();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
@@ -23,8 +22,6 @@ namespace {
 // either crossing for a Gaussian flank of 1.5 px.
 constexpr double interpolation_px = 0.015;
 
-const double fwhm_per_sigma = 2 * std::sqrt(2 * std::numbers::ln2);
-
 constexpr double middle_part = 0.8;  // of the resin's radius that is evaluated
 constexpr int least_columns = 8;     // of a plane
 
@@ -43,12 +40,12 @@ stats::Measured gaussian_width(const std::vector<double>& profile, const std::st
     }
     return out;
   };
-  const double start_px = rough->width() / fwhm_per_sigma;
+  const double start_px = rough->width() / stats::fwhm_per_sigma;
   const double start_light = rough->height * rough->width();
   const auto fit = stats::fit_curve(residuals, {rough->middle(), start_px, start_light, profile.front()},
                                     {1e-3, 1e-3, 1e-4 * start_light, 1e-4 * rough->height}, subject);
   const stats::Measured width = fit.measured(sigma);
-  return {std::abs(width.value) * fwhm_per_sigma, width.sigma * fwhm_per_sigma, width.n};
+  return {std::abs(width.value) * stats::fwhm_per_sigma, width.sigma * stats::fwhm_per_sigma, width.n};
 }
 
 /// Columns of the resin's middle, in the light's direction or against it, and where along the light each looks.

@@ -93,8 +93,10 @@ void Deposit::add(const GreyImage& image, double part_rad, double right_px, doub
   const double sine = std::sin(part_rad);
   const double volume_mm3 = grid_.voxel_mm * grid_.voxel_mm * grid_.voxel_mm;
   const double scale = full_mw_cm2 * seconds * mm_per_cm * pitch_mm_ * pitch_mm_ / volume_mm3;
-  constexpr double silver = 0.4142135624;
-  constexpr double many = 1000;  // steps begin elsewhere at every angle
+  // The steps of neighbouring rays begin at phases that are spread by another irrational number than their heights are,
+  // as the two must not go together; at angles that differ by parts of a degree they are unrelated.
+  constexpr double silver = 0.4142135624;  // 2^(1/2) - 1
+  constexpr double steps_per_rad = 1000;
   for (std::size_t j = 0; j < rows_.size(); ++j) {
     const Row& row = rows_[j];
     const double top = projector_.axis_row - row.top_mm / projector_.pixel_mm;
@@ -106,7 +108,7 @@ void Deposit::add(const GreyImage& image, double part_rad, double right_px, doub
       const double mean = lit.mean(from, from + pitch_mm_ / projector_.pixel_mm);
       constexpr double dark = 1e-9;
       if (mean < dark || !row.rays[i].enters) continue;
-      const double place = silver * static_cast<double>(i + j) + many * part_rad;
+      const double place = silver * static_cast<double>(i + j) + steps_per_rad * part_rad;
       leave(turned(row.rays[i], cosine, sine), place - std::floor(place), mean * scale * row.rays[i].transmittance,
             absorbed);
     }

@@ -13,7 +13,7 @@ struct SimResin {
   double voxel_mm = 0.2;
   double critical_dose_mj_cm3 = 0;          // with which resin of the mean inhibitor just gels, in the end
   double induction = 0.5;                   // share of it that the inhibitor takes
-  double delay_s = 3;                       // life of radicals: conversion follows the light by it
+  double delay_s = 3;                       // lifetime of radicals: conversion follows the light by it
   double inhibition_gradient = 0;           // relative change of the inhibitor from the lowest to the highest slice
   double inhibitor_diffusion_mm2_s = 1e-4;  // of the inhibitor
   double dose_diffusion_mm2_s = 0;          // of the radicals

@@ -7,6 +7,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/stats/normal.hpp"
 #include "sim/bench/private/deposit.hpp"
 
 namespace vam::sim {
@@ -14,7 +15,6 @@ namespace vam::sim {
 namespace {
 
 constexpr double reaction_s = 0.25;  // steps of the resin
-constexpr double fwhm_per_sigma = 2.354820045;
 
 SimResin resin_of(const SimBench& bench) {
   if (!bench.resin) throw Error{Fault::usage, "simulated print: the bench has no resin"};
@@ -41,7 +41,8 @@ model::Grid grid_of(const SimBench& bench) {
 }
 
 double blur_mm(const SimBench& bench) {
-  return std::hypot(bench.beam_mm, bench.focus_mm * std::tan(bench.divergence_deg * rad_per_deg)) / fwhm_per_sigma;
+  return std::hypot(bench.beam_mm, bench.focus_mm * std::tan(bench.divergence_deg * rad_per_deg)) /
+         stats::fwhm_per_sigma;
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ struct SimPrint::State {
 };
 
 SimPrint::SimPrint(const SimBench& bench) {
-  (void)resin_of(bench);
+  (void)resin_of(bench);  // before the grid, which takes it for granted
   state_ = std::make_unique<State>(bench);
 }
 SimPrint::~SimPrint() = default;

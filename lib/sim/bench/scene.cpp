@@ -11,6 +11,7 @@
 #include "base/image.hpp"
 #include "base/index.hpp"
 #include "base/random.hpp"
+#include "base/stats/normal.hpp"
 #include "sim/bench/print.hpp"
 #include "sim/bench/private/beams.hpp"
 #include "sim/bench/private/sight_lines.hpp"
@@ -33,7 +34,6 @@ constexpr int most_blurs = 9;            // widths of the beam between its narro
 constexpr double scatter_per_mm = 0.08;  // of full scale
 constexpr double most_speck = 0.2;       // of full scale
 constexpr double reference_us = 20000;
-constexpr double fwhm_per_sigma = 2.354820045;
 
 // Unit normal deviate of a pixel, always the same (Box-Muller).
 double normal(std::uint64_t key) {
@@ -91,7 +91,8 @@ struct SimScene::State {
     const int blurs = bench.divergence_deg > 0 ? most_blurs : 1;
     for (int i = 0; i < blurs; ++i) {
       const double spread_mm = furthest_mm * i / (most_blurs - 1) * std::tan(bench.divergence_deg * rad_per_deg);
-      blurs_px.push_back(std::hypot(bench.beam_mm, spread_mm) / fwhm_per_sigma / bench.printer.projector.pixel_mm);
+      blurs_px.push_back(std::hypot(bench.beam_mm, spread_mm) / stats::fwhm_per_sigma /
+                         bench.printer.projector.pixel_mm);
     }
     const auto to_camera = outer_shells(bench.printer, bench.printer.camera.index_resin);
     for (int c = 0; c < columns; ++c) sights.push_back(sight(c, to_camera));

@@ -29,7 +29,7 @@ struct Passage {
     const double pace = ray.along[a] / grid.voxel_mm;
     way.at[a] = static_cast<float>(start);
     way.along[a] = static_cast<float>(pace);
-    constexpr double level = 1e-9;
+    constexpr double level = 1e-9;  // voxels per mm: too few for a vial to have a face on the way
     if (std::abs(pace) < level) {
       if (start < low[a] || start >= high[a]) way.to_mm = 0;
       continue;
