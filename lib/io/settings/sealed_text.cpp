@@ -2,6 +2,8 @@
 #include "io/settings/sealed_text.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -13,6 +15,7 @@ namespace {
 
 constexpr const char* json_key = "seal";
 const std::string text_head = "# sealed ";
+constexpr std::size_t seal_size = 37;  // that of seal_text()
 
 Digest digest_of_json(Json object) {
   object.erase(json_key);
@@ -31,17 +34,21 @@ void require_equal(const std::string& seal, const Digest& read, const std::strin
                                " if the change was intentional"};
 }
 
-// The line feed before it. Damage leaves one half of its head at least.
-std::size_t seal_line(const std::string& text) {
-  const std::size_t line = text.rfind("\n" + text_head);
-  if (line != std::string::npos) return line;
-  const std::size_t mark = text.rfind(" xxh3:");
-  return mark == std::string::npos ? mark : text.rfind('\n', mark);
+bool is_seal(std::string_view text) {
+  Digest ignored;
+  return parse_seal(text, ignored);
 }
 
-bool is_seal(const Json& value) {
-  Digest ignored;
-  return value.is_string() && parse_seal(value.get<std::string>(), ignored);
+/// Where the line of the seal begins: anywhere with its whole head, as text may have been added; at the end with what
+/// damage of one byte leaves of it, `# sealed ` or the hash. Other comments may have words in common with it.
+std::optional<std::size_t> seal_line(const std::string& text) {
+  constexpr auto none = std::string::npos;
+  if (const auto feed = text.rfind("\n" + text_head + "xxh3:"); feed != none) return feed + 1;
+  const std::size_t last = text.size() - std::min(text.size(), 1 + text_head.size() + seal_size + 1);
+  if (const auto feed = text.find("\n" + text_head, last); feed != none) return feed + 1;
+  const std::string_view lines = std::string_view(text).substr(0, text.find_last_not_of('\n') + 1);
+  if (lines.size() < seal_size || !is_seal(lines.substr(lines.size() - seal_size))) return std::nullopt;
+  return lines.rfind('\n') + 1;  // 0 where it is the only one
 }
 
 }  // namespace
@@ -53,10 +60,14 @@ void seal_json(Json& object) {
 
 bool require_seal(const Json& object, const std::string& name) {
   if (!object.is_object()) return false;
-  if (!object.contains(json_key) && std::none_of(object.begin(), object.end(), is_seal)) return false;
-  const Json seal = object.value(json_key, Json());  // whose key may be damaged
-  require_equal(seal.is_string() ? seal.get<std::string>() : "", digest_of_json(object), name,
-                std::string("its key ") + json_key);
+  auto seal = object.find(json_key);
+  if (seal == object.end()) {  // its key may be damaged
+    seal = std::find_if(object.begin(), object.end(),
+                        [](const Json& value) { return value.is_string() && is_seal(value.get<std::string>()); });
+  }
+  if (seal == object.end()) return false;
+  const bool readable = seal.key() == json_key && seal->is_string();
+  require_equal(readable ? seal->get<std::string>() : "", digest_of_json(object), name, "its key " + seal.key());
   return true;
 }
 
@@ -66,12 +77,12 @@ std::string sealed_text(std::string text) {
 }
 
 bool require_text_seal(const std::string& text, const std::string& name) {
-  const std::size_t line = seal_line(text);
-  if (line == std::string::npos) return false;
-  std::string seal = text.substr(line + 1);
+  const auto line = seal_line(text);
+  if (!line) return false;
+  std::string seal = text.substr(*line);
   const bool whole = seal.starts_with(text_head) && seal.back() == '\n';
   if (whole) seal = seal.substr(text_head.size(), seal.size() - text_head.size() - 1);
-  require_equal(whole ? seal : "", digest_of(text.data(), line + 1), name, "its last line '" + text_head + "...'");
+  require_equal(whole ? seal : "", digest_of(text.data(), *line), name, "its last line '" + text_head + "...'");
   return true;
 }
 

@@ -188,6 +188,7 @@ TEST_CASE("a changed digit in a record, or in its response table, is refused; it
   std::string renamed = changed;
   renamed.replace(renamed.find("\"seal\""), 6, "\"sebl\"");
   CHECK(has(refusal(renamed), "seal unreadable"));
+  CHECK(has(refusal(renamed), "remove its key sebl if"));
 
   const std::string table = (std::filesystem::path(calibration.folder) / "r.csv").string();
   scratch::spill(table, "grey,intensity\n0,0\n255,3.5\n");
