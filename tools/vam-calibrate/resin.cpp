@@ -10,17 +10,6 @@
 
 namespace vam::calibrate_tool {
 
-namespace {
-
-model::Volume read_scatter(const std::string& path) {
-  const io::SparseVolume sparse = io::read_volume(path, "");
-  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
-  sparse.read_slices(0, volume.grid.nz, volume.values.data());
-  return volume;
-}
-
-}  // namespace
-
 void measure_resin(const ResinOptions& options) {
   if (options.diameter_mm && !options.profile.empty()) {
     throw Error{Fault::usage, "resin: give the diameter of the standard, as either --diameter or --profile"};
@@ -29,7 +18,7 @@ void measure_resin(const ResinOptions& options) {
   if (!options.profile.empty()) {
     diameter_mm = 2 * options.profile_pixel_mm * metrology::find_circle(io::read_field(options.profile)).radius;
   }
-  const model::Volume volume = read_scatter(options.scatter);
+  const model::Volume volume = io::dense_volume(io::read_volume(options.scatter, ""));
   const metrology::OverheadMean overhead = metrology::overhead_mean(volume);
   Json figures = metrology::to_json(metrology::gelation_threshold(overhead.mean, volume.grid.voxel_mm, diameter_mm));
   figures["height_mm"] = overhead.height_mm;

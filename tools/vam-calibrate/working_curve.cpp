@@ -26,12 +26,6 @@ std::optional<double> fact(const io::SparseVolume& volume, const char* name) {
   return found == volume.metadata.end() ? std::nullopt : parse_number(found->second);
 }
 
-model::Volume dense(const io::SparseVolume& sparse) {
-  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
-  sparse.read_slices(0, volume.grid.nz, volume.values.data());
-  return volume;
-}
-
 /// The dose of one turn, and where it is in the print.
 struct TurnDose {
   model::Volume volume;
@@ -46,7 +40,8 @@ TurnDose read_dose(const std::string& path) {
                 path + ": its doses are " + sparse.units +
                     ", not mJ/cm3; set resin.absorption_per_mm and resin.critical_dose_mj_cm3 for vam-dose"};
   }
-  TurnDose dose{dense(sparse), fact(sparse, "vam:stretch_z").value_or(1), fact(sparse, "vam:full_intensity_turns")};
+  TurnDose dose{io::dense_volume(sparse), fact(sparse, "vam:stretch_z").value_or(1),
+                fact(sparse, "vam:full_intensity_turns")};
   if (!dose.turns) return dose;
   for (float& value : dose.volume.values) value /= static_cast<float>(*dose.turns);
   return dose;
@@ -82,8 +77,8 @@ void measure_working_curve(const WorkingCurveOptions& options) {
     turn_s.push_back(fact(sparse, "vam:turn_s").value_or(0));
     const double last = turns ? *turns - options.lit_from_turn : for_ever;
     if (last <= 0) continue;
-    const auto of_turn =
-        metrology::curing_readings(dense(sparse), dose.volume, dose.stretch_z, options.classes, last - 1, last);
+    const auto of_turn = metrology::curing_readings(io::dense_volume(sparse), dose.volume, dose.stretch_z,
+                                                    options.classes, last - 1, last);
     readings.insert(readings.end(), of_turn.begin(), of_turn.end());
   }
   Json figures = to_json(metrology::fit_curing_curve(readings, lit_turns, options.isovalue), stats::median(turn_s));

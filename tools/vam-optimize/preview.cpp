@@ -51,9 +51,7 @@ struct Level {
 };
 
 optimize::Unresolved unresolved_of(const io::SparseVolume& target) {
-  model::Volume dense{target.grid(), std::vector<float>(target.grid().size())};
-  target.read_slices(0, dense.grid.nz, dense.values.data());
-  return optimize::unresolved(dense);
+  return optimize::unresolved(io::dense_volume(target));
 }
 
 Level coarser(const Level& fine) {

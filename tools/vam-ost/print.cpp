@@ -26,12 +26,6 @@ std::optional<double> isovalue_of(const Options& o) {
   return io::gelation_isovalue(o.resin_record);
 }
 
-model::Volume dense(const io::SparseVolume& sparse) {
-  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
-  sparse.read_slices(0, volume.grid.nz, volume.values.data());
-  return volume;
-}
-
 }  // namespace
 
 Print::Print(const cli::App& app, const Options& options, const model::PrinterCamera& camera)
@@ -40,7 +34,7 @@ Print::Print(const cli::App& app, const Options& options, const model::PrinterCa
       absorbs_(camera.absorption_per_mm > 0),
       isovalue_(isovalue_of(options)),
       rules_{options.pieces_mm3, {}} {
-  if (!options.target.empty()) target_ = dense(io::read_volume(options.target, ""));
+  if (!options.target.empty()) target_ = io::dense_volume(io::read_volume(options.target, ""));
   constexpr double margin_mm = 1;
   if (isovalue_ && target_) rules_.inside = metrology::neighbourhood(*target_, margin_mm);
 }

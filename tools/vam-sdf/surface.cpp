@@ -15,12 +15,6 @@ namespace vam::sdf_tool {
 
 namespace {
 
-model::Volume dense(const io::SparseVolume& sparse) {
-  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
-  sparse.read_slices(0, volume.grid.nz, volume.values.data());
-  return volume;
-}
-
 io::SparseVolume open_volume(const std::string& path, std::optional<double> isovalue) {
   if (!isovalue) {
     throw Error{Fault::usage,
@@ -40,7 +34,7 @@ model::TriangleSoup surface_of(const std::string& path, const model::Volume& vol
 model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue) {
   if (!io::is_volume(path)) return io::read_mesh(path);
   const io::SparseVolume sparse = open_volume(path, isovalue);
-  model::TriangleSoup mesh = surface_of(path, dense(sparse), *isovalue);
+  model::TriangleSoup mesh = surface_of(path, io::dense_volume(sparse), *isovalue);
   tool::unstretch(mesh, sparse.metadata);
   return mesh;
 }
@@ -58,13 +52,13 @@ PrintSurface read_print(const Options& options, std::optional<double> isovalue) 
     return print;
   }
   const io::SparseVolume sparse = open_volume(options.print, isovalue);
-  model::Volume volume = dense(sparse);
+  model::Volume volume = io::dense_volume(sparse);
   print.bodies = metrology::keep_bodies(volume, *isovalue, {options.pieces_mm3, {}});
   print.mesh = surface_of(options.print, volume, *isovalue);
   if (!options.uncertainty.empty()) {
     const io::SparseVolume known = io::read_volume(options.uncertainty, "uncertainty");
     const auto correlation = [&](const char* name) { return tool::stated_number(known.metadata, name).value_or(0); };
-    const metrology::VoxelUncertainty voxels{dense(known), correlation("vam:correlation_xy"),
+    const metrology::VoxelUncertainty voxels{io::dense_volume(known), correlation("vam:correlation_xy"),
                                              correlation("vam:correlation_z")};
     print.uncertainty_mm = metrology::surface_uncertainty_mm(volume, voxels, print.mesh.points);
   }

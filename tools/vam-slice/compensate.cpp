@@ -42,8 +42,7 @@ model::TriangleSoup corrected(model::TriangleSoup mesh, const Options& options, 
     require_memory(sizeof(float) * static_cast<double>(sparse.grid().size()),
                    path + ": " + model::size_text(sparse.grid()), "give vam-sdf a larger --volume-voxel");
     correction.rms_mm.push_back(rms_of(sparse, path));
-    rounds.push_back({sparse.grid(), std::vector<float>(sparse.grid().size())});
-    sparse.read_slices(0, sparse.grid().nz, rounds.back().values.data());
+    rounds.push_back(io::dense_volume(sparse));
   }
   // Surfaces of sharp steps lie within a tenth of a voxel; their RMS is known to half of that.
   const model::Grid grid = rounds.front().grid;

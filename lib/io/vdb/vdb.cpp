@@ -212,6 +212,12 @@ void SparseVolume::read_slices(int k0, int count, float* out) const {
   });
 }
 
+model::Volume dense_volume(const SparseVolume& sparse) {
+  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
+  sparse.read_slices(0, volume.grid.nz, volume.values.data());
+  return volume;
+}
+
 void SparseVolume::write_slices(int k0, int count, const float* in) {
   const LeafSlab slab = slab_of(state_->grid, state_->first, k0, count);
   Tree& tree = state_->sparse->tree();

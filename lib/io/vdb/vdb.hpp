@@ -47,6 +47,9 @@ class SparseVolume {
   std::unique_ptr<State> state_;
 };
 
+/// All of its voxels.
+[[nodiscard]] model::Volume dense_volume(const SparseVolume& sparse);
+
 /// Distance from the axis x = y = 0 to the farthest centre of a voxel whose value is above that, in mm; -1 where none
 /// is.
 [[nodiscard]] double farthest_mm(const SparseVolume& volume, float above);

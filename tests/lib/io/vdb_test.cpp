@@ -26,6 +26,8 @@ TEST_CASE("slices come back as they were written, for shapes that are no multipl
     CAPTURE(grid.nx);
     const auto values = ball(grid);
     CHECK(dense(filled("target", grid, values)) == values);
+    CHECK(dense_volume(filled("target", grid, values)).values == values);
+    CHECK(dense_volume(filled("target", grid, values)).grid == grid);
     // In odd portions, from the top down, as no tool would do it.
     SparseVolume volume("target", grid);
     for (int k = grid.nz; k > 0;) {
