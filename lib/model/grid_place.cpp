@@ -9,7 +9,7 @@
 namespace vam::model {
 
 std::optional<std::array<int, 3>> place_in(const Grid& whole, const Grid& part) {
-  constexpr double rounding = 1e-3;  // voxels
+  constexpr double rounding = 1e-3;  // voxels: origins that other programs compute as floats err by 3e-5 at 500 voxels
   const std::array<int, 3> outer{whole.nx, whole.ny, whole.nz};
   const std::array<int, 3> inner{part.nx, part.ny, part.nz};
   const int most = std::max({whole.nx, whole.ny, whole.nz});

@@ -2,35 +2,25 @@
 #include "vam-optimize/delivered.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
 
 namespace vam::optimize_tool {
-
-namespace {
-
-bool is_same(const model::Grid& a, const model::Grid& b) {
-  constexpr double rounding = 0.01;  // voxels
-  double apart = std::abs(a.voxel_mm - b.voxel_mm) * std::max({a.nx, a.ny, a.nz});
-  for (int axis = 0; axis < 3; ++axis) apart = std::max(apart, std::abs(a.origin_mm[axis] - b.origin_mm[axis]));
-  return a.nx == b.nx && a.ny == b.ny && a.nz == b.nz && apart < rounding * a.voxel_mm;
-}
-
-}  // namespace
 
 optimize::VolumeSource::Read delivered_dose(const Scene& scene, const Inputs& in, const Options& options) {
   if (in.delivered.empty()) return {};
   for (std::size_t i = 0; i < in.delivered.size(); ++i) {
     const model::Grid& grid = in.delivered[i].grid();
-    if (is_same(grid, scene.grid)) continue;
+    if (model::same_voxels(grid, scene.grid)) continue;
     throw Error{Fault::data, options.delivered[i] + ": has " + model::place_text(grid) + ", but light reaches " +
                                  model::place_text(scene.grid) +
                                  "; compute it by vam-dose --like with this target and these settings"};

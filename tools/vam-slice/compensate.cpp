@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-slice --compensate: the deviations of prints, taken off the design before it is placed.
-#include <cmath>
-
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
 #include "solid/voxel/compensation.hpp"
 #include "vam-slice/part.hpp"
@@ -22,14 +21,6 @@ double rms_of(const io::SparseVolume& volume, const std::string& path) {
   }
   if (const auto rms_mm = parse_number(found->second)) return *rms_mm;
   throw Error{Fault::data, path + ": vam:rms_mm is '" + found->second + "', not a number; write the volume anew"};
-}
-
-// But for the rounding of the file.
-bool is_same(const model::Grid& a, const model::Grid& b) {
-  const auto near = [&](std::size_t axis) {
-    return std::abs(a.origin_mm[axis] - b.origin_mm[axis]) < 1e-3 * a.voxel_mm;
-  };
-  return a.nx == b.nx && a.ny == b.ny && a.nz == b.nz && near(0) && near(1) && near(2);
 }
 
 }  // namespace
@@ -54,7 +45,7 @@ model::TriangleSoup corrected(model::TriangleSoup mesh, const Options& options, 
          " mm; the later ones are not applied");
     rounds.resize(correction.applied);
   }
-  if (!is_same(solid::deviation_grid(mesh, grid.voxel_mm), grid)) {
+  if (!model::same_voxels(solid::deviation_grid(mesh, grid.voxel_mm), grid)) {
     throw Error{Fault::data, options.compensate.front() + ": is the deviation from another design than " +
                                  options.input + "; give vam-sdf the same mesh"};
   }
