@@ -40,7 +40,7 @@ optimize::VolumeSource::Read delivered_dose(const Scene& scene, const Inputs& in
   };
 }
 
-void add_delivered(Json& report, const optimize::VolumeSource& source, const Scene& scene, const Options& options) {
+void report_delivered(Json& report, const optimize::VolumeSource& source, const Scene& scene, const Options& options) {
   if (!source.delivered) return;
   const double threshold = options.demands.window.threshold();
   double part_dose = 0;

@@ -16,6 +16,6 @@ namespace vam::optimize_tool {
 
 /// What was delivered: to the part, on average, and the void that has gelled by it, which no light can undo. Nothing
 /// where none was.
-void add_delivered(Json& report, const optimize::VolumeSource& source, const Scene& scene, const Options& options);
+void report_delivered(Json& report, const optimize::VolumeSource& source, const Scene& scene, const Options& options);
 
 }  // namespace vam::optimize_tool

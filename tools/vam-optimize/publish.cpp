@@ -83,7 +83,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     const double voxel_mm = scene.grid.voxel_mm;
     report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
   }
-  add_delivered(report, task.source, scene, options);
+  report_delivered(report, task.source, scene, options);
   const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, printer, info, options);
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
