@@ -24,7 +24,10 @@ holds 'as its report says' "($(pw sum.score.json) - $(pw rest.json)) ^ 2 < 0.01 
 holds 'which states how much there was' "($(json rest.json delivered.part_mean_percent) - 60) ^ 2 < 10 ^ 2 && $(json rest.json delivered.void_gelled_voxels) == 0"
 volumes fall whole.vdb 1.6 0 over.vdb
 vam-optimize $resin --angles 90 part.vdb --delivered over.vdb --init whole.exr --iterations 2 -o late.exr 2>late
-ok 'what has gelled in the void is a warning' grep -q 'over.vdb: [0-9]* voxels of the void have received the critical dose already' late
+ok 'what has gelled in the void is a warning' grep -q 'over.vdb: [0-9]* voxels of the void have received the critical dose already, which no light can undo; stop earlier, or with less light$' late
+volumes fall whole.vdb "$(awk "BEGIN { print 50.001 / $(json whole.score.json max_void) }")" 0 edge.vdb
+vam-optimize $resin --angles 90 part.vdb --delivered edge.vdb --init whole.exr --iterations 1 -o late.exr 2>late
+ok 'of one voxel, too' grep -q 'edge.vdb: 1 voxel of the void has received the critical dose already' late
 volumes fall half.vdb 0.25 0 quarter.vdb
 volumes fall half.vdb 0.75 0 rest.vdb
 ok 'doses of several projections' vam-optimize $resin --angles 90 part.vdb --delivered quarter.vdb --delivered rest.vdb --init whole.exr --iterations 10 -o two.exr --report two.json

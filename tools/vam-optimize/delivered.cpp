@@ -63,7 +63,8 @@ void report_delivered(Json& report, const optimize::VolumeSource& source, const 
   report["delivered"] = {{"part_mean_percent", percent}, {"void_gelled_voxels", gelled}};
   if (gelled == 0) return;
   warn(join(options.delivered, ", ") + ": " + std::to_string(gelled) +
-       " voxels of the void have received the critical dose already, which no light can undo");
+       (gelled == 1 ? " voxel of the void has" : " voxels of the void have") +
+       " received the critical dose already, which no light can undo; stop earlier, or with less light");
 }
 
 }  // namespace vam::optimize_tool
