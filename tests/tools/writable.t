@@ -27,7 +27,7 @@ fails 65 'light reaches only 16.98;' vam-optimize $few --geometry parallel disc.
 # The projector's own rays know from which angles light comes.
 vam-optimize $few --iterations 1 --angles 24 disc.vdb -o out.exr 2>err
 is 'it is reported from how many angles the rim is lit' "$?:$(cat err)" \
-  '0:vam-optimize: warning: disc.vdb: reaches 4.111 mm from the axis, beyond the writable radius of 3.395 mm; its outermost voxels are lit from 62.5 % of the stage angles, and doses there are accurate to 1 % of the maximum'
+  '0:vam-optimize: warning: disc.vdb: reaches 4.111 mm from the axis, beyond the writable radius of 3.395 mm; its outermost voxels are lit from 62.5 % of the stage angles, and doses there are accurate to 1 % of the maximum (RMS; single voxels to some per cent)'
 # A part that is narrower, but whose voxels are not.
 brim='--shape cylinder:diameter=16.59,height=2 --voxel 0.4'
 fails 65 'its voxels reach 8.528 mm \(21.32 voxels\) from the axis, beyond the writable radius of 8.301 mm' vam-slice $brim -o out.vdb

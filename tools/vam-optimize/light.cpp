@@ -100,7 +100,8 @@ void warn_of_reach(const io::SparseVolume& target, const model::Printer& printer
   if (optics::judged_radius_mm(printer, farthest) <= writable) return;
   warn(reaches(options, farthest) + "writable radius of " + format_number(writable, 4) +
        " mm; its outermost voxels are lit from " + format_number(100 * optics::lit_fraction(printer, farthest), 3) +
-       " % of the stage angles, and doses there are accurate to 1 % of the maximum");
+       " % of the stage angles, and doses there are accurate to 1 % of the maximum "
+       "(RMS; single voxels to some per cent)");
 }
 
 /// Rows beyond the projector's stay dark.
