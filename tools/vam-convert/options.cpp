@@ -37,14 +37,12 @@ void declare_projections(cli::App& app, Options& options) {
   app.default_is("that of the columns");
   app.option("--like", "FILE", options.like,
              "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer; with "
-             "--geometry "
-             "vial also those above and below that climbing rays light. vam-dose --like FILE needs them.")
+             "--geometry vial also those above and below that climbing rays light. vam-dose --like FILE needs them.")
       .reads();
   app.default_is("the slices of the array, the rows of the images");
-  app.option(
-         "--view-step", "DEG", options.view_step_deg, {-180, 180},
-         "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections of "
-         "several turns are averaged.")
+  app.option("--view-step", "DEG", options.view_step_deg, {-180, 180},
+             "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections "
+             "of several turns are averaged.")
       .was("--angle-step");
   app.default_is(
       "that of frames.csv beside the images, or of the angles in an HDF5 file; else one turn divided by the "
@@ -71,10 +69,9 @@ const std::vector<std::string> projection_flags{"--geometry",  "--pixel",       
 }  // namespace
 
 void declare(cli::App& app, Options& options) {
-  app.positional(
-         "FILE", options.input,
-         "Array (.npy, .npz, HDF5, NRRD, MRC, TIFF of several pages), folder of numbered images (PNG, TIFF), video "
-         "(MKV, MP4), volume (VDB) or stack (EXR).")
+  app.positional("FILE", options.input,
+                 "Array (.npy, .npz, HDF5, NRRD, MRC, TIFF of several pages), folder of numbered images (PNG, TIFF), "
+                 "video (MKV, MP4), volume (VDB) or stack (EXR).")
       .reads();
   cli::add_output(app, options.output);
   app.group("Arrays");

@@ -22,8 +22,7 @@ std::vector<std::string> description() {
       "is the speed times the time since the first frame. The run-up turn is a dry run: if vertical blanks are missed "
       "in it, the print does not start. During the print a missed vertical blank leaves a frame on for one period too "
       "long and is logged; the print ends only when their fraction exceeds --max-missed-lit. Frame size and screen "
-      "size "
-      "must be equal.",
+      "size must be equal.",
       "Time: frame n is centred on the time n / fps and the stage angle n x speed / fps, and is shown for one frame "
       "period. If the sinogram has as many angles as there are frames in a turn, every frame is one of its rows. "
       "Otherwise it is interpolated linearly between the two nearest angles or, where frames are coarser than angles, "
@@ -38,14 +37,12 @@ std::vector<std::string> description() {
       "are those of vam-resample, with the axis at projector.axis_column; --column-offset shifts them. Intensity "
       "outside the projector's columns or rows is an error. The orientation is applied last.",
       "Grey: the value --full-scale (default: the maximum of the stack) is shown at full intensity, times "
-      "--multiplier. "
-      "Each pixel is set to the grey level whose intensity is nearest to the required one, by the measured response "
-      "(projector.response) or else the linear response from min_intensity to max_intensity.",
+      "--multiplier. Each pixel is set to the grey level whose intensity is nearest to the required one, by the "
+      "measured response (projector.response) or else the linear response from min_intensity to max_intensity.",
       "With --dither N the rounding error of each pixel is carried over to the next columns and angles, and a pixel "
       "between two levels shows the higher one in some of N turns. The dose of a voxel, a sum over hundreds of pixels, "
       "is then accurate to much less than a level, even with 1 bit. Live, the frames of N turns are preloaded. "
-      "vam-dose "
-      "--bits --dither computes the dose of such frames.",
+      "vam-dose --bits --dither computes the dose of such frames.",
       "Slices of continuous stereolithography (vam-curethrough correct) are shown one after the other, each once, "
       "slice n from n / fps on, with fps = print speed / slice height: both are stated in the EXR stack, --print-speed "
       "or --fps override them, and a folder of images has its times in frames.csv. The slices required after the last "
@@ -87,17 +84,15 @@ std::vector<std::pair<std::string, std::string>> examples() {
 
 std::vector<std::string> notes() {
   return {
-      "Safety (live output). When vam-project ends for any reason, hangs or receives no stage angle for 0.5 s "
-      "or misses too many flips, a child process, the guardian, makes the screen black and the light engine dark "
-      "within "
+      "Safety (live output). When vam-project ends for any reason, hangs or receives no stage angle for 0.5 s or "
+      "misses too many flips, a child process, the guardian, makes the screen black and the light engine dark within "
       "100 ms. Software is no interlock: install a hardware interlock that cuts the lamp. A closed window shows the "
       "desktop behind it: make that black and keep the pointer on another screen. The LED current never exceeds "
       "projector.max_led_current_percent. With projector.relay, a relay in the supply of the lamp receives a heartbeat "
       "while frames are flipped and opens by itself otherwise, even when the machine has failed; a print requires its "
       "reply (its firmware is in vam-devices(7)). After a print on drm:, Linux may return its text console to the "
       "screen: move the console to another one (kernel option fbcon=map:) and use --light, which is then in standby, "
-      "or "
-      "a shutter.",
+      "or a shutter.",
       "Priority. As root, or with permission for a real-time priority of 2 (see vam-stage(1)), the flips and the "
       "guardian run before other programs.",
       "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB have the options "
@@ -107,20 +102,16 @@ std::vector<std::string> notes() {
       "switched off, then patterns are stopped, then it returns to standby. Commands and faults are described in "
       "vam-devices(7).",
       "Linear grey. The gamma of a DLPC350 is switched off. That of a DLPC900 cannot be: it is set to its video "
-      "pattern "
-      "mode, in which each frame is three patterns of 8 bits without gamma, one colour after the other. This requires "
-      "a "
-      "video signal of at most 60 Hz, so its screen must be on. In addition, the GPU's gamma table must be linear: "
-      "drm: "
-      "sets and verifies it; sdl: uses that of the desktop (xrandr --gamma 1:1:1 makes it linear).",
-      "Memory. The lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
-      "x 200 slices x 400 lit columns: 115 MB), and a few frames; a display takes all frames, a byte per pixel, and "
-      "with --frames-from those to come and those they replace as well. Frames cannot be computed slice by slice.",
+      "pattern mode, in which each frame is three patterns of 8 bits without gamma, one colour after the other. This "
+      "requires a video signal of at most 60 Hz, so its screen must be on. In addition, the GPU's gamma table must be "
+      "linear: drm: sets and verifies it; sdl: uses that of the desktop (xrandr --gamma 1:1:1 makes it linear).",
+      "Memory. The lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles x "
+      "200 slices x 400 lit columns: 115 MB), and a few frames; a display takes all frames, a byte per pixel, and with "
+      "--frames-from those to come and those they replace as well. Frames cannot be computed slice by slice.",
       "PNG: 1, 2, 4 and 8 bits are stored at that depth. 10 bits are stored in 16, spread over the full range and "
       "marked by an sBIT chunk, as the PNG specification requires; a shift to the right by 6 restores the level. "
-      "Video: "
-      "depths below 8 bits are spread over 0..255, 10 bits are gray10le with unchanged levels, 16 bits gray16le. "
-      "Matroska rounds time stamps to 1 ms; the frame rate itself is exact.",
+      "Video: depths below 8 bits are spread over 0..255, 10 bits are gray10le with unchanged levels, 16 bits "
+      "gray16le. Matroska rounds time stamps to 1 ms; the frame rate itself is exact.",
       "stage.direction is applied in vam-resample, whose rows are stage angles; the stage angle of frames always "
       "increases.",
       "Sources: Kelly et al., Computed Axial Lithography, 2017; Orth et al., Correcting ray distortion in tomographic "
