@@ -16,12 +16,15 @@ vam-dose $resin rest.exr --like part.vdb -o turn.vdb
 showings=$(awk "BEGIN { print $(json rest.json turns) * $(json rest.json multiplier) }")
 volumes sum half.vdb turn.vdb "$showings" sum.vdb
 volumes sum half.vdb whole.vdb 0.5 open.vdb
-for one in whole sum open; do vam-score $resin $one.vdb --target part.vdb --report $one.score.json >/dev/null; done
+for one in whole sum open half; do vam-score $resin $one.vdb --target part.vdb --report $one.score.json >/dev/null; done
 holds 'half and half of the same light do not print' "$(json open.score.json ver) > 0 && $(pw open.score.json) < 0"
-holds 'half and the light that was computed for the rest do' "$(json sum.score.json ver) == 0 && $(pw sum.score.json) > 0.6 * $(pw whole.score.json)"
-holds 'at the critical dose' "$(json sum.score.json threshold) > 47 && $(json sum.score.json threshold) < 53"
-holds 'as its report says' "($(pw sum.score.json) - $(pw rest.json)) ^ 2 < 0.01 ^ 2"
-holds 'which states how much there was' "($(json rest.json delivered.part_mean_percent) - 60) ^ 2 < 10 ^ 2 && $(json rest.json delivered.void_gelled_voxels) == 0"
+# Ten iterations from the light of the whole part leave a sixth of its window to be gained: measured 0.83.
+holds 'half and the light that was computed for the rest do' "$(json sum.score.json ver) == 0 && $(pw sum.score.json) > 0.8 * $(pw whole.score.json)"
+# The middle of a window of 0.12 of 71 mJ/cm3, to an eighth of its width.
+holds 'at the critical dose' "($(json sum.score.json threshold) - 50) ^ 2 < 1"
+# Sums of the same floats, which round to 1e-7, in another order.
+holds 'as its report says' "($(pw sum.score.json) - $(pw rest.json)) ^ 2 < 1e-5 ^ 2"
+holds 'which states how much there was' "($(json rest.json delivered.part_mean_percent) / (100 * $(json half.score.json mean_part) / 50) - 1) ^ 2 < 1e-5 ^ 2 && $(json rest.json delivered.void_gelled_voxels) == 0"
 volumes fall whole.vdb 1.6 0 over.vdb
 vam-optimize $resin --angles 90 part.vdb --delivered over.vdb --init whole.exr --iterations 2 -o late.exr 2>late
 ok 'what has gelled in the void is a warning' grep -q 'over.vdb: [0-9]* voxels of the void have received the critical dose already, which no light can undo; stop earlier, or with less light$' late

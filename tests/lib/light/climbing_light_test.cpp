@@ -260,6 +260,6 @@ TEST_CASE("the dose at the reach is the same whether the resin beyond it is comp
   for (int i = 0; b.setup.grid.x_mm(i) + 0.5 * edge < reach; ++i) {  // no part of the voxel is beyond it
     CAPTURE(i);
     CHECK(within(i, 0) > 0);
-    CHECK(within(i, 0) == doctest::Approx(beyond(i, 0)).epsilon(1e-5));
+    CHECK(within(i, 0) == doctest::Approx(beyond(i, 0)).epsilon(1e-6));  // rays of the same points: a float's rounding
   }
 }

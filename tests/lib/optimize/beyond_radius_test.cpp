@@ -70,5 +70,7 @@ TEST_CASE("a bar whose corners reach 1.15 R/n prints, judged by deposited rays")
   }
   const model::DoseMetrics judged = statistics.metrics();
   CHECK(judged.ver == 0);
-  CHECK(judged.pw > 0.05);  // the maker's own figure is 0.06
+  // The maker's own figure is 0.080; 12 x 12 rays a pixel say 0.077, 4 x 4 0.075: the counts of rays in a voxel. Twice
+  // that is allowed.
+  CHECK(judged.pw > 0.07);
 }

@@ -72,10 +72,13 @@ TEST_CASE("light for what is left completes an uneven dose to a print") {
     const auto corrected = judged(sum_of(delivered[k], dose_of(rest.images[k]), 1), slices[k]);
     const auto perfect = judged(dose_of(whole.images[k]), slices[k]);
     CHECK(*std::min_element(rest.images[k].values.begin(), rest.images[k].values.end()) >= 0);
+    // At either edge 0.6 x 0.2 = 0.12 of the dose is missing or too much; the extreme voxels are nearly there.
     CHECK(open.pw < perfect.pw - 0.1);
-    CHECK(corrected.pw > perfect.pw - 0.03);
-    // Absolute: the threshold needs no scale.
-    CHECK(std::abs(0.5 * (corrected.min_part + corrected.max_void) - 0.8) < 0.05);
+    // Doses within 0.75 and 0.85 cost nothing, and iteration ends before all extremes are: measured 0.006 and 0.015.
+    CHECK(corrected.pw > perfect.pw - 0.02);
+    // Absolute: the threshold needs no scale. Losses are alike on both sides of it; measured 0.7999 and 0.8007, as of
+    // the whole light.
+    CHECK(std::abs(0.5 * (corrected.min_part + corrected.max_void) - 0.8) < 0.005);
   }
   // What it says of itself is of the sum.
   CHECK(rest.outcome.metrics.ver == doctest::Approx(whole.outcome.metrics.ver));
