@@ -97,7 +97,7 @@ const std::vector<Printing> printings{
 
 }  // namespace
 
-// Of six pairs of part and printing $VAM_TRIALS, two by default: one of each printing.
+// One of six pairs of part and printing; all are in ctest --preset long.
 TEST_CASE("three rounds correct a part to 0.04 mm and never turn back") {
   int left = trials_or(1);
   REQUIRE(left > 0);
