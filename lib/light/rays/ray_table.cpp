@@ -33,10 +33,11 @@ RayTable::RayTable(const Scope& scope)
   inner.rows = std::max(2, ceil_int(inside / pitch_mm) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
   inner_edge_mm = std::max(inside, std::min(reach_mm, scope.r_max_mm));
-  if (std::min(edge_mm, scope.r_max_mm) > reach_mm) {
-    inner_edge_mm =
-        std::max(0.0, reach_mm - 0.5 * scope.voxel_mm);  // no voxel of the inner zone is crossed by the reach
-    const double beyond = std::min(edge_mm, scope.r_max_mm) - inner_edge_mm;
+  // With level rays no voxel of the inner zone is crossed by the reach; climbing ones need its heights.
+  const double inner_end = climbs_ ? reach_mm : std::max(0.0, reach_mm - 0.5 * scope.voxel_mm);
+  const double beyond = std::min(edge_mm, scope.r_max_mm) - inner_end;
+  if (beyond > 0) {
+    inner_edge_mm = inner_end;
     outer.sheets = most_sheets;
     outer.rows = ceil_int(circles_per_voxel * beyond / scope.voxel_mm);
     outer.pitch_mm = beyond / outer.rows;
