@@ -15,8 +15,8 @@
 #include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
 #include "printer.hpp"
-#include "score/exposure_plan.hpp"
 #include "vam-optimize/beginning.hpp"
+#include "vam-optimize/exposure.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
@@ -92,8 +92,7 @@ void run(const cli::App& app, Options& options) {
   sink.finish();
   sink.require_light(outcome.peak_intensity);
   if (options.bits) {
-    const double threshold = options.demands.window.threshold();
-    const auto aimed = [&](const model::DoseMetrics& doses) { return score::aimed_dose(doses, threshold); };
+    const auto aimed = [&](const model::DoseMetrics& doses) { return aimed_dose(doses, options); };
     optimize::judge_shown(task, *light, sink.kept(), aimed, outcome);
   }
   std::optional<optimize::Trials> trials;

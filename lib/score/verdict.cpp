@@ -12,15 +12,25 @@ std::int64_t voxels(const model::DoseMetrics& m) { return m.part + m.void_; }
 
 std::string margin(const model::DoseMetrics& m) { return (m.pw > 0 ? "+" : "") + format_number(m.pw, 3); }
 
+bool holds_threshold(const Verdict& verdict) {
+  const auto& t = verdict.threshold;
+  return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
+}
+
 }  // namespace
 
-bool prints(const Verdict& verdict) { return verdict.whole.pw > 0; }
+bool prints(const Verdict& verdict) { return verdict.whole.pw > 0 && holds_threshold(verdict); }
 
 std::string words(const Verdict& verdict) {
   const std::int64_t cut = voxels(verdict.with_cut) - voxels(verdict.whole);
-  std::string line = std::string(prints(verdict) ? "will print" : "will not print") + ": process window " +
-                     margin(verdict.whole) + " of the largest dose, VER " + format_number(verdict.whole.ver, 3) + " (" +
-                     std::to_string(voxels(verdict.whole)) + " voxels)";
+  std::string line = prints(verdict) ? "will print" : "will not print";
+  if (!holds_threshold(verdict)) {
+    line += " at the threshold of " + format_number(*verdict.threshold, 3) + " (void up to " +
+            format_number(verdict.whole.max_void, 3) + ", part at least " + format_number(verdict.whole.min_part, 3) +
+            ")";
+  }
+  line += ": process window " + margin(verdict.whole) + " of the largest dose, VER " +
+          format_number(verdict.whole.ver, 3) + " (" + std::to_string(voxels(verdict.whole)) + " voxels)";
   if (cut > 0) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);

@@ -17,9 +17,10 @@ struct Verdict {
   model::DoseMetrics whole;       // of the voxels wholly in part or void
   model::DoseMetrics with_cut;    // with those that the surface cuts, as part from half coverage on, else as void
   std::optional<double> seconds;  // of the print; none: the resin is not known
+  std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
 };
 
-/// Some threshold dose prints all voxels that are wholly in part or void.
+/// The threshold, or some threshold if none is given, prints all voxels that are wholly in part or void.
 [[nodiscard]] bool prints(const Verdict& verdict);
 
 /// "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut

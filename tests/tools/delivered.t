@@ -26,7 +26,8 @@ holds 'at the critical dose' "($(json sum.score.json threshold) - 50) ^ 2 < 1"
 holds 'as its report says' "($(pw sum.score.json) - $(pw rest.json)) ^ 2 < 1e-5 ^ 2"
 holds 'which states how much there was' "($(json rest.json delivered.part_mean_percent) / (100 * $(json half.score.json mean_part) / 50) - 1) ^ 2 < 1e-5 ^ 2 && $(json rest.json delivered.void_gelled_voxels) == 0"
 volumes fall whole.vdb 1.6 0 over.vdb
-vam-optimize $resin --angles 90 part.vdb --delivered over.vdb --init whole.exr --iterations 2 -o late.exr 2>late
+vam-optimize $resin --angles 90 part.vdb --delivered over.vdb --init whole.exr --iterations 2 -o late.exr --report late.json 2>late
+is 'which does not print, whatever its window' "$(json late.json verdict | grep -c '^will not print at the threshold of 0.8 (void up to 1[.].*, part at least 1[.]')" 1
 ok 'what has gelled in the void is a warning' grep -q 'over.vdb: [0-9]* voxels of the void have received the critical dose already, which no light can undo; stop earlier, or with less light$' late
 volumes fall whole.vdb "$(awk "BEGIN { print 50.001 / $(json whole.score.json max_void) }")" 0 edge.vdb
 vam-optimize $resin --angles 90 part.vdb --delivered edge.vdb --init whole.exr --iterations 1 -o late.exr 2>late

@@ -7,6 +7,15 @@
 
 namespace vam::optimize_tool {
 
+std::optional<double> fixed_threshold(const Options& options) {
+  if (options.delivered.empty()) return std::nullopt;
+  return options.demands.window.threshold();
+}
+
+double aimed_dose(const model::DoseMetrics& doses, const Options& options) {
+  return fixed_threshold(options).value_or(score::aimed_dose(doses, options.demands.window.threshold()));
+}
+
 std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, double peak,
                                                const model::Printer& printer, const model::StackInfo& info,
                                                const Options& options) {
@@ -14,10 +23,9 @@ std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, 
   const double full_scale = options.full_scale.value_or(peak);
   if (!per_radian || !model::repeat(info.poses)) return std::nullopt;
   const double threshold = options.demands.window.threshold();
-  // What completes a dose has no window to choose from: its threshold is the resin's.
   model::DoseMetrics exact;
   exact.iou_threshold = threshold;
-  const model::DoseMetrics& aim = options.delivered.empty() ? doses : exact;
+  const model::DoseMetrics& aim = fixed_threshold(options) ? exact : doses;
   if (!(full_scale > 0) || !(score::window_middle(aim) > 0)) return std::nullopt;
   return score::plan_exposure(aim, *per_radian / full_scale, printer, optics::turns_of(info), threshold);
 }

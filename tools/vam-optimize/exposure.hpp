@@ -18,4 +18,10 @@ namespace vam::optimize_tool {
                                                              const model::Printer& printer,
                                                              const model::StackInfo& info, const Options& options);
 
+/// The dose that sets the resin where no exposure can put it elsewhere: what completes a dose has a scale.
+[[nodiscard]] std::optional<double> fixed_threshold(const Options& options);
+
+/// The dose that sets the resin in that exposure, in the unit of the threshold.
+[[nodiscard]] double aimed_dose(const model::DoseMetrics& doses, const Options& options);
+
 }  // namespace vam::optimize_tool

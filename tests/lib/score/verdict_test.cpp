@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "base/json.hpp"
+#include "base/text.hpp"
 
 using namespace vam;
 using namespace vam::score;
@@ -37,6 +38,21 @@ TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that 
   CHECK(words(hollow) ==
         "will not print: process window -0.02 of the largest dose, VER 0.003 (1000 voxels); "
         "duration 360 s");
+}
+
+TEST_CASE("where the threshold is fixed, a window beside it does not print") {
+  Verdict fixed = verdict();
+  fixed.whole.max_void = 0.7;
+  fixed.whole.min_part = 0.8;
+  fixed.threshold = 0.8;
+  CHECK(prints(fixed));
+  CHECK(words(fixed) == words(verdict()));
+  for (const double beside : {0.7, 0.81}) {
+    fixed.threshold = beside;
+    CHECK(!prints(fixed));
+    CHECK(words(fixed).find("will not print at the threshold of " + vam::format_number(beside) +
+                            " (void up to 0.7, part at least 0.8): process window +0.0653") == 0);
+  }
 }
 
 // A dose that is the same everywhere has it: what prints the part prints the void, too.
