@@ -136,8 +136,18 @@ Showing read_showing(const std::string& run, const std::string& sinogram) {
   log.read();
   const std::string given = sinogram == "-" ? "" : sha256_of(sinogram);
   Showing showing{sinogram == "-" ? log.shown() : log.shown_of(given)};
-  for (const ShownSinogram& one : log.sinograms()) {
-    if (one.sha256 == given || sinogram == "-") showing.full_scale = one.full_scale;
+  const std::vector<ShownSinogram>& all = log.sinograms();
+  const bool stated = !given.empty() && std::any_of(all.begin(), all.end(),
+                                                    [&](const ShownSinogram& one) { return one.sha256 == given; });
+  for (const ShownSinogram& one : all) {
+    if (sinogram != "-" && one.sha256 != (stated ? given : "")) continue;
+    constexpr double same = 1e-6;
+    if (showing.full_scale > 0 && std::abs(one.full_scale / showing.full_scale - 1) > same) {
+      throw Error{Fault::data, run + ": showed " + sinogram + " at full scales of " +
+                                   format_number(showing.full_scale) + " and " + format_number(one.full_scale) +
+                                   "; give each run a log of its own"};
+    }
+    showing.full_scale = one.full_scale;
   }
   return showing;
 }

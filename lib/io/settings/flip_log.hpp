@@ -70,7 +70,7 @@ struct Showing {
   std::vector<ShownImage> images;
   double full_scale = 0;  // 0: not stated
 };
-/// Throws as read_shown() and require_sinogram_of().
+/// Throws as read_shown() and require_sinogram_of(), and Fault::data for a log in which its full scale changes.
 [[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram);
 
 /// Throws Fault::data when a sinogram is none of a run's, by the hashes in its events.jsonl and in the log of its

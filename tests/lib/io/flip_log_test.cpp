@@ -92,7 +92,16 @@ TEST_CASE("a log that states no sinogram, or one from a pipe, is taken on trust"
     const std::string log = folder.write("flips.jsonl", begin + flip(10, 0, 0) + flip(12, -1, 90));
     CHECK(read_showing(log, a).images.size() == 1);
     CHECK(read_showing(log, "-").images.size() == 1);
+    CHECK(read_showing(log, a).full_scale == (begin.empty() ? 0 : 2));
   }
+}
+
+TEST_CASE("a sinogram whose full scale changes within a log has no dose") {
+  const scratch::Folder folder;
+  const std::string a = folder.write("a.exr", "one");
+  const std::string runs = sinogram("sinogram", a, 2) + flip(10, 0, 0) + flip(12, -1, 90);
+  const std::string log = folder.write("flips.jsonl", runs + sinogram("sinogram", a, 4) + flip(20, 0, 0));
+  error_of([&] { (void)read_showing(log, a); }, Fault::data);
 }
 
 TEST_CASE("a log with a truncated last line is read, another file is refused") {
