@@ -72,7 +72,7 @@ struct SimPrint::State {
 };
 
 SimPrint::SimPrint(const SimBench& bench) {
-  (void)resin_of(bench);  // before the grid, which takes it for granted
+  (void)resin_of(bench);  // throws where something is missing, before the grid is made from it
   state_ = std::make_unique<State>(bench);
 }
 SimPrint::~SimPrint() = default;

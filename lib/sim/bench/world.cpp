@@ -76,8 +76,8 @@ void SimWorld::forget() {
   while (flips_.size() > 2 && old(flips_[1].t_s, flips_.back().t_s)) flips_.pop_front();
 }
 
-// Light of the logs, image by image, the stage turning by a degree at most meanwhile; what is in them by then only. A
-// client does not wait long for a frame: what is behind is made up for in several.
+// Light of the logs, image by image, the stage turning by a degree at most meanwhile; what is in them by then only.
+// Limited in time, as a client waits for its frame: the rest follows with the next frames.
 void SimWorld::cure(double until_s) {
   if (print_ == nullptr) return;
   if (!cured_s_) cured_s_ = flips_.empty() ? start_s_ : std::min(start_s_, flips_.front().t_s);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "fault_of.hpp"
+#include "lib/curing_bench.hpp"
 #include "light/simulation/simulation.hpp"
 #include "metrology/ost/ost.hpp"
 #include "model/magnification.hpp"
@@ -208,20 +209,13 @@ model::Volume planned_dose(const model::Printer& printer, const GreyImage& frame
 TEST_CASE("A working curve by planned doses and reconstructed views has the critical dose of the simulated vial") {
   sim::SimBench bench;
   auto& printer = bench.printer;
-  printer.projector.columns = 64;
+  printer = test::curing_printer();
   printer.projector.rows = 44;
-  printer.projector.pixel_mm = 0.2;
-  printer.projector.lens_distance_mm = 90;
-  printer.projector.axis_column = 31.5;
   printer.projector.axis_row = 21.5;
   printer.projector.max_intensity_mw_cm2 = 3.5;
-  printer.vial = {6, 0.5, 1.52};
-  printer.resin.index = 1.49;
   printer.resin.absorption_per_mm = 0.06;
   printer.resin.critical_dose_mj_cm3 = 60;
-  printer.camera.index_resin = 1.48;
   printer.camera.pixel_mm = 0.15;
-  printer.stage.speed_deg_s = 30;
   bench.columns = 90;
   bench.rows = 68;
   bench.noise = 0.002;

@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "fault_of.hpp"
+#include "lib/curing_bench.hpp"
 #include "metrology/ost/ost.hpp"
 #include "oracle/bench_views.hpp"
 #include "oracle/deposited_dose.hpp"
@@ -27,21 +28,14 @@ using namespace vam::sim;
 namespace {
 
 model::Printer small_printer() {
-  model::Printer printer;
-  printer.projector.columns = 64;
+  model::Printer printer = test::curing_printer();
   printer.projector.rows = 24;
-  printer.projector.pixel_mm = 0.2;
-  printer.projector.lens_distance_mm = 90;
   printer.projector.axis_column = 30.5;
   printer.projector.axis_row = 17;
   printer.projector.max_intensity_mw_cm2 = 5;
-  printer.vial = {6, 0.5, 1.52};
-  printer.resin.index = 1.49;
   printer.resin.absorption_per_mm = 0.08;
   printer.resin.critical_dose_mj_cm3 = 40;
-  printer.camera.index_resin = 1.48;
   printer.camera.pixel_mm = 0.12;
-  printer.stage.speed_deg_s = 30;
   return printer;
 }
 
