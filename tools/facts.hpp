@@ -31,4 +31,10 @@ inline void unstretch(model::TriangleSoup& mesh, const Facts& facts) {
 /// The dose at which the projections print, in the unit of the dose.
 inline std::optional<double> threshold_dose(const Facts& facts) { return stated_number(facts, "vam:threshold_dose"); }
 
+/// The value of a sinogram that is shown at full intensity.
+inline std::optional<double> full_scale(const Facts& facts) { return stated_number(facts, "vam:full_scale"); }
+
+/// For how many turns it is shown.
+inline std::optional<double> shown_turns(const Facts& facts) { return stated_number(facts, "vam:shown_turns"); }
+
 }  // namespace vam::tool

@@ -3,12 +3,14 @@
 #include <malloc.h>
 
 #include "base/json.hpp"
+#include "facts.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "printer.hpp"
 #include "vam-dose/expose.hpp"
+#include "vam-dose/light.hpp"
 #include "vam-dose/options.hpp"
 #include "vam-dose/place.hpp"
 #include "vam-dose/shown.hpp"
@@ -26,12 +28,14 @@ void run(const cli::App& app, Options& options) {
   settle(options, printer);
   take_full_scale(options);
 
-  io::StackReader in(options.input);
-  io::require(options.input, in.info(), model::Kind::sinogram);
+  io::StackReader in(options.inputs.front());
+  io::require(options.inputs.front(), in.info(), model::Kind::sinogram);
+  if (!options.full_scale) options.full_scale = tool::full_scale(in.info().extra);
   const model::StackInfo info = posed(in.info(), options);
   const dose_tool::Place place = place_of(options, printer, info);
   io::SparseVolume volume = empty_volume(app, place, printer, info);
-  const dose_tool::Exposed exposed = expose(in, info, options, printer, place, volume);
+  dose_tool::Light light(in, info, options, printer);
+  const dose_tool::Exposed exposed = expose(light, info, options, printer, place, volume);
 
   const dose_tool::Unit unit = unit_of(exposed, options, printer, info);
   convert(volume, unit);

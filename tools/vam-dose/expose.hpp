@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <optional>
 
-#include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
 #include "light/simulation/display_range.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
 #include "model/printer.hpp"
 #include "score/exposure.hpp"
+#include "vam-dose/light.hpp"
 #include "vam-dose/options.hpp"
 #include "vam-dose/place.hpp"
 
@@ -31,7 +31,7 @@ struct Exposed {
 
 /// `info`: of the stack, with the poses to judge it by. Fills the volume, a batch of slices at a time, in units of
 /// intensity times radian. Warns of negative intensities and of part voxels that are in shadow.
-[[nodiscard]] Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options& options,
+[[nodiscard]] Exposed expose(Light& light, const model::StackInfo& info, const Options& options,
                              const model::Printer& printer, const Place& place, io::SparseVolume& volume);
 
 }  // namespace vam::dose_tool

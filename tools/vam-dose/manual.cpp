@@ -36,8 +36,9 @@ std::vector<std::string> description() {
       "stage angles at which it was displayed, including missed vertical blanks, an abort and a stop by --until. "
       "Without --printer the settings are those of the run, its printer.toml; others are rejected where they "
       "change the light. The full scale is that of the print; a resumption may have had another one, and another "
-      "intensity, which are converted. Where a print showed several sinograms (vam-project --frames-from), the dose is "
-      "that of SINOGRAM, for the time in which it was shown. An image on which the projector hung counts at the angle "
+      "intensity, which are converted. Where a print showed several sinograms (vam-project --frames-from), each "
+      "SINOGRAM "
+      "counts for the time in which it was shown. An image on which the projector hung counts at the angle "
       "where it began. The report then contains dose_shown instead of "
       "dose_per_turn, and shown_turns, the mean number of turns over the stage angles.",
       "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print (resin.diffusion_mm2_s) "

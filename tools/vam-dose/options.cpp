@@ -48,6 +48,10 @@ void declare_beam(cli::App& app, Options& options) {
   app.option("--shown", "RUN", options.shown,
              "Compute the dose that this print delivered: the run folder of vam-print, or the flip log of vam-project. "
              "Give it once for the print and once for each resumption.");
+  app.option("--before", "SECONDS", options.before_s, cli::any,
+             "With --shown, count light before this time only, on the clock of the logs (t_monotonic_s). Where a print "
+             "that goes on has not reached it, its light goes on as in its last frames.")
+      .needs({"--shown"});
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
   app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");
@@ -69,7 +73,9 @@ void declare_alignment(cli::App& app, Options& options) {
 }  // namespace
 
 void declare(cli::App& app, Options& options) {
-  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR) of a projector, or a virtual one.").reads();
+  app.positional("SINOGRAM ...", options.inputs,
+                 "Sinogram stack (EXR) of a projector, or a virtual one; with --shown, all that the print showed.")
+      .reads();
   cli::add_output(app, options.output).writes_as({".vdb", ".toml"});
   cli::add_report(app, options.report);
   declare_volume(app, options);

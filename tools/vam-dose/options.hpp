@@ -14,7 +14,7 @@
 namespace vam::dose_tool {
 
 struct Options {
-  std::string input = "-";
+  std::vector<std::string> inputs{"-"};
   std::string output = "-";
   std::string like;
   std::optional<double> size_mm;
@@ -27,6 +27,7 @@ struct Options {
   std::string negative = "clip";
   bool exposure_plan = false;
   std::vector<std::string> shown;
+  std::optional<double> before_s;
   double angle_offset_deg = 0;
   optics::AxisAlignment alignment;
   std::string report;

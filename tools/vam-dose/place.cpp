@@ -25,7 +25,7 @@ model::StackInfo posed(model::StackInfo info, const Options& options) {
     throw Error{Fault::usage, "--in-plane: does not apply to a stack with poses; omit it"};
   }
   if (options.exposure_plan && !model::repeat(info.poses)) {
-    throw Error{Fault::usage, "--exposure-plan: the poses of " + options.input +
+    throw Error{Fault::usage, "--exposure-plan: the poses of " + options.inputs.front() +
                                   " do not return to the first one, so the print cannot be repeated turn by turn; set "
                                   "the intensity by vam-project --multiplier"};
   }

@@ -95,17 +95,27 @@ cli::PrinterOptions printer_of(const Options& options) {
 void take_full_scale(Options& options) {
   if (options.shown.empty()) return;
   const std::string& run = options.shown.front();
-  const double stated = io::read_showing(run, options.input).full_scale;
+  const std::string& sinogram = options.inputs.front();
+  const double stated = io::read_showing(run, sinogram).full_scale;
   if (!(stated > 0)) return;
   constexpr double same = 1e-6;
   if (options.full_scale && std::abs(*options.full_scale / stated - 1) > same) {
-    throw Error{Fault::usage, "--full-scale: " + run + " showed " + options.input + " at a full scale of " +
+    throw Error{Fault::usage, "--full-scale: " + run + " showed " + sinogram + " at a full scale of " +
                                   format_number(stated) + ", not " + format_number(*options.full_scale) + "; omit it"};
   }
   options.full_scale = stated;
 }
 
-std::vector<double> shown_turns(const Options& options, const model::StackInfo& info, const model::Printer& printer) {
+double shown_full_scale(const Options& options, const std::string& sinogram) {
+  const double stated = io::read_showing(options.shown.front(), sinogram).full_scale;
+  if (stated > 0) return stated;
+  throw Error{Fault::data, options.shown.front() + ": does not state the full scale of " + sinogram +
+                               "; its light adds up with no other"};
+}
+
+std::vector<double> shown_turns(const Options& options, const std::string& sinogram,
+                                const std::optional<double>& full_scale, const model::StackInfo& info,
+                                const model::Printer& printer) {
   if (options.shown.empty()) return {};
   if (info.space != model::Space::projector) {
     throw Error{Fault::usage, "--shown: applies to projector sinograms"};
@@ -113,21 +123,18 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
   require_distinct(options.shown);
   const io::StageRows rows{info.height, info.angle_start_deg, info.angle_step_deg};
   if (std::abs(std::abs(rows.step_deg) * rows.count - 360) > 0.01 * std::abs(rows.step_deg)) {
-    throw Error{Fault::data, options.input + ": covers " + format_number(std::abs(rows.step_deg) * rows.count) +
+    throw Error{Fault::data, sinogram + ": covers " + format_number(std::abs(rows.step_deg) * rows.count) +
                                  " degrees of stage angles; --shown requires one turn"};
   }
   std::vector<double> turns(info.height);
   for (const std::string& run : options.shown) {
     require_unchanged(run);
-    const io::Showing showing = io::read_showing(run, options.input);
+    const io::Showing showing = io::read_showing(run, sinogram, options.before_s);
     double intensity = intensity_of(run, run == options.shown.front(), printer);
-    if (options.full_scale && showing.full_scale > 0) intensity *= *options.full_scale / showing.full_scale;
+    if (full_scale && showing.full_scale > 0) intensity *= *full_scale / showing.full_scale;
     const auto of_run = io::turns_shown(showing.images, rows, printer.stage.speed_deg_s);
     std::transform(turns.begin(), turns.end(), of_run.begin(), turns.begin(),
                    [&](double sum, double one) { return sum + intensity * one; });
-  }
-  if (std::all_of(turns.begin(), turns.end(), [](double t) { return t == 0; })) {
-    throw Error{Fault::data, options.shown.front() + ": no light was shown in this run"};
   }
   return turns;
 }

@@ -2,7 +2,9 @@
 // The light that prints have truly given, instead of one turn of all that the sinogram asks for.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/image.hpp"
@@ -20,10 +22,14 @@ namespace vam::dose_tool {
 /// --full-scale says otherwise.
 void take_full_scale(Options& options);
 
-/// Turns for which each row of the sinogram was shown, summed over the runs of --shown; empty without. Throws
-/// Fault::data where nothing was shown at all, the stack is none of a projector, or a run used another stack or other
-/// settings of the light.
-[[nodiscard]] std::vector<double> shown_turns(const Options& options, const model::StackInfo& info,
+/// The full scale at which the first run of --shown showed a sinogram. Throws Fault::data where it does not state it.
+[[nodiscard]] double shown_full_scale(const Options& options, const std::string& sinogram);
+
+/// Turns for which each row of the sinogram was shown at this full scale, summed over the runs of --shown; empty
+/// without. Throws Fault::data where the stack is none of a projector, or a run used another stack or other settings of
+/// the light.
+[[nodiscard]] std::vector<double> shown_turns(const Options& options, const std::string& sinogram,
+                                              const std::optional<double>& full_scale, const model::StackInfo& info,
                                               const model::Printer& printer);
 
 /// Multiplies each row by its turns; nothing when `turns` is empty.

@@ -102,14 +102,29 @@ std::vector<ShownImage> FlipLog::images(const Counts& counts) const {
   std::vector<ShownImage> shown;
   double before_s = 0;
   for (std::size_t i = 0; i < flips_.size(); ++i) {
-    if (flips_[i].frame < 0) continue;
+    if (flips_[i].frame < 0 || (end_s_ && flips_[i].t_s >= *end_s_)) continue;
     const bool last = flips_[i].last || i + 1 == flips_.size();
-    const double seconds = !last ? std::max(0.0, flips_[i + 1].t_s - flips_[i].t_s) : before_s;
+    double seconds = !last ? std::max(0.0, flips_[i + 1].t_s - flips_[i].t_s) : before_s;
     before_s = seconds;
+    if (end_s_) seconds = std::min(seconds, *end_s_ - flips_[i].t_s);
     if (counts(flips_[i])) shown.push_back({flips_[i].angle_deg, seconds});
   }
+  if (end_s_ && !flips_.empty() && !flips_.back().last && counts(flips_.back())) go_on(before_s, shown);
   return shown;
 }
+
+// As a print that shows its last image does: from angle to angle at the pace that it had.
+void FlipLog::go_on(double image_s, std::vector<ShownImage>& shown) const {
+  if (flips_.size() < 2 || flips_.back().frame < 0 || flips_[flips_.size() - 2].frame < 0 || !(image_s > 0)) return;
+  const double step_deg = flips_.back().angle_deg - flips_[flips_.size() - 2].angle_deg;
+  double angle_deg = flips_.back().angle_deg;
+  for (double t_s = flips_.back().t_s + image_s; t_s < *end_s_; t_s += image_s) {
+    angle_deg += step_deg;
+    shown.push_back({angle_deg, std::min(image_s, *end_s_ - t_s)});
+  }
+}
+
+void FlipLog::end_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }
 
 std::vector<ShownImage> FlipLog::shown() const {
   return images([](const LoggedFlip&) { return true; });
@@ -130,10 +145,11 @@ std::vector<ShownImage> read_shown(const std::string& run) {
   return log.shown();
 }
 
-Showing read_showing(const std::string& run, const std::string& sinogram) {
+Showing read_showing(const std::string& run, const std::string& sinogram, std::optional<double> before_s) {
   require_sinogram_of(run, sinogram);
   FlipLog log(run);
   log.read();
+  if (before_s) log.end_at(*before_s);
   const std::string given = sinogram == "-" ? "" : sha256_of(sinogram);
   Showing showing{sinogram == "-" ? log.shown() : log.shown_of(given)};
   const std::vector<ShownSinogram>& all = log.sinograms();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class FlipLog {
   [[nodiscard]] std::vector<ShownImage> shown() const;
   /// Those of a sinogram, by its SHA-256; where the log does not state it, those of which it states none.
   [[nodiscard]] std::vector<ShownImage> shown_of(const std::string& sha256) const;
+  /// From now on all that is shown is what was shown before this time; where the log of a print that goes on has not
+  /// reached it, the light goes on as it was last.
+  void end_at(double t_monotonic_s);
   /// The sinograms that were shown, one after the other; the first of a print, and those that took its place.
   [[nodiscard]] const std::vector<ShownSinogram>& sinograms() const { return sinograms_; }
   /// Vertical blanks from the last run-up turn on: those at which the image changed late, of all.
@@ -51,12 +55,15 @@ class FlipLog {
   template <class Counts>
   [[nodiscard]] std::vector<ShownImage> images(const Counts& counts) const;
 
+  void go_on(double image_s, std::vector<ShownImage>& shown) const;
+
   std::string file_;
   std::ifstream stream_;
   int line_ = 0;
   std::vector<LoggedFlip> flips_;
   std::vector<ShownSinogram> sinograms_;
   int sinogram_ = -1;  // that is shown
+  std::optional<double> end_s_;
   long missed_ = 0;
   long blanks_ = 0;
 };
@@ -71,7 +78,9 @@ struct Showing {
   double full_scale = 0;  // 0: not stated
 };
 /// Throws as read_shown() and require_sinogram_of(), and Fault::data for a log in which its full scale changes.
-[[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram);
+/// before_s: as FlipLog::end_at().
+[[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram,
+                                   std::optional<double> before_s = {});
 
 /// Throws Fault::data when a sinogram is none of a run's, by the hashes in its events.jsonl and in the log of its
 /// flips; and for one that comes through a pipe ("-") where the run showed several. What states no hash is taken on

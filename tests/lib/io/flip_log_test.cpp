@@ -85,6 +85,36 @@ TEST_CASE("flips count for the sinogram whose frames were on, also when it comes
   error_of([&] { (void)read_showing(log, folder.write("c.exr", "three")); }, Fault::data);
 }
 
+TEST_CASE("light before a moment: images end there, and a print that goes on shows its last ones until then") {
+  const scratch::Folder folder;
+  const std::string a = folder.write("a.exr", "one");
+  const std::string b = folder.write("b.exr", "two");
+  const std::string lit = R"({"event":"display"})"
+                          "\n" +
+                          sinogram("sinogram", a, 2) + flip(9, -1, -90) + flip(10, 0, 0) + flip(11, 1, 90) +
+                          sinogram("frames", b, 3) + flip(12, 2, 180) + flip(13, 3, 270);
+  const std::string log = folder.write("flips.jsonl", lit);
+  const auto seconds = [&](const std::string& file, double before_s) {
+    double sum = 0;
+    for (const auto& image : read_showing(log, file, before_s).images) sum += image.seconds;
+    return sum;
+  };
+  CHECK(seconds(a, 9.5) == 0);
+  CHECK(seconds(a, 10.5) == 0.5);
+  CHECK(seconds(a, 11.5) == 1.5);
+  CHECK(seconds(a, 20) == 2);
+  CHECK(seconds(b, 12.5) == 0.5);
+  CHECK(seconds(b, 14) == 2);
+  CHECK(seconds(b, 17.25) == 5.25);
+  const auto images = read_showing(log, b, 16.5).images;
+  REQUIRE(images.size() == 5);
+  CHECK(images[2].angle_deg == 360);
+  CHECK(images[4].angle_deg == 540);
+  CHECK(images[4].seconds == 0.5);
+  const std::string over = folder.write("flips.jsonl", lit + flip(14, -1, 360));
+  CHECK(seconds(b, 17.25) == 2);
+}
+
 TEST_CASE("a log that states no sinogram, or one from a pipe, is taken on trust") {
   const scratch::Folder folder;
   const std::string a = folder.write("a.exr", "one");
