@@ -3,7 +3,7 @@
 reader.
 
     exr.py make FILE [key=value...]   a sinogram stack; keys: count width height pixel row space kind step value reach
-                                      printer (vam:printer; none)
+                                      printer (vam:printer; none) full_scale shown_turns (vam:...)
     exr.py sum FILE                   "parts width height sum" of a stack written to a pipe
     exr.py get FILE part column row   one pixel
     exr.py attr FILE name             one attribute of part 0
@@ -49,6 +49,7 @@ def header(index, job):
         text("vam:kind", job["kind"]), text("vam:space", job["space"]), text("vam:history", "made by a test"),
         attribute("vam:count", "int", struct.pack("<i", job["count"])),
         attribute("vam:index", "int", struct.pack("<i", index)),
+        *(text("vam:" + key, "%g" % job[key]) for key in ("full_scale", "shown_turns") if job[key]),
         b"" if job["printer"] == "none" else text("vam:printer", job["printer"] or printer(job)),
         number("vam:pixel_mm", job["pixel"]), number("vam:row_mm", job["row"]),
         number("vam:z_mm", index * job["row"]), number("vam:angle_start_deg", 0),
@@ -137,7 +138,7 @@ def read(path):
 def main(verb, path, *rest):
     if verb == "make":
         job = dict(count=3, width=64, height=60, pixel=0.26, row=0.26, space="virtual", kind="sinogram", step=None,
-                   printer=None, value=None, reach=0.2)
+                   printer=None, value=None, reach=0.2, full_scale=None, shown_turns=None)
         for pair in rest:
             key, value = pair.split("=", 1)
             whole = key in ("count", "width", "height")

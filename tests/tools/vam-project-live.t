@@ -106,7 +106,37 @@ holds 'each was shown for whole turns, all of them together' \
   "($(json one.json shown_turns) + $(json b.json shown_turns) - 4) ^ 2 < 0.1 ^ 2 && $(json b.json shown_turns) > 0.9"
 holds 'and its dose is that of its intensities, at the full scale of the first' \
   "($(json one.json dose_shown_max_relative) / $(json one.json shown_turns) - 4 * $(json b.json dose_shown_max_relative) / $(json b.json shown_turns)) ^ 2 < 1e-4 * $(json one.json dose_shown_max_relative) ^ 2"
+vam-dose one.exr new/b.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o dose.vdb --report both.json
+holds 'the doses of both add up' \
+  "($(json one.json dose_shown_mean_relative) + $(json b.json dose_shown_mean_relative) - $(json both.json dose_shown_mean_relative)) ^ 2 < 1e-10 * $(json both.json dose_shown_mean_relative) ^ 2"
+holds 'and their turns' "($(json both.json shown_turns) - 4) ^ 2 < 0.1 ^ 2"
+begun=$(grep -m 1 '"frame":[0-9]' renewed | sed 's/.*"t_monotonic_s":\([0-9.]*\).*/\1/')
+vam-dose one.exr --shown renewed --before "$(awk "BEGIN { printf \"%.6f\", $begun + 1 }")" --size 2 --set stage.speed_deg_s=180 -o dose.vdb --report early.json
+holds 'in the first second half a turn was shown' "($(json early.json shown_turns) - 0.5) ^ 2 < 0.02 ^ 2"
+fails 65 'no light was shown in this run before that time; check --before' vam-dose one.exr --shown renewed --before 0 --size 2 --set stage.speed_deg_s=180 -o x.vdb
+fails 64 'before: requires --shown|--before requires --shown' vam-dose one.exr --before 0 --size 2 -o x.vdb
+fails 64 'SINOGRAM: several add up only as a print showed them; give its --shown' vam-dose one.exr new/b.exr --size 2 -o x.vdb
 fails 64 'full-scale: renewed showed one.exr at a full scale of 1, not 2; omit it' vam-dose one.exr --shown renewed --full-scale 2 --size 2 --set stage.speed_deg_s=180 -o x.vdb
+# What completes a dose states its scale, its turns and the turn that it is for: taken there, or not at all.
+mkdir for
+vam-project one.exr -o null: --speed 180 --turns 6 --max-missed 0.9 --log stated --frames-from for &
+tool=$!
+await grep -qs '"frame":[0-9]' stated
+for turn in 2 3; do
+  $exr make stated.part space=projector width=64 height=36 count=3 value=0.25 full_scale=0.5 shown_turns=2
+  mv stated.part for/turn-$turn.exr
+  await grep -qs "turn-$turn.exr" stated
+done
+$exr make stated.part space=projector width=64 height=36 count=3 value=0.25 full_scale=0.5 shown_turns=9
+mv stated.part for/turn-1.exr
+wait $tool
+is 'a print whose projections say for how long' $? 0
+is 'they are for turns two and three' "$(grep -o '"event":"frames",.*' stated | sed 's/.*"turn":\([0-9]*\),.*"full_scale":\([0-9.]*\).*"turns":\([0-9]*\).*/\2 \1 \3/' | tr '\n' ' ')" '0.5 2 2 0.5 3 2 '
+is 'others come too late' "$(grep '"event":"frames-refused"' stated | grep -c 'the frames of turn 1 came too late')" 1
+holds 'and after two turns more it is dark' "$(grep '"frame":[0-9]' stated | tail -n 1 | sed 's/.*"angle_deg":\([0-9.]*\).*/\1/') > 1780 && $(grep '"frame":[0-9]' stated | tail -n 1 | sed 's/.*"angle_deg":\([0-9.]*\).*/\1/') < 1800"
+vam-project for/turn-2.exr --fps 30 -o stated.mkv --report scale.json
+holds 'a video has that scale, too' "$(json scale.json full_scale) == 0.5"
+
 vam-project part.exr -o null: --speed 360 --turns 1 --max-missed 0.9 --log /dev/full --frames-from new 2>full
 is 'a log that cannot be written ends the print in good order' "$? $(grep -c '/dev/full: write failed' full)" '74 1'
 fails 66 'nowhere: cannot read the folder' vam-project part.exr -o null: --turns 1 --speed 180 --frames-from nowhere

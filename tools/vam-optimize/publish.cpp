@@ -12,6 +12,7 @@
 #include "base/slab.hpp"
 #include "base/text.hpp"
 #include "dark_part.hpp"
+#include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
@@ -84,6 +85,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
   }
   report_delivered(report, task.source, scene, options);
+  if (const auto full = tool::full_scale(info.extra)) report["full_scale"] = *full;
   const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, printer, info, options);
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be

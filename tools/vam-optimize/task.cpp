@@ -18,6 +18,27 @@
 
 namespace vam::optimize_tool {
 
+namespace {
+
+/// The value that, full grey for --turns turns, gives the critical dose where the relative dose is the threshold.
+double full_grey(const Scene& scene, const Options& options) {
+  if (!model::repeat(scene.poses)) {
+    throw Error{Fault::usage,
+                "--turns: the poses do not return to the first one, so the frames are shown once; omit it"};
+  }
+  const auto per_radian = resin::dose_per_radian_mj_cm3(scene.printer);
+  if (!per_radian) {
+    throw Error{Fault::usage,
+                "--turns: the duration is determined by the resin; set resin.critical_dose_mj_cm3 and "
+                "resin.absorption_per_mm, or give --max-intensity"};
+  }
+  const double threshold = options.demands.window.threshold();
+  const double showings = *options.turns * scene.turn.angles / static_cast<double>(scene.frames());
+  return showings * threshold * *per_radian / *scene.printer.resin.critical_dose_mj_cm3;
+}
+
+}  // namespace
+
 model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, const cli::App& app,
                             const Options& options) {
   model::StackInfo info;
@@ -28,7 +49,9 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.pixel_mm = info.row_mm = scene.grid.voxel_mm;
   info.extra = target.metadata;
   if (options.in_vial()) {
-    info.extra["vam:printer"] = io::printer_settings(scene.printer);
+    model::Printer stated = scene.printer;  // frames know nothing of the offset
+    stated.projector.axis_column -= options.column_offset_px;
+    info.extra["vam:printer"] = io::printer_settings(stated);
     info.space = model::Space::projector;
     info.width = scene.printer.projector.columns;
     info.pixel_mm = scene.printer.projector.pixel_mm;
@@ -39,6 +62,11 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.history = target.history;
   info.history.push_back(app.history());
   info.extra["vam:threshold_dose"] = format_number(options.demands.window.threshold());
+  // What completes a dose has a scale.
+  if (options.turns && !options.delivered.empty()) {
+    info.extra["vam:full_scale"] = format_number(full_grey(scene, options), 9);
+    info.extra["vam:shown_turns"] = format_number(*options.turns);
+  }
   return info;
 }
 
@@ -109,24 +137,10 @@ optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const O
   return source;
 }
 
-/// Full grey for so many turns gives the critical dose where the relative dose is the threshold: intensity over the
-/// limit is irradiance over the lamp's.
 optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
   if (!options.turns) return options.limit;
-  if (!model::repeat(scene.poses)) {
-    throw Error{Fault::usage,
-                "--turns: the poses do not return to the first one, so the frames are shown once; omit it"};
-  }
-  const auto per_radian = resin::dose_per_radian_mj_cm3(scene.printer);
-  if (!per_radian) {
-    throw Error{Fault::usage,
-                "--turns: the duration is determined by the resin; set resin.critical_dose_mj_cm3 and "
-                "resin.absorption_per_mm, or give --max-intensity"};
-  }
   constexpr double sure = 0.95;  // the middle of the window may lie a little below the threshold that was aimed at
-  const double threshold = options.demands.window.threshold();
-  const double showings = *options.turns * scene.turn.angles / static_cast<double>(scene.frames());
-  return {.most = sure * showings * threshold * *per_radian / *scene.printer.resin.critical_dose_mj_cm3, .of_even = 0};
+  return {.most = sure * full_grey(scene, options), .of_even = 0};
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   const auto differences = require_printer(options, reader.info(), printer);
   const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
   const Light light = read_light(options, reader, projector);
-  const double peak = options.full_scale.value_or(light.peak);
+  const double peak = options.full_scale.value_or(light.full_scale());
 
   const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
   io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,

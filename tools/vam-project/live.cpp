@@ -30,21 +30,28 @@ void Live::add(const GreyImage& levels) {
   ++frames_;
 }
 
-void Live::offer(device::ScreenFrames frames, const Json& facts) {
-  auto offer = std::make_unique<Offer>(Offer{std::move(frames), facts});
+void Live::offer(Offer frames) {
+  auto offer = std::make_unique<Offer>(std::move(frames));
   const std::lock_guard lock(offering_);
   offer_.swap(offer);
 }
 
 // The screen does not wait for a thread that just offers others: these come a turn later.
-void Live::take_offer(int turn) {
+int Live::take_offer(int turn) {
   const std::unique_lock lock(offering_, std::try_to_lock);
-  if (!lock.owns_lock() || offer_ == nullptr || offer_->taken) return;
-  display_->exchange(offer_->frames);
+  if (!lock.owns_lock() || offer_ == nullptr || offer_->taken) return 0;
+  if (offer_->from_turn > turn) return 0;
   offer_->taken = true;
+  if (offer_->from_turn > 0 && offer_->from_turn < turn) {
+    log_("frames-refused",
+         {{"message", "the frames of turn " + std::to_string(offer_->from_turn) + " came too late"}, {"turn", turn}});
+    return 0;
+  }
+  display_->exchange(offer_->frames);
   Json facts{{"turn", turn}};
   facts.update(offer_->facts);
   log_("frames", facts);
+  return offer_->turns;
 }
 
 // From here on each flip is a heartbeat.
@@ -70,7 +77,7 @@ device::PlayTally Live::play(int frames_per_turn, double speed_deg_s, int turns)
   plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
   plan.allowed_missed = options_.allowed_missed;
   plan.allowed_missed_lit = options_.allowed_missed_lit;
-  plan.next_turn = [this](int turn) { take_offer(turn); };
+  plan.next_turn = [this](int turn) { return take_offer(turn); };
   return ended(device::play(*display_, lamp(), *angles, clock_, plan, logger()));
 }
 

@@ -29,9 +29,16 @@ class Live {
   void add(const GreyImage& levels);
   /// A line of the log that is no flip.
   void note(const std::string& event, const Json& facts) { log_(event, facts); }
-  /// Frames in place of those that are shown, from the next turn on, and what of them is logged then; from any thread.
-  /// Others that have not been shown yet are dropped.
-  void offer(device::ScreenFrames frames, const Json& facts);
+  /// Frames in place of those that are shown, from the next turn on; from any thread. Others that have not been shown
+  /// yet are dropped.
+  struct Offer {
+    device::ScreenFrames frames;  // once taken those they have replaced, whose memory is given back elsewhere
+    Json facts;                   // what of them is logged then
+    int from_turn = 0;            // at which they must be taken; 0: any
+    int turns = 0;                // after which the print is dark; 0: as before
+    bool taken = false;
+  };
+  void offer(Offer offer);
   [[nodiscard]] device::DisplayMode mode() const { return display_->mode(); }
   /// The frames of whole turns are loaded: prints with them.
   device::PlayTally play(int frames_per_turn, double speed_deg_s, int turns);
@@ -39,15 +46,8 @@ class Live {
   device::PlayTally play_through(double hold_s, bool forever);
 
  private:
-  /// Frames that wait for their turn; afterwards those they have replaced, whose memory is given back elsewhere.
-  struct Offer {
-    device::ScreenFrames frames;
-    Json facts;
-    bool taken = false;
-  };
-
   void begin();
-  void take_offer(int turn);
+  int take_offer(int turn);
   [[nodiscard]] device::Lamp* lamp();
   device::PlayTally ended(const device::PlayTally& tally);
   std::function<void(const device::FlipRecord&)> logger();

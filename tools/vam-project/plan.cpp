@@ -82,7 +82,7 @@ void print_plan(const Options& options, const model::Printer& printer) {
   const int whole = turns_to_show(options, info, printer);
   const double turns = whole - options.live.from_deg / 360;  // with light
   const double full_scale =
-      options.full_scale.value_or(read_light(options, reader, printer.projector).peak) / options.multiplier;
+      options.full_scale.value_or(read_light(options, reader, printer.projector).full_scale()) / options.multiplier;
   const int frames = options.live.frames_per_turn.value_or(info.height);
   const model::Projector& projector = printer.projector;
   say("frames", std::to_string(frames) + " per turn, " + std::to_string(projector.columns) + " x " +

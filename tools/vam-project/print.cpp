@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
@@ -95,6 +98,15 @@ Json facts_of(const std::string& path, const std::string& sha256, double full_sc
   return facts;
 }
 
+/// The turn N at which a sinogram turn-N.exr must be taken; 0 for other names.
+int turn_named(const std::string& path) {
+  const std::string stem = std::filesystem::path(path).stem().string();
+  constexpr std::string_view named = "turn-";
+  if (!stem.starts_with(named)) return 0;
+  const auto turn = parse_number(stem.substr(named.size()));
+  return turn && *turn > 0 ? round_int(*turn) : 0;
+}
+
 std::string hash_of(const std::string& path) { return path == "-" ? "" : io::sha256_of(path); }
 
 // One turn's frames, or those of the turns that differ, into the display, then the print: the angle of the stage
@@ -104,7 +116,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const int turns = turns_to_show(options, reader.info(), printer);
   const auto differences = require_printer(options, reader.info(), printer);
   const Light light = read_light(options, reader, printer.projector);
-  const double peak = options.full_scale.value_or(light.peak);
+  const double peak = options.full_scale.value_or(light.full_scale());
   warn_of_dose(options, reader, printer, turns, peak / options.multiplier);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
   const Dithering dithering = dithering_of(options, frames, turns);
@@ -116,10 +128,14 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
     const Light renewed = read_renewed(path, options, reader.info(), printer);
     if (hash_of(path) != hash) throw Error{Fault::data, path + ": was changed while it was read; rename whole files"};
     ScreenSink screen(live.mode(), ended);
-    const auto seen = show(frames_of(renewed, schedule, dithering), scale, printer.projector, false, dithering, screen);
-    Json facts = facts_of(path, hash, full_scale);
+    const double its_full = renewed.stated_full_scale ? *renewed.stated_full_scale / options.multiplier : full_scale;
+    const auto seen = show(frames_of(renewed, schedule, dithering), static_cast<float>(1 / its_full), printer.projector,
+                           false, dithering, screen);
+    Json facts = facts_of(path, hash, its_full);
     facts["clipped"] = seen.clipped;
-    live.offer(std::move(screen.bytes), facts);
+    const int its_turns = round_int(std::ceil(renewed.stated_turns.value_or(0)));
+    if (its_turns > 0) facts["turns"] = its_turns;
+    live.offer({std::move(screen.bytes), facts, turn_named(path), its_turns});
   };
   LiveSink sink(live, [&] {
     live.note("sinogram", facts_of(options.input, hash_of(options.input), full_scale));

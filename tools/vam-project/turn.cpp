@@ -12,6 +12,7 @@
 #include "base/log.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "optics/flatland_movie.hpp"
 
 namespace vam::project {
@@ -70,7 +71,11 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   return {[composer](double angle, double span, const PixelRect& part, Image former) {
             return composer->frame(angle, span, part, std::move(former));
           },
-          static_cast<double>(composer->peak()), composer->lit(), whole};
+          static_cast<double>(composer->peak()),
+          composer->lit(),
+          whole,
+          tool::full_scale(info.extra),
+          tool::shown_turns(info.extra)};
 }
 
 Dithering dithering_of(const Options& options, double frames_per_turn, double turns) {

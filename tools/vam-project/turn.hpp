@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"
@@ -16,8 +17,12 @@ namespace vam::project {
 struct Light {
   std::function<Image(double angle_deg, double span_deg, const PixelRect& part, Image former)> frame;
   double peak = 0;
-  PixelRect lit;    // what is beside it is always dark
-  PixelRect whole;  // frame
+  PixelRect lit;                                 // what is beside it is always dark
+  PixelRect whole;                               // frame
+  std::optional<double> stated_full_scale = {};  // of the stack
+  std::optional<double> stated_turns = {};       // for which it is to be shown
+  /// The value shown at full intensity, where no option says otherwise.
+  [[nodiscard]] double full_scale() const { return stated_full_scale.value_or(peak); }
 };
 
 /// Reads the whole stack: a projector's, or with --flatland one slice of a virtual one. Throws Fault::data for another

@@ -129,7 +129,8 @@ PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, 
   const DarkOnExit dark(display, lamp, log);
   Presenter presenter(display, log);
   const double step_deg = 360.0 / plan.frames_per_turn;
-  const double end_deg = 360.0 * plan.turns;
+  int turns = plan.turns;
+  double end_deg = 360.0 * turns;
   const long loaded = plan.frames > 0 ? plan.frames : plan.frames_per_turn;
   bool light_is_on = false;
   int turn = static_cast<int>(plan.from_deg / 360);
@@ -156,9 +157,11 @@ PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, 
     }
     const auto nearest = static_cast<long>(std::lround(predicted->angle_deg / step_deg));
     // The last half step belongs to the first frame of a turn that is not shown.
-    if (lit && nearest / plan.frames_per_turn > turn && nearest < long{plan.frames_per_turn} * plan.turns) {
+    if (lit && nearest / plan.frames_per_turn > turn && nearest < long{plan.frames_per_turn} * turns) {
       turn = static_cast<int>(nearest / plan.frames_per_turn);
-      if (plan.next_turn) plan.next_turn(turn);
+      const int left = plan.next_turn ? plan.next_turn(turn) : 0;
+      if (left > 0) turns = std::min(plan.turns, turn + left);
+      end_deg = 360.0 * turns;
     }
     // The engine's answer may take a blank, while all is black.
     const bool counted = predicted->angle_deg >= plan.from_deg - 360 && !switched;

@@ -15,11 +15,13 @@ struct PlayPlan {
   int frames_per_turn = 360;  // frame n belongs to the angle 360 n / frames_per_turn
   int frames = 0;             // loaded, of whole turns that follow each other again and again; 0: of one turn
   int turns = 1;
-  double from_deg = 0;                      // black before this angle: the rest of a print
-  double latency_s = 0;                     // from a vertical blank to the light, calibrated
-  double allowed_missed = 0.001;            // part of all vertical blanks, by the end of the run-up
-  double allowed_missed_lit = 0.01;         // by the end of the print: a vial is not lost to a few
-  std::function<void(int turn)> next_turn;  // before the first frame of every turn but the first; may change frames
+  double from_deg = 0;               // black before this angle: the rest of a print
+  double latency_s = 0;              // from a vertical blank to the light, calibrated
+  double allowed_missed = 0.001;     // part of all vertical blanks, by the end of the run-up
+  double allowed_missed_lit = 0.01;  // by the end of the print: a vial is not lost to a few
+  /// Called before the first frame of every turn but the first; may change frames. Returns for how many turns from
+  /// this one on there is light, of those planned at most; 0: as before.
+  std::function<int(int turn)> next_turn;
 };
 
 /// One flip, as it is logged.

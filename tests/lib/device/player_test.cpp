@@ -142,7 +142,10 @@ TEST_CASE("Frames may be exchanged before the first frame of a turn, and nothing
   plan.from_deg = 90;
   std::vector<FlipRecord> flips;
   std::vector<std::pair<int, std::size_t>> turns;  // and the flips before
-  plan.next_turn = [&](int turn) { turns.emplace_back(turn, flips.size()); };
+  plan.next_turn = [&](int turn) {
+    turns.emplace_back(turn, flips.size());
+    return 0;
+  };
   const auto angles = elapsed_angle(90, clock);
   play(display, nullptr, *angles, clock, plan, [&](const FlipRecord& record) { flips.push_back(record); });
   REQUIRE(turns.size() == 2);
@@ -152,6 +155,26 @@ TEST_CASE("Frames may be exchanged before the first frame of a turn, and nothing
     CHECK(flips[before - 1].frame == 3);
     CHECK(flips[before].frame == 0);
     CHECK(std::abs(flips[before].angle_deg - (360.0 * turn - 45)) < 3);
+  }
+}
+
+TEST_CASE("Frames may say for how many turns there is light, but not for more than was planned") {
+  for (const int left : {1, 2, 9}) {
+    VirtualClock clock;
+    Watched display(clock);
+    for (int i = 0; i < 4; ++i) display.add(GreyImage(4, 4, 8));
+    PlayPlan plan;
+    plan.frames_per_turn = 4;
+    plan.turns = 5;
+    plan.next_turn = [left](int turn) { return turn == 2 ? left : 0; };
+    double last_deg = 0;
+    const auto angles = elapsed_angle(90, clock);
+    play(display, nullptr, *angles, clock, plan, [&](const FlipRecord& record) {
+      if (record.frame >= 0) last_deg = record.angle_deg;
+    });
+    CAPTURE(left);
+    CHECK(last_deg > 360 * std::min(5, 2 + left) - 4);
+    CHECK(last_deg < 360 * std::min(5, 2 + left));
   }
 }
 
