@@ -53,10 +53,12 @@ void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, co
 /// Options -> volumes -> light and task -> one pass after the other -> stack.
 void run(const cli::App& app, Options& options) {
   settle(app, options);
-  const model::Printer printer = tool::load_printer(options.printer);
+  model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
+  printer.projector.axis_column += options.column_offset_px;
   settle_recorded(printer, options);
   settle_response(app, options);
+  settle_angles(app, options);
 
   const optimize_tool::Inputs in = optimize_tool::read(options);
   if (options.preview) return preview(printer, in, options);

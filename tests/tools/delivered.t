@@ -37,6 +37,20 @@ volumes fall half.vdb 0.75 0 rest.vdb
 ok 'doses of several projections' vam-optimize $resin --angles 90 part.vdb --delivered quarter.vdb --delivered rest.vdb --init whole.exr --iterations 10 -o two.exr --report two.json
 holds 'add up' "($(json two.json delivered.part_mean_percent) - $(json rest.json delivered.part_mean_percent)) ^ 2 < 1e-6 && ($(pw two.json) - $(pw rest.json)) ^ 2 < 1e-8"
 ok 'as many turns as are left' $rest --turns 1 --iterations 10 -o one.exr --report one.json
+is 'which the light states, as its full scale' "$(vam-check one.exr >/dev/null; python3 "$VAM_SOURCE/tests/tools/exr.py" attr one.exr vam:shown_turns)" 1
+vam-dose $resin one.exr --like part.vdb -o once.vdb
+volumes sum half.vdb once.vdb 1 total.vdb
+vam-score $resin total.vdb --target part.vdb --report total.json >/dev/null
+holds 'at which it completes the dose' "$(json total.json ver) == 0 && ($(json total.json threshold) - 50) ^ 2 < 1"
+ok 'as many angles as the light that it begins with has' vam-optimize $resin part.vdb --delivered half.vdb --init whole.exr --iterations 1 -o same.exr
+ok 'for an axis 10 columns beside' vam-optimize $resin part.vdb --column-offset 10 --angles 90 -o aside.exr --report aside.json
+vam-dose $resin aside.exr --like part.vdb --exposure-plan --column-offset 10 -o aside.vdb --report there.json
+vam-score $resin aside.vdb --target part.vdb --report aside.score.json >/dev/null
+holds 'the projections print there' "$(json aside.score.json ver) == 0 && ($(pw aside.score.json) - $(pw whole.score.json)) ^ 2 < 0.02 ^ 2"
+vam-dose $resin aside.exr --like part.vdb --exposure-plan -o aside.vdb
+vam-score $resin aside.vdb --target part.vdb --report aside.score.json >/dev/null
+holds 'and not where the printer file has the axis' "$(json aside.score.json ver) > 0"
+is 'whose axis they state all the same' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr aside.exr vam:printer)" "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr whole.exr vam:printer)"
 holds 'are enough' "$(json one.json turns) == 1 && $(json one.json ver) == 0"
 
 fails 64 'delivered.*requires --init|--delivered requires --init' vam-optimize $resin --angles 90 part.vdb --delivered half.vdb -o none.exr

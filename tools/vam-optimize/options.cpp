@@ -261,9 +261,13 @@ void declare(cli::App& app, Options& options) {
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
              "beam, which gives a virtual sinogram for vam-resample in a third of the time.");
   app.option("--angles", "N", options.angles, {1, 100000}, "Number of stage angles over 360 degrees.");
+  app.default_is("those of --init, else 360");
   app.option("--detector-bins", "N", options.bins, {1, 65536},
              "Number of detector bins of a parallel beam, each one voxel wide.");
   app.default_is("as many as cover the writable circle").was("--columns");
+  app.option("--column-offset", "PX", options.column_offset_px, cli::any,
+             "Distance in columns from projector.axis_column to the image of the axis, positive to the right: the "
+             "projections are made for the axis there.");
   declare_poses(app, options);
   declare_constraints(app, options);
   declare_stopping(app, options);

@@ -61,6 +61,7 @@ struct Options {
   std::optional<double> diffusion_time_s;
   std::optional<int> bits;  // the projector's grey levels
   std::optional<double> full_scale;
+  double column_offset_px = 0;
   std::optional<int> dither_turns;
   cli::PrinterOptions printer;
   std::string report;
@@ -68,6 +69,9 @@ struct Options {
 
   [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
+
+/// As many angles as the projections have from which it starts, unless --angles says otherwise. Throws as StackReader.
+void settle_angles(const cli::App& app, Options& options);
 
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "io/exr/stack.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/recorded_tolerances.hpp"
 #include "optimize/methods/automatic.hpp"
@@ -283,6 +285,12 @@ void settle_window(const cli::App& app, const std::string& path, optimize::Deman
 }
 
 }  // namespace
+
+void settle_angles(const cli::App& app, Options& options) {
+  if (app.given("--angles") || options.init.empty() || options.init == "-") return;
+  const double step_deg = std::abs(io::StackReader(options.init).info().angle_step_deg);
+  if (step_deg > 0) options.angles = round_int(360 / step_deg);
+}
 
 void settle_response(const cli::App& app, Options& options) {
   optimize::Demands& demands = options.demands;

@@ -53,7 +53,9 @@ std::vector<std::string> method_names(const std::function<bool(const MethodEntry
 
 namespace {
 
-/// Of light for the whole dose, the share that is left: 1 - <D, A* g> / <A* g, A* g> over the part.
+/// Of light for the whole dose, the share that is left, 1 - <D, A* g> / <A* g, A* g> over the part; of light for the
+/// rest of one, the factor by which it leads to the least dose of the part, <T - D, A* g> / <A* g, A* g>: the larger of
+/// them.
 void leave_rest(const Problem& problem, const light::Operator& light, Iterate& iterate) {
   iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
   light.adjoint(iterate.g, iterate.dose);
@@ -66,10 +68,18 @@ void leave_rest(const Problem& problem, const light::Operator& light, Iterate& i
                   light);
   };
   const PerSlice given = product(problem.delivered);
+  const PerSlice all = pooled(summed(iterate.dose,
+                                     [&](std::size_t s, std::size_t i) {
+                                       const bool counts = problem.labels[s][i] == Label::part;
+                                       return counts ? iterate.dose[s].values[i] : 0.0F;
+                                     }),
+                              light);
+  const auto least = static_cast<float>(problem.demands.window.high);
   PerSlice rest = product(iterate.dose);
   for_slices(rest, [&](std::size_t s, std::size_t lane) {
     float& share = rest[s][lane];
-    share = share > 0 ? std::clamp(1 - given[s][lane] / share, 0.0F, 1.0F) : 1;
+    const float given_here = given[s][lane];
+    share = share > 0 ? std::max({0.0F, 1 - given_here / share, (least * all[s][lane] - given_here) / share}) : 1;
   });
   scale(iterate.g, rest);
 }

@@ -128,7 +128,8 @@ class VolumeRun {
     const double least = threshold / outcome_.even.largest;
     if (task_.raising.factor > 0) outcome_.max_intensity = std::max(outcome_.max_intensity, least);
     const double reached = outcome_.max_intensity * outcome_.even.largest;
-    if (task_.demands.grey || outcome_.max_intensity >= least) return;
+    // Light for the rest of a dose may be any that is left.
+    if (task_.demands.grey || task_.source.delivered || outcome_.max_intensity >= least) return;
     throw Error{Fault::usage, "a maximum intensity of " + format_number(outcome_.max_intensity, 3) +
                                   " gives a dose of at most " + format_number(reached, 3) +
                                   " if every pixel is lit at every angle, and the threshold is " +
