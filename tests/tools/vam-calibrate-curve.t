@@ -54,7 +54,7 @@ with open("views/manifest.jsonl", "w") as manifest:  # as vam-capture writes it
     print('{"schema": "vam-capture/1"}', file=manifest)
     for n in range(300):
         if n % 30 == 0:
-            rows = [sum(density(39 - r, (n + m + 0.5) / 30 - 0.5) for m in range(30)) / 30 for r in range(40)]
+            rows = [density(39 - r, n / 30) for r in range(40)]
         write_png("views/%06d.png" % n, [[65535 * (0.002 + random.gauss(0, 0.0005) + s * c) for c in chord]
                                          for s in rows])
         print(json.dumps({"frame": n, "number": n, "t_monotonic_s": 100 + 0.2 * n, "angle_deg": 12 * n, "complete": True,

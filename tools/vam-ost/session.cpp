@@ -167,6 +167,7 @@ void Session::set_up(std::span<const metrology::CameraView> views, double stack_
   metrology::RunOut run_out;
   const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
   metrology::OstOptions how = options_.how;
+  how.growing = options_.live;
   how.refraction = !options_.no_refraction;
   if (printer_.camera.axis_row) how.axis_row = binned(*printer_.camera.axis_row, options_.binning);
   how.non_negative = options_.negative == "clip";

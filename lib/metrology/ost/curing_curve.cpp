@@ -22,7 +22,6 @@ constexpr double least_sigma = 0.01;  // of the highest scatter: what sigmas do 
 constexpr double together = 27;
 // Share of the dose at half of the saturation that the inhibitor takes, which the readings hardly show: between these.
 constexpr std::array<double, 3> inhibited{0.5, 0.2, 0.8};
-constexpr int moments = 8;  // of a turn, over which a volume is the mean
 
 struct DoseClass {
   double dose = 0, scatter = 0, squares = 0;
@@ -39,14 +38,11 @@ struct Curve {
         delay(p.size() > 3 ? p[3] : 0),
         inhibition(inhibited_share * middle) {}
 
-  [[nodiscard]] double mean(const CuringReading& reading, double lit_turns) const {
-    double sum = 0;
-    for (int m = 0; m < moments; ++m) {
-      const double turn = reading.first_turn + (reading.last_turn - reading.first_turn) * (m + 0.5) / moments;
-      const double dose = dose_that_has_acted(reading.dose_per_turn_mj_cm3, turn, lit_turns);
-      sum += saturation / (1 + std::exp((middle - dose) / width));
-    }
-    return sum / moments;
+  // A volume is that of the middle of its turn.
+  [[nodiscard]] double density(const CuringReading& reading, double lit_turns) const {
+    const double turn = 0.5 * (reading.first_turn + reading.last_turn);
+    const double dose = dose_that_has_acted(reading.dose_per_turn_mj_cm3, turn, lit_turns);
+    return saturation / (1 + std::exp((middle - dose) / width));
   }
 
   // Radicals, which live for the delay, come up after the inhibitor, and act on after the light.
@@ -123,7 +119,7 @@ CuringCurve curve_of(const std::vector<CuringReading>& readings, double lit_turn
         const Curve curve(parameters, inhibited_share);
         std::vector<double> residuals;
         for (const CuringReading& reading : readings) {
-          residuals.push_back((reading.scatter - curve.mean(reading, lit_turns)) /
+          residuals.push_back((reading.scatter - curve.density(reading, lit_turns)) /
                               std::hypot(reading.sigma, least_sigma * spread.most));
         }
         return residuals;

@@ -111,6 +111,23 @@ std::vector<Readings> parallel_totals(const std::vector<Image>& sinograms) {
   return all;
 }
 
+// What grows scatters more from view to view, smoothly: the cubic through the values in their order.
+Readings smooth_course(const Readings& values) {
+  constexpr std::size_t powers = 4;
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double time = 2.0 * static_cast<double>(i) / static_cast<double>(values.size() - 1) - 1;
+    double power = 1;
+    for (std::size_t n = 0; n < powers; ++n, power *= time) rows.push_back(power);
+  }
+  const std::vector<double> parts = stats::linear_fit(rows, powers, values);
+  Readings course(values.size());
+  for (std::size_t i = 0; i < course.size(); ++i) {
+    for (std::size_t n = 0; n < powers; ++n) course[i] += rows[i * powers + n] * parts[n];
+  }
+  return course;
+}
+
 // Some heights of the print, not those where it ends.
 std::vector<double> some_of(const std::vector<double>& heights) {
   constexpr std::size_t most = 24;
@@ -149,13 +166,16 @@ Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, std:
   for (std::size_t i = 0; i < intensity.size(); ++i) intensity[i] *= course[i];
 
   const double usual = stats::median(intensity);
+  for (double& value : intensity) value /= usual;
+  const Readings growth = options.growing ? smooth_course(intensity) : Readings(intensity.size(), 1.0);
+  if (!usable(intensity) || !usable(growth)) return {};
   double squares = 0;
-  for (double& value : intensity) {
-    value /= usual;
-    squares += (value - 1) * (value - 1) / static_cast<double>(intensity.size());
+  for (std::size_t i = 0; i < intensity.size(); ++i) {
+    const double off = intensity[i] / growth[i] - 1;
+    squares += off * off / static_cast<double>(intensity.size());
   }
   Flicker found{100 * std::sqrt(squares), {}};
-  if (usable(intensity) && found.percent >= removed_flicker_percent) found.intensity = std::move(intensity);
+  if (options.growing || found.percent >= removed_flicker_percent) found.intensity = std::move(intensity);
   return found;
 }
 

@@ -8,7 +8,7 @@ namespace vam::metrology {
 
 /// The light of each view over that of the median view. Empty where it is not determined, or does not change.
 struct Flicker {
-  double percent = 0;             // RMS from 1
+  double percent = 0;             // RMS from 1, without what growth explains
   std::vector<double> intensity;  // of each view
 };
 inline constexpr double removed_flicker_percent = 0.5;  // at least; below, the views are left as they are

@@ -23,6 +23,7 @@ struct OstOptions {
   std::string window = "cosine";   // of the ramp filter: struts 3 voxels apart keep a contrast of 29 %, with hann 14 %
   bool refraction = true;          // false: columns taken as parallel rays (for comparison)
   bool clean = true;               // take out background, flicker, specks and bubbles
+  bool growing = false;            // the print grows during the turn of views: the volume is that of its middle
   bool non_negative = true;        // negative densities become 0
   int mlem_iterations = 0;         // iterations of MLEM [SV82] after FBP, for noisy views
   std::optional<double> axis_row;  // binned row level with the lens, z = 0; the middle one by default
