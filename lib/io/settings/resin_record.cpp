@@ -35,4 +35,13 @@ double gelation_isovalue(const std::string& path) {
   return isovalue;
 }
 
+Json sealed_record(const std::string& path, const std::string& schema) {
+  Json record = parse_json(read_all(path, Content::text, most_bytes));
+  if (!record.is_object() || record.value("schema", Json{}) != schema) {
+    throw Error{Fault::data, path + ": not JSON of the schema " + schema};
+  }
+  require_seal(record, path);
+  return record;
+}
+
 }  // namespace vam::io

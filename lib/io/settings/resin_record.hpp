@@ -4,10 +4,15 @@
 
 #include <string>
 
+#include "base/json_fwd.hpp"
+
 namespace vam::io {
 
 /// The gelation threshold I_p in the record that vam-calibrate resin or working-curve wrote. Throws Error: no_input,
 /// data (not such a record, or its isovalue is not above 0).
 [[nodiscard]] double gelation_isovalue(const std::string& path);
+
+/// A JSON file of that schema, its seal held to. Throws Error: no_input, data.
+[[nodiscard]] Json sealed_record(const std::string& path, const std::string& schema);
 
 }  // namespace vam::io

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the resin cures ahead of its dose or behind it: a smooth field, by the scattering that its views show, and what
+// the light that is left has to take into account [physics §15.3].
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/json_fwd.hpp"
+#include "metrology/ost/scatter_curve.hpp"
+#include "model/grid.hpp"
+
+namespace vam::metrology {
+
+/// ln(dose that acts / planned dose): the polynomial of second degree in the place, relative to a box; and where the
+/// projector has the axis, beside the column that the plan has. Eleven numbers with a normal distribution. Places in
+/// mm, in the frame of the dose.
+struct SensitivityField {
+  static constexpr int terms = 10;  // 1, x, y, z, x^2, y^2, z^2, xy, xz, yz
+  static constexpr int numbers = terms + 1;
+  using Terms = std::array<double, terms>;
+
+  std::array<double, 3> centre_mm{};
+  std::array<double, 3> half_mm{1, 1, 1};
+  Terms value{};
+  double axis_px = 0;              // from projector.axis_column to the axis, in columns
+  std::vector<double> covariance;  // row-major, numbers x numbers
+
+  [[nodiscard]] Terms basis(double x_mm, double y_mm, double z_mm) const;
+  [[nodiscard]] double log_at(double x_mm, double y_mm, double z_mm) const;
+  [[nodiscard]] double axis_sigma_px() const;
+  /// Standard deviation of log_at().
+  [[nodiscard]] double sigma_at(double x_mm, double y_mm, double z_mm) const;
+};
+
+/// What is expected before anything is seen: no deviation, with these standard deviations of the whole (lamp, critical
+/// dose) and of each further term.
+struct SensitivityPrior {
+  double whole = 0.3;
+  double term = 0.1;
+  double axis_px = 0;   // of the axis; 0: it is where the plan has it
+  double drift = 0.01;  // of every term from one turn to the next
+};
+/// Its box is that of doses above half of the critical one. Throws Fault::data where there are none.
+[[nodiscard]] SensitivityField expected_sensitivity(const model::Volume& dose, const ScatterCurve& curve,
+                                                    const SensitivityPrior& prior);
+/// Of the turn after the one that the field is of.
+[[nodiscard]] SensitivityField carried_on(SensitivityField field, const SensitivityPrior& prior);
+
+/// A planned dose, mJ/cm3, in the stretched frame. Of three it is the parabola through them: with the axis at
+/// -offset_px, 0 and offset_px.
+struct PlannedDose {
+  std::vector<model::Volume> at;  // one, or three of one grid
+  double offset_px = 1;
+
+  /// Weights of the three.
+  [[nodiscard]] std::array<double, 3> weights(double axis_px) const;
+  [[nodiscard]] model::Volume with(double axis_px) const;
+  [[nodiscard]] const model::Volume& middle() const { return at[at.size() / 2]; }
+};
+
+/// Dose that had acted in the middle of the turn of views, of a part that was stretched along z.
+struct ActedDose {
+  const PlannedDose& dose;
+  double stretch_z = 1;
+};
+
+struct SensitivityFit {
+  SensitivityField field;
+  double rms = 0;        // of the residuals, in their standard deviations
+  double explained = 0;  // RMS of the densities that the field leaves, over what the former one leaves
+  long voxels = 0;       // that scatter, or should, by 10 to 90 % of the saturation
+};
+
+/// The most probable field, by the densities of a turn and what was known before. sigma: of each voxel by the noise of
+/// the views, or nullptr. resolution_mm: standard deviation of what blurs the densities. Throws Fault::data where
+/// scatter and doses have no place in common.
+[[nodiscard]] SensitivityFit fit_sensitivity(const model::Volume& scatter, const model::Volume* sigma,
+                                             const ActedDose& dose, const ScatterCurve& curve,
+                                             const SensitivityField& before, double resolution_mm);
+
+/// The dose that, completed by planned light to the critical one, is so much that what acts is the critical one: D +
+/// D_c (1 - 1 / s), not below 0.
+[[nodiscard]] model::Volume delivered_dose(const model::Volume& planned, const SensitivityField& field,
+                                           double critical_dose_mj_cm3);
+
+/// Over the voxels with at least half of the critical dose.
+struct SensitivityRange {
+  double low = 1;  // factors on the planned dose
+  double mean = 1;
+  double high = 1;
+  double sigma = 0;  // relative, the largest
+};
+[[nodiscard]] SensitivityRange range_of(const SensitivityField& field, const model::Volume& dose,
+                                        double critical_dose_mj_cm3);
+
+/// What speaks against light by this fit, a phrase each; empty: nothing does.
+struct CorrectionLimits {
+  double sigma = 0.03;     // relative uncertainty of the sensitivity
+  double deviation = 0.5;  // of its logarithm
+  double rms = 3;          // of the residuals, in their standard deviations
+};
+[[nodiscard]] std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRange& range,
+                                              const CorrectionLimits& limits);
+
+[[nodiscard]] Json to_json(const SensitivityField& field);
+/// Throws Fault::data, without a subject, for anything but what to_json() made.
+[[nodiscard]] SensitivityField sensitivity_field(const Json& json);
+
+}  // namespace vam::metrology
