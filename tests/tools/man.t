@@ -29,9 +29,10 @@ fi
 undue=$(awk '/^\./ { body = "" } /^Default: none/ && body !~ /One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { body = body " " $0 }' "$VAM_SOURCE"/man/*.1)
 is 'no page says "Default: none" of an option without a value none' "$undue" ""
 
-for script in vam-batch vam-print vam-calibrate-all; do
+for script in vam-batch vam-renew vam-print vam-calibrate-all; do
   options='display light set home' value=display:DEVICE switch=home repeatable=1
   [ $script != vam-batch ] || options='folder jobs slurm plan' value=folder:DIR switch=plan repeatable=0
+  [ $script != vam-renew ] || options='target curve turns once' value=target:PART switch= repeatable=0
   page=$VAM_SOURCE/man/$script.1
   is "$script: mandoc -Tlint is silent" "$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')" ""
   ok "$script: --help" "$VAM_SOURCE/scripts/$script" --help
