@@ -104,9 +104,8 @@ void seal(const std::string& path) {
   const std::string text = io::read_all(path);
   (void)io::parse_printer(text, path);
   if (io::require_text_seal(text, path)) return;
-  if (text.empty() || text.back() != '\n') {
-    throw Error{Fault::data, path + ": ends within a line; complete the line before sealing"};
-  }
+  if (text.empty()) throw Error{Fault::data, path + ": is empty; there is nothing to seal"};
+  if (const std::string sign = io::sign_of_cut(text); !sign.empty()) throw Error{Fault::data, path + ": " + sign};
   io::write_text(path, io::sealed_text(text));
 }
 

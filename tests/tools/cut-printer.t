@@ -19,6 +19,28 @@ vam-slice --print-printer --printer hand.toml -o x.toml 2>err
 is 'a file by hand is warned of' "$? $(grep -c 'hand.toml: ends within a line.*\[bath\], \[resin\]' err)" '0 1'
 : >frames.exr
 vam-print frames.exr --display null: --uncalibrated --printer hand.toml --run run >out 2>err
-is 'and nothing is printed from it' "$? $(grep -c '^vam-print: hand.toml: ends within a line, as if it was cut off; complete its last line$' err) $(ls -d run 2>/dev/null)" '65 1 '
+is 'and nothing is printed from it' "$? $(grep -c '^vam-print: hand.toml: ends within a line, as if it was cut off, .*; complete its last line$' err) $(ls -d run 2>/dev/null)" '65 1 '
+{ echo '# bench 3, of May'; cat whole.toml; } | head -n 40 >cut.toml
+fails 65 'cut.toml: is cut off after' vam-check cut.toml
+
+# The file of an instrument as a person writes it, cut at the end of each line: what is not warned of has lost nothing, or
+# a part of its last section, or is as short as what somebody writes who wants to change a few settings.
+sed '/^#/d; s/ *#.*//; /= 0.0$/d; /= ""$/d; /^$/d' whole.toml >hand.toml
+lines=$(wc -l <hand.toml)
+begin=$(grep -n '^\[calibration\]' hand.toml | cut -d: -f1)
+quiet 'whole' vam-check hand.toml
+for count in $(seq $((lines - 1))); do
+  head -n "$count" hand.toml >cut.toml
+  vam-check cut.toml >out 2>err || echo "line $count: status $?"
+  grep -q ', as if it was cut off' err || echo "$count"
+done >silent
+is 'and silent are the first 9 keys and the last section' "$(tr '\n' ' ' <silent)" \
+  "$(seq 2 10 | tr '\n' ' ')$(seq $((begin + 1)) $((lines - 1)) | tr '\n' ' ')"
+head -n $((begin - 1)) hand.toml >cut.toml
+vam-print frames.exr --display null: --uncalibrated --printer cut.toml --run run >out 2>err
+is 'nothing is printed from such a file, either' "$? $(grep -c "^vam-print: cut.toml: ends after \[camera\], as if it was cut off, without \[calibration\]; add .*'# end of the settings'" err) $(ls -d run 2>/dev/null)" '65 1 '
+fails 65 'cut.toml: ends after ' vam-check --seal cut.toml
+echo '# end of the settings' >>cut.toml
+quiet 'unless it says that it is whole' vam-slice --print-printer --printer cut.toml -o x.toml
 
 done_testing

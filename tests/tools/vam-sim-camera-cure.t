@@ -23,6 +23,7 @@ speed_deg_s = 30
 [camera]
 pixel_mm = 0.2
 index_resin = 1.5
+# end of the settings
 TOML
 fails 64 'cure-voxel: requires --cure' vam-sim-camera --cure-voxel 0.3
 fails 64 'resin.absorption_per_mm and resin.critical_dose_mj_cm3; set both' vam-sim-camera --cure --set resin.absorption_per_mm=0

@@ -21,6 +21,7 @@ critical_dose_mj_cm3 = 60
 [camera]
 pixel_mm = 0.2
 index_resin = 1.5
+# end of the settings
 TOML
 # 20 s of light on a stage that stood, long ago; then it turns, as the state is written at every quarter turn.
 python3 - <<'PY'

@@ -6,7 +6,7 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration=9000&min_angle=-1e7&max_angle=1e7"\nspeed_deg_s = 90\n' >>printer.toml
-printf '[camera]\ndevice = "sim:?lit=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n' >>printer.toml
+printf '[camera]\ndevice = "sim:?lit=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n# end of the settings\n' >>printer.toml
 print() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 "$@"; }
 
 fails 66 'nowhere: not a folder' vam-status nowhere

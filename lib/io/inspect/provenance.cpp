@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
@@ -68,6 +69,7 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
   }
   const bool sealed = require_text_seal(text, name);
   (void)parse_printer(text, name);  // one that the tools wrote has a mark at its end, which a cut loses
+  if (const std::string sign = sign_of_cut(text); !sealed && !sign.empty()) warn(name + ": " + sign);
   return {{"printer file", sealed, "", {}}};
 }
 

@@ -150,6 +150,14 @@ std::string_view present_key(std::string_view section, std::string_view key) {
   return "lag_ms";
 }
 
+std::vector<std::string> section_names() {
+  std::vector<std::string> names;
+  for (const auto& field : printer_fields()) {
+    if (names.empty() || names.back() != field.section) names.emplace_back(field.section);
+  }
+  return names;
+}
+
 std::string dotted_name(const PrinterField& field) { return std::string(field.section) + "." + field.key; }
 
 std::string objection(const PrinterField& field, const Slot& slot) {

@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "base/utc.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "io/settings/private/printer_end.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/signature.hpp"
@@ -35,14 +36,6 @@ const PrinterField* find_field(std::string_view section, std::string_view given)
     if (section == field.section && key == field.key) return &field;
   }
   return nullptr;
-}
-
-std::vector<std::string> section_names() {
-  std::vector<std::string> names;
-  for (const auto& field : printer_fields()) {
-    if (names.empty() || names.back() != field.section) names.emplace_back(field.section);
-  }
-  return names;
 }
 
 // "; did you mean radius_mm?" within the section, else the same key in the section of the nearest name, else in another
@@ -155,14 +148,6 @@ void read_table(Printer& printer, const toml::table& root, const std::string& su
   }
 }
 
-// A file that ends within its first line has lost the rest of it, too.
-void check_whole(std::string_view text, const std::string& subject) {
-  const bool ours = text.starts_with(printer_head) || (!text.empty() && printer_head.starts_with(text));
-  if (!ours || text.find("\n" + std::string(printer_end)) != std::string_view::npos) return;
-  throw Error{Fault::data, subject + ": is cut off after " + std::to_string(text.size()) + " bytes, it has no line '" +
-                               std::string(printer_end) + "'; write it again"};
-}
-
 // Each level of nesting takes one of these, and the parser and its tables a piece of the stack for each level.
 void check_depth(std::string_view text, const std::string& subject) {
   const auto count = std::count_if(text.begin(), text.end(), [](char c) { return c == '.' || c == '[' || c == '{'; });
@@ -176,7 +161,7 @@ Printer read_settings(std::string_view text, const std::string& subject) {
   if (const std::string foreign = foreign_format(text); !foreign.empty()) {
     throw Error{Fault::data, subject + ": is " + foreign + ", not a printer file"};
   }
-  check_whole(text, subject);
+  require_own_end(text, subject);
   check_depth(text, subject);
   const toml::table root = [&] {
     try {
@@ -249,18 +234,9 @@ std::string slurp(const std::string& file) {
   return text;
 }
 
-// What a person wrote has no mark of its end, but a last line that stops short is a sign.
-void warn_of_cut(const std::string& text, const std::string& file) {
-  if (text.empty() && std::filesystem::is_regular_file(file)) {
-    throw Error{Fault::data, file + ": is empty; write it again, or delete it for the defaults"};
-  }
-  if (text.empty() || text.back() == '\n' || text.find(printer_end) != std::string::npos) return;
-  std::vector<std::string> missing;
-  for (const std::string& section : section_names()) {
-    if (text.find("[" + section + "]") == std::string::npos) missing.push_back("[" + section + "]");
-  }
-  warn(file + ": ends within a line; if it was cut off, the rest is at its default" +
-       (missing.empty() ? "" : ", and so are " + join(missing, ", ")));
+void refuse_empty(const std::string& text, const std::string& file) {
+  if (!text.empty() || !std::filesystem::is_regular_file(file)) return;
+  throw Error{Fault::data, file + ": is empty; write it again, or delete it for the defaults"};
 }
 
 }  // namespace
@@ -284,9 +260,10 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
   Printer printer = without_axis();
   if (!path.empty()) {
     const std::string text = slurp(path);
-    require_text_seal(text, path);
+    const bool sealed = require_text_seal(text, path);
     printer = read_settings(text, path);
-    warn_of_cut(text, path);
+    refuse_empty(text, path);
+    if (const std::string sign = sign_of_cut(text); !sealed && !sign.empty()) warn(path + ": " + sign);
     const auto beside = std::filesystem::path(path).parent_path();
     for (std::string* file_name : {&printer.projector.response, &printer.camera.flat, &printer.calibration.folder}) {
       if (!file_name->empty()) *file_name = (beside / *file_name).string();

@@ -29,6 +29,11 @@ enum class Records { apply, ignore };
 /// Whether a text has the heading of one of its sections, right or wrong as the rest may be.
 [[nodiscard]] bool has_printer_section(std::string_view text);
 
+/// By what a text that reads well looks as if its end was cut off, and what to do: "ends within a line, as if it was
+/// cut off, without [bath], [resin]; complete its last line". Empty where nothing says so, as of the last line of what
+/// these tools write, which anybody may add, or of a few settings.
+[[nodiscard]] std::string sign_of_cut(std::string_view text);
+
 /// Commented TOML with every setting; parses back to the same settings, number for number.
 [[nodiscard]] std::string printer_toml(const model::Printer& printer);
 

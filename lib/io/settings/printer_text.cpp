@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/private/printer_end.hpp"
 #include "io/settings/private/printer_fields.hpp"
 
 namespace vam::io {

@@ -28,14 +28,11 @@ struct PrinterField {
   std::vector<std::string> schemes{};  // when not empty: what a device may begin with, before its colon
 };
 
-/// The first and the last line of a printer file that these tools write. One that has the first and not the last was
-/// cut off, and what it lost would be at its default.
-inline constexpr std::string_view printer_head =
-    "# Printer settings of the VAM tools, to the line \"# end of the settings\".";
-inline constexpr std::string_view printer_end = "# end of the settings";
-
 /// All fields, grouped by section in the order in which the file is printed.
 [[nodiscard]] std::span<const PrinterField> printer_fields();
+
+/// The sections in that order.
+[[nodiscard]] std::vector<std::string> section_names();
 
 /// A printer at its defaults but for the axis, whose place is not a number until it is set.
 [[nodiscard]] model::Printer without_axis();
