@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/private/start.hpp"
 
+#include <dlfcn.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -17,6 +19,23 @@ namespace vam::cli {
 namespace {
 
 std::terminate_handler usual = nullptr;  // NOLINT: one per process
+
+// log4cplus, which comes with OpenVDB, starts four threads before main(), for messages that these tools never send: of
+// a limit of processes they would take four, and end the process where one is refused. Until main() a thread is only
+// said to be there; as a library that ends waits for its threads, the process then ends before its libraries do.
+bool starting = false;      // NOLINT: one per process, and so is this
+bool owes_threads = false;  // NOLINT
+
+void leave(int status, void* /*unused*/) {
+  std::fflush(nullptr);
+  _exit(status);
+}
+
+// After the initialisers of all libraries, before those of the program.
+[[gnu::constructor(101)]] void libraries_have_started() {
+  starting = false;
+  if (owes_threads) on_exit(leave, nullptr);
+}
 
 [[noreturn]] void end_for_lack() {
   std::fprintf(stderr,
@@ -43,10 +62,26 @@ std::terminate_handler usual = nullptr;  // NOLINT: one per process
 
 }  // namespace
 
-void start_begins() noexcept { usual = std::set_terminate(on_terminate); }
+void start_begins() noexcept {
+  usual = std::set_terminate(on_terminate);
+  starting = true;
+}
 
 void start_ends() noexcept {
   if (usual != nullptr) std::set_terminate(usual);
 }
 
 }  // namespace vam::cli
+
+// Stands before that of the system for libraries, too. The sanitizers have one of their own.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*routine)(void*),
+                              void* argument) {
+  using Create = decltype(&pthread_create);
+  static const auto create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
+  if (!vam::cli::starting) return create(thread, attributes, routine, argument);
+  vam::cli::owes_threads = true;
+  *thread = pthread_self();
+  return 0;
+}
+#endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The time before main(), in which libraries ask for memory and threads and nobody catches: OpenVDB's log starts four
-// threads. Between the two calls a process to which they are refused ends as for any lack of memory, with a line and
-// its status, not by a signal.
+// threads, none of which is started. Between the two calls a process to which memory is refused ends as for any lack of
+// it, with a line and its status, not by a signal.
 #pragma once
 
 namespace vam::cli {
