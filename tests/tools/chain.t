@@ -5,12 +5,12 @@
 voxels() { vam-view "$1" --export "$1.nrrd" && sed '1,/^$/d' "$1.nrrd" | cksum; }  # the data behind the NRRD header
 
 ok 'slice' vam-slice --shape ball-in-cage --voxel 0.3 -o part.vdb
-ok 'optimize' vam-optimize --geometry parallel part.vdb --angles 90 -o sino.exr
+ok 'optimize' vam-optimize --geometry parallel part.vdb --angles 90 --iterations 8 -o sino.exr
 ok 'resample' vam-resample sino.exr -o frames.exr
 ok 'dose' vam-dose frames.exr --like part.vdb -o dose.vdb
 ok 'project' vam-project frames.exr -o shown.exr
 
-vam-slice --shape ball-in-cage --voxel 0.3 | tee part2.vdb | vam-optimize --geometry parallel --angles 90 | tee sino2.exr | vam-resample |
+vam-slice --shape ball-in-cage --voxel 0.3 | tee part2.vdb | vam-optimize --geometry parallel --angles 90 --iterations 8 | tee sino2.exr | vam-resample |
   tee frames2.exr | vam-dose --like part.vdb -o dose2.vdb; report $? 'one pipe'
 is 'the same part' "$(voxels part2.vdb)" "$(voxels part.vdb)"
 is 'the same dose' "$(voxels dose2.vdb)" "$(voxels dose.vdb)"
@@ -20,7 +20,7 @@ ok 'tee leaves a valid EXR' exrheader sino2.exr
 
 for threads in 1 2; do
   vam-slice --shape ball-in-cage --voxel 0.3 --threads $threads -o t$threads.vdb &&
-    vam-optimize t$threads.vdb --angles 90 --threads $threads -o t$threads.frames.exr &&
+    vam-optimize t$threads.vdb --angles 90 --iterations 8 --threads $threads -o t$threads.frames.exr &&
     vam-dose t$threads.frames.exr --like t$threads.vdb --threads $threads -o t$threads.dose.vdb
   report $? "the chain with $threads threads"
 done

@@ -5,17 +5,17 @@
 cp "$VAM_SOURCE/Makefile.example" Makefile
 box 4 4 1 >box.off
 cp box.off other.off
-ok 'builds all, two at once' make -j2 VOXEL=0.1
+ok 'builds all, two at once' make -j2 VOXEL=0.2
 for part in box other; do
   [ -s $part.mkv ] && [ -s $part.dose.png ]; report $? "$part has a video and a figure"
 done
-is 'a second run does nothing' "$(make -s VOXEL=0.1 | wc -c)" 0
+is 'a second run does nothing' "$(make -s VOXEL=0.2 | wc -c)" 0
 touch other.off
-remade=$(make VOXEL=0.1 | grep -c 'vam-slice')
+remade=$(make VOXEL=0.2 | grep -c 'vam-slice')
 is 'only the changed part is made again' "$remade" 1
-ok 'a printable part passes' make check VOXEL=0.1 LIMITS='iou>=0.5'
+ok 'a printable part passes' make check VOXEL=0.2 LIMITS='iou>=0.5'
 rm -f ./*.score.json
-make check VOXEL=0.1 LIMITS='iou>=1.5' >.log/out 2>&1
+make check VOXEL=0.2 LIMITS='iou>=1.5' >.log/out 2>&1
 [ $? -ne 0 ]; report $? 'a part that will not print fails the check'
 [ ! -e box.score.json ] || [ ! -e other.score.json ]; report $? 'a failed verdict leaves no target behind'
 

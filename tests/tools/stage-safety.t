@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# vam-stage alone, by every serial protocol [devices guarantee 1]: stopped within 100 ms of any end. VAM_TRIALS a cause (5; 100: label "long").
+# vam-stage alone, by every serial protocol [devices guarantee 1]: stopped within 100 ms of any end. VAM_TRIALS a cause (2; 100: label "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 for protocol in gcs grbl zaber; do
-  python3 "$VAM_SOURCE/tests/device/stage_trials.py" "${VAM_TRIALS:-5}" $protocol >table; status=$?
+  python3 "$VAM_SOURCE/tests/device/stage_trials.py" "${VAM_TRIALS:-2}" $protocol >table; status=$?
   sed "s/^/$protocol: /" table
   is "$protocol: every trial stopped in time" $status 0
   is "$protocol: every cause was tried" "$(grep -c trials table)" 9

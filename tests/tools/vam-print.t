@@ -76,9 +76,13 @@ fails 73 'taken: exists; give another --run' vam-print frames.exr --display null
 fails 73 'missing/run: cannot create the folder' vam-print frames.exr --display null: --run missing/run
 is 'a print needs its calibration' "$(vam-print frames.exr --display null: --run no 2>&1 | grep -c 'has no record of edges; run vam-calibrate')" 1
 [ ! -e no ]; report $? 'and leaves no folder when it is refused'
+prints=
 for print in 1 2 3; do
-  timeout 10 vam-print frames.exr --display null: --uncalibrated --home --set 'stage.device=sim:?acceleration=9000' 2>>errors &
-done; wait
+  (exec vam-print frames.exr --display null: --uncalibrated --home --set 'stage.device=sim:?acceleration=9000' 2>>errors) &
+  prints="$prints $!"
+done
+shown() { [ "$(grep -l '"frame":[0-9]' print-*/flips.jsonl 2>/dev/null | wc -l)" = 3 ]; }
+await shown; kill $prints; wait $prints
 is 'prints that begin in one second have a folder each' "$(cat print-*/summary.json | grep -c '"outcome": "aborted"')" 3
 rm -r print-*
 
