@@ -214,6 +214,10 @@ std::string unknown_word(const Declaration& tool, const std::vector<std::string>
   const bool plain = &form == &tool;
   const std::string name = plain ? tool.manual.name : tool.manual.name + " " + form.manual.name;
   const std::string where = " (" + name + (has_usual(form) ? " --help=all" : " --help") + " lists all)";
+  const auto end_of_options = std::find(words.begin(), words.end(), "--");
+  if (is_option(unknown) && std::find(words.begin(), end_of_options, unknown) == end_of_options) {
+    return unknown + ": unexpected argument after --; options come before it" + where;
+  }
   if (!is_option(unknown)) {
     const auto known = plain ? command_names(tool) : std::vector<std::string>{};
     return unknown + ": unexpected argument" + did_you_mean(unknown, known) + where;

@@ -5,6 +5,11 @@
 fails 66 'no\\x1b\[31m\\nsuch\.stl: cannot open' vam-slice "$(printf 'no\033[31m\nsuch.stl')" -o x.vdb
 fails 64 '--\\x07: unknown option' vam-slice "$(printf -- '--\007')"
 box 4 4 1 >box.off
+cp box.off ./-lead.off
+quiet 'a name with a leading dash, after --' vam-slice --voxel 0.5 -o n.vdb -- -lead.off
+fails 64 '^vam-slice: --voxel: unexpected argument after --; options come before it' vam-slice -o x.vdb -- -lead.off --voxel 0.5
+fails 64 '^vam-score: --target: unexpected argument after --; options come before it' vam-score -- n.vdb --target n.vdb
+rm -f ./-lead.off n.vdb
 cp box.off "$(printf 'a\nb.off')"
 ok 'a name with a newline' vam-slice "$(printf 'a\nb.off')" --voxel 0.5 -o n.vdb
 grep -qa 'a\\nb\.off' n.vdb; report $? 'is one line of the history'
