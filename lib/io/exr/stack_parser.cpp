@@ -14,8 +14,10 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/simd.hpp"
 #include "base/text.hpp"
 #include "io/exr/private/attributes.hpp"
+#include "io/exr/private/range_kernel.hpp"
 #include "io/stream/signature.hpp"
 
 namespace vam::io::exr {
@@ -37,10 +39,8 @@ constexpr float most_intensity = 1e9F;
 void check_values(const Image& image, std::size_t index, model::Space space) {
   constexpr float largest = std::numeric_limits<float>::max();
   const float most = space == model::Space::camera ? largest : most_intensity;
-  const auto is_good = [most](float value) { return (value >= -largest) & (value <= most); };  // NaN is not
-  unsigned good = 1;
-  for (const float value : image.values) good &= static_cast<unsigned>(is_good(value));  // no early exit: vector code
-  if (good != 0) return;
+  if (VAM_KERNEL(all_within, simd_level())(image.values.data(), image.size(), -largest, most)) return;
+  const auto is_good = [most](float value) { return value >= -largest && value <= most; };  // NaN is not
   const auto bad = std::find_if_not(image.values.begin(), image.values.end(), is_good);
   const auto at = bad - image.values.begin();
   const std::string pixel = "pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
