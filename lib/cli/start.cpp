@@ -74,7 +74,7 @@ void start_ends() noexcept {
 }  // namespace vam::cli
 
 // Stands before that of the system for libraries, too. The sanitizers have one of their own.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef VAM_SANITIZED
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*routine)(void*),
                               void* argument) {
   using Create = decltype(&pthread_create);
