@@ -28,6 +28,8 @@ fails 65 'coverage, 0 to 1' vam-score part.vdb --grid target --target minus.vdb
 fails 65 "stdin: grid 'target' occurs twice" sh -c 'cat part.vdb part.vdb | vam-optimize - -o x.exr'
 cat part.vdb part.vdb >two.vdb
 fails 65 "two.vdb: grid 'target' occurs twice; keep one of them, or rename it" vam-sinogram two.vdb -o x.exr
+fails 65 "two.vdb: grid 'target' occurs twice; keep one of them, or rename it" vam-view two.vdb -o x.png
+fails 65 "two.vdb: grid 'target' occurs twice; keep one of them, or rename it" vam-sdf two.vdb part.vdb --isovalue 0.5
 fails 65 "two.vdb: grid 'target' occurs twice" vam-score two.vdb --grid target --target part.vdb
 fails 65 "two.vdb: grid 'target' occurs twice" vam-curethrough model two.vdb -o x.vdb
 ok 'vam-view still shows it' vam-view minus.vdb -o x.png

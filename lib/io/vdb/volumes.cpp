@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "base/error.hpp"
@@ -147,7 +148,10 @@ SparseVolume read_volume(const std::string& path, const std::string& name) {
   const std::string subject = input_name(path);
   SparseVolume* found = nullptr;
   std::string names;
+  std::set<std::string> known;
   for (SparseVolume& volume : volumes) {
+    const bool is_new = known.insert(volume.name()).second;
+    if (name.empty() && !is_new) throw Error{Fault::data, subject + ": " + occurs_twice(volume.name())};
     names += (names.empty() ? "" : ", ") + volume.name();
     if (volume.name() != name && !(name.empty() && volumes.size() == 1)) continue;
     if (found != nullptr) throw Error{Fault::data, subject + ": " + occurs_twice(name)};
