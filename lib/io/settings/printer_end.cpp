@@ -32,11 +32,10 @@ Outline outline_of(std::string_view text) {
   Outline outline;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    std::string_view line = text.substr(at, end - at);
+    const std::string line = trimmed(text.substr(at, end - at));
     at = end + 1;
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
     if (line.starts_with('[')) {
-      outline.headings.emplace_back(line.substr(1, line.find(']') - 1));
+      outline.headings.push_back(trimmed(std::string_view(line).substr(1, line.find(']') - 1)));
       outline.keys_of_last = 0;
     } else if (!line.starts_with('#') && line.find('=') != std::string_view::npos) {
       ++outline.keys;

@@ -201,6 +201,8 @@ TEST_CASE("a printer file by hand is warned of where its end looks cut off, but 
             "ends after [resin], as if it was cut off, without [bath], [stage], [camera], [calibration]; "
             "add what is missing, or the last line '# end of the settings' if nothing is\n"));
   CHECK(has(said("[stage]\nturns = 2\n\n[camera]\n# fps = 2\n"), "ends with the heading [camera]"));
+  CHECK(has(sign_of_cut(" [ projector ] # a\r\nfps = 7\n[vial]\nwall_mm = 1\n[ resin ]\nindex = 1.5\n"),
+            "ends after [resin]"));
   CHECK(said("[vial]\nradius_mm = 11\n").empty());
   CHECK(said("[projector]\nfps = 7\n[vial]\nradius_mm = 11\n").empty());
   CHECK(said(three + "# end of the settings\n").empty());
