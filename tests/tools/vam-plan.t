@@ -39,6 +39,27 @@ holds 'as large as fits' "$(json micro.json scale) > 0.99 * $(json micro.json sc
 deep=$(printf 'deep%.0s' $(seq 50)); mkdir -p "$deep/$deep/$deep"; cp box.off "$deep/$deep/$deep"
 ok 'a long name is not cut' sh -c "vam-plan $deep/$deep/$deep/box.off --no-preview | grep -q 'box.off: 10 x 10 x 4 mm\$'"
 
+# A pyramid is no thin wall, but pointed.
+cat >pyramid.off <<END
+OFF
+5 6 0
+-3 -3 0
+3 -3 0
+3 3 0
+-3 3 0
+0 0 5
+3 0 2 1
+3 0 3 2
+3 0 1 4
+3 1 2 4
+3 2 3 4
+3 3 0 4
+END
+ok 'a pyramid' sh -c 'vam-plan pyramid.off --no-preview --report pyramid.json >pyramid'
+holds 'is as thick as the ball within' "($(json pyramid.json thinnest_wall_voxels) * 0.065 - 3.4) ^ 2 < 0.02"
+is 'and has sharp edges' "$(json pyramid.json sharp_edges) $(grep -c '^sharp edges ' pyramid)" 'true 1'
+is 'unlike a box' "$(json plan.json sharp_edges) $(grep -c '^sharp edges ' plan)" 'false 0'
+
 # Of large parts walls are measured on larger voxels, and the estimate is coarser.
 box 16 0.05 45 >sheet.off
 ok 'a sheet in a tall part' sh -c 'vam-plan sheet.off --no-preview >sheet'

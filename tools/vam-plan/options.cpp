@@ -33,7 +33,9 @@ cli::Manual manual() {
        {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},
       {"Memory: the part at up to 16 million voxels, 9 bytes each, and the doses and projections of the estimate.",
        "Wall thickness: the first percentile of the distance across the part at its medial surface, accurate to one "
-       "or two voxels, which are larger for parts of more than 16 million voxels."},
+       "or two voxels, which are larger for parts of more than 16 million voxels. Faces that converge by more than 20 "
+       "degrees, as at the edge of a wedge, are no walls, and reported as sharp edges; of a part without walls, such "
+       "as a cone, the largest ball within is stated."},
       {"vam-slice", "vam-optimize", "vam-score"}};
 }
 

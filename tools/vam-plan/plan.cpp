@@ -146,7 +146,9 @@ Filled filled(const solid::Part& part, double voxel_mm) {
 void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
   plan.wall_resolution = std::max(1, static_cast<int>(by));
-  plan.wall_voxels = solid::thinnest_wall_voxels(filled(part, plan.wall_resolution * plan.grid.voxel_mm).volume);
+  const solid::Walls walls = solid::walls(filled(part, plan.wall_resolution * plan.grid.voxel_mm).volume);
+  plan.sharp_edges = walls.sharp_edges;
+  plan.wall_voxels = walls.thinnest_voxels;
   if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
 }
 

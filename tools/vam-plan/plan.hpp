@@ -36,6 +36,7 @@ struct Plan {
   double scale = 1;                          // of what follows, of the file's coordinates
   model::Grid grid;                          // at the printer's pixels
   std::optional<double> wall_voxels;         // of that grid; none: there is no wall as thick as the resolution
+  bool sharp_edges = false;                  // thinner than what prints
   int wall_resolution = 1;                   // in voxels
   int coarseness = 0;                        // pixels per voxel of the estimate; 0: none is wanted
   std::optional<optimize::Preview> preview;  // none: none of its voxels is wholly inside the part

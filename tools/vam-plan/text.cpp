@@ -7,6 +7,7 @@
 
 #include "base/json.hpp"
 #include "solid/voxel/placement.hpp"
+#include "solid/voxel/wall.hpp"
 #include "vam-plan/plan.hpp"
 
 namespace vam::plan_tool {
@@ -72,7 +73,8 @@ std::string wall_words(const Plan& plan) {
     return number(count) + (count == 1 ? " voxel (" : " voxels (") + number(count * plan.grid.voxel_mm) + " mm)";
   };
   if (!plan.wall_voxels) return "below " + voxels(plan.wall_resolution) + ": enlarge the part, or use smaller pixels";
-  return voxels(*plan.wall_voxels) + (*plan.wall_voxels < 3 ? "; walls below 3 voxels seldom print" : "");
+  return voxels(*plan.wall_voxels) +
+         (*plan.wall_voxels < solid::least_printed_voxels ? "; walls below 3 voxels seldom print" : "");
 }
 
 Json fit_json(const Fit& fit) {
@@ -102,6 +104,8 @@ std::string table(const Plan& plan) {
   }
   text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm) + " mm");
   text += row("thinnest wall", wall_words(plan));
+  if (plan.sharp_edges)
+    text += row("sharp edges", "some, or tips, taper to less than 3 voxels, and seldom print there");
   return plan.coarseness > 0 ? text + print_rows(plan) : text;
 }
 
@@ -113,6 +117,7 @@ Json report(const Plan& plan) {
   json["slices"] = plan.grid.nz;
   json["voxel_mm"] = plan.grid.voxel_mm;
   if (plan.wall_voxels) json["thinnest_wall_voxels"] = *plan.wall_voxels;
+  json["sharp_edges"] = plan.sharp_edges;
   if (plan.preview) {
     json["ver"] = plan.preview->trials.nominal.figures.ver;
     json["pw"] = window(plan.preview->trials.nominal);

@@ -18,6 +18,10 @@ namespace {
 
 constexpr std::int64_t far_away = std::numeric_limits<std::int32_t>::max();
 constexpr double thin_share = 0.01;
+constexpr double sharp_share = 0.01;     // of the middle, that makes edges sharp
+constexpr double widest_cosine = -0.94;  // of the directions into both faces of a wall: 20 degrees apart from parallel
+constexpr double farthest_of_ball = 1.25;  // the way through a wall's middle, but for two voxels
+constexpr int window = 3;                  // voxels around a place that tell which way a face looks
 
 /// The grid with a layer of void around it, x fastest.
 struct Field {
@@ -28,9 +32,12 @@ struct Field {
   [[nodiscard]] std::int64_t index(int i, int j, int k) const {
     return (static_cast<std::int64_t>(k) * size[1] + j) * size[0] + i;
   }
-  [[nodiscard]] std::array<int, 3> place(std::int64_t at) const {
-    return {static_cast<int>(at % size[0]), static_cast<int>(at / size[0] % size[1]),
-            static_cast<int>(at / (static_cast<std::int64_t>(size[0]) * size[1]))};
+  [[nodiscard]] std::array<int, 3> place(std::int64_t at) const {  // divides 32 bits: much quicker than 64
+    const auto here = static_cast<std::uint32_t>(at);
+    const auto nx = static_cast<std::uint32_t>(size[0]);
+    const auto ny = static_cast<std::uint32_t>(size[1]);
+    const std::uint32_t row = here / nx;
+    return {static_cast<int>(here - row * nx), static_cast<int>(row % ny), static_cast<int>(row / ny)};
   }
   [[nodiscard]] std::int64_t squared(std::int64_t a, std::int64_t b) const {
     const auto p = place(a);
@@ -65,13 +72,13 @@ void sweep(Field& field, std::int64_t first, std::int64_t stride, int count) {
   std::vector<int> hull;      // places whose parabolas make the envelope
   std::vector<double> begin;  // where each begins
   std::vector<std::int32_t> found(static_cast<std::size_t>(count));
+  std::vector<double> heights(found.size());
   const auto at = [&](int n) { return static_cast<std::size_t>(first + n * stride); };
-  for (int n = 0; n < count; ++n) found[static_cast<std::size_t>(n)] = field.nearest[at(n)];
-  const auto height = [&](int n) {
-    return static_cast<double>(field.squared(static_cast<std::int64_t>(at(n)), found[static_cast<std::size_t>(n)]));
-  };
+  const auto height = [&](int n) { return heights[static_cast<std::size_t>(n)]; };
   for (int n = 0; n < count; ++n) {
-    if (found[static_cast<std::size_t>(n)] < 0) continue;
+    const std::int32_t own = found[static_cast<std::size_t>(n)] = field.nearest[at(n)];
+    if (own < 0) continue;
+    heights[static_cast<std::size_t>(n)] = static_cast<double>(field.squared(static_cast<std::int64_t>(at(n)), own));
     double from = -static_cast<double>(far_away);
     while (!hull.empty()) {
       const int m = hull.back();
@@ -113,8 +120,14 @@ bool is_middle(const Field& field, int i, int j, int k) {
   return true;
 }
 
-/// Through this voxel, from the nearest void straight on to the other side.
-double thickness(const Field& field, std::int64_t here) {
+/// The way through a voxel, from the nearest void straight on to the void on the other side.
+struct Crossing {
+  double thickness;
+  double ball;                   // diameter of the one around the voxel that the faces hold
+  std::array<int, 3> near, far;  // the void voxels
+};
+
+Crossing crossing(const Field& field, std::int64_t here) {
   const auto p = field.place(here);
   const auto v = field.place(field.nearest[static_cast<std::size_t>(here)]);
   const double distance =
@@ -125,34 +138,92 @@ double thickness(const Field& field, std::int64_t here) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       at[axis] = static_cast<int>(std::lround(p[axis] + way * (p[axis] - v[axis]) / distance));
     if (field.solid[static_cast<std::size_t>(field.index(at[0], at[1], at[2]))] == 0) {
-      return distance - 0.5 + way - 0.5 * step;  // faces are half a voxel from the middles of voxels
+      return {distance - 0.5 + way - 0.5 * step, 2 * distance - 1, v, at};  // faces are half a voxel from the middles
     }
   }
 }
 
-}  // namespace
+/// Towards the part, from a place at its face: to the middle of what lies around; not of length 1.
+std::array<double, 3> inwards(const model::Volume& part, const std::array<int, 3>& at) {
+  const model::Grid& grid = part.grid;
+  std::array<double, 3> sum{};
+  for (int n = 0; n < (2 * window + 1) * (2 * window + 1) * (2 * window + 1); ++n) {
+    constexpr int edge = 2 * window + 1;
+    const std::array<int, 3> by{n % edge - window, n / edge % edge - window, n / edge / edge - window};
+    if (by[0] * by[0] + by[1] * by[1] + by[2] * by[2] > window * window) continue;  // a ball favours no direction
+    const int i = at[0] - 1 + by[0];
+    const int j = at[1] - 1 + by[1];
+    const int k = at[2] - 1 + by[2];
+    if (i < 0 || j < 0 || k < 0 || i >= grid.nx || j >= grid.ny || k >= grid.nz) continue;
+    const auto covered = static_cast<double>(part.slice(k)[static_cast<std::ptrdiff_t>(j) * grid.nx + i]);
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += covered * by[axis];
+  }
+  return sum;
+}
 
-std::optional<double> thinnest_wall_voxels(const model::Volume& part) {
-  Field field = padded(part);
-  find_nearest(field);
-  std::vector<double> walls;
+/// Whether the faces on both sides converge, as at the edge of a wedge, or the way ends far off, as in a cone's tip.
+bool tapers(const model::Volume& part, const Crossing& across) {
+  if (across.thickness > farthest_of_ball * across.ball + 2) return true;
+  const auto a = inwards(part, across.near);
+  const auto b = inwards(part, across.far);
+  const double lengths = std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]);
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > widest_cosine * lengths;
+}
+
+/// Of the part's middle.
+struct Places {
+  std::vector<double> walls;  // thickness in voxels
+  std::vector<Crossing> tapering;
+  void add(const Places& more) {
+    walls.insert(walls.end(), more.walls.begin(), more.walls.end());
+    tapering.insert(tapering.end(), more.tapering.begin(), more.tapering.end());
+  }
+};
+
+Places middle_of(const model::Volume& part, const Field& field) {
+  Places all;
   std::mutex mutex;
   parallel_for(field.size[2] - 2, [&](int slice) {
-    std::vector<double> own;
+    Places own;
     for (int j = 1; j + 1 < field.size[1]; ++j) {
       for (int i = 1; i + 1 < field.size[0]; ++i) {
         const std::int64_t here = field.index(i, j, slice + 1);
-        if (field.solid[static_cast<std::size_t>(here)] != 0 && is_middle(field, i, j, slice + 1))
-          own.push_back(thickness(field, here));
+        if (field.solid[static_cast<std::size_t>(here)] == 0 || !is_middle(field, i, j, slice + 1)) continue;
+        const Crossing across = crossing(field, here);
+        if (tapers(part, across)) {
+          own.tapering.push_back(across);
+        } else {
+          own.walls.push_back(across.thickness);
+        }
       }
     }
     const std::lock_guard lock(mutex);
-    walls.insert(walls.end(), own.begin(), own.end());
+    all.add(own);
   });
-  if (walls.empty()) return std::nullopt;
-  const auto at = walls.begin() + static_cast<std::ptrdiff_t>(thin_share * static_cast<double>(walls.size()));
-  std::nth_element(walls.begin(), at, walls.end());
-  return *at;
+  return all;
+}
+
+}  // namespace
+
+Walls walls(const model::Volume& part) {
+  Field field = padded(part);
+  find_nearest(field);
+  Places places = middle_of(part, field);
+  const std::size_t middle = places.walls.size() + places.tapering.size();
+  if (middle == 0) return {};
+  double thinnest = 0;
+  if (places.walls.empty()) {
+    for (const Crossing& across : places.tapering) thinnest = std::max(thinnest, across.ball);
+  } else {
+    const auto at =
+        places.walls.begin() + static_cast<std::ptrdiff_t>(thin_share * static_cast<double>(places.walls.size()));
+    std::nth_element(places.walls.begin(), at, places.walls.end());
+    thinnest = *at;
+  }
+  const double sharp = std::min(least_printed_voxels, thinnest - 1);  // the ends of a thin wall are no thinner
+  const auto thin = std::count_if(places.tapering.begin(), places.tapering.end(),
+                                  [&](const Crossing& across) { return across.thickness < sharp; });
+  return {thinnest, static_cast<double>(thin) > sharp_share * static_cast<double>(middle)};
 }
 
 }  // namespace vam::solid

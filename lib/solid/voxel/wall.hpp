@@ -8,10 +8,19 @@
 
 namespace vam::solid {
 
-/// The thickness in voxels that one in a hundred places of the part's middle does not exceed. Its middle is where no
-/// voxel around is farther from the void; thickness is the way from the void that is nearest to the void on the other
-/// side. Voxels of at least half coverage are of the part. Good to a voxel along the axes, to two across; none for a
-/// part without a voxel.
-[[nodiscard]] std::optional<double> thinnest_wall_voxels(const model::Volume& part);
+inline constexpr double least_printed_voxels = 3;  // thinner walls seldom print
+
+struct Walls {
+  /// The thickness that one in a hundred places of the walls' middle does not exceed; where a part has no walls, as a
+  /// cone, the diameter of the largest ball within; none for a part without a voxel.
+  std::optional<double> thinnest_voxels;
+  bool sharp_edges = false;  // one in a hundred places of the middle taper to less than what prints, and than the walls
+};
+
+/// The middle of a part is where no voxel around is farther from the void; thickness is the way from the void that is
+/// nearest to the void on the other side. Faces that converge by more than 20 degrees are no walls: the edge of a wedge
+/// is thin whatever the part. Voxels of at least half coverage are of the part. Good to a voxel along the axes, to two
+/// across.
+[[nodiscard]] Walls walls(const model::Volume& part);
 
 }  // namespace vam::solid

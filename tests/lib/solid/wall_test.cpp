@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 using namespace vam;
 
@@ -20,25 +21,57 @@ model::Volume filled(int nx, int ny, int nz, const std::function<bool(int, int, 
   return volume;
 }
 
+double thinnest(const model::Volume& part) { return *solid::walls(part).thinnest_voxels; }
+
+/// An edge along y, of that angle: k of them from the top, on a plate of `plate` slices that is wider.
+model::Volume roof(double angle_deg, int plate) {
+  const double slope = std::tan(0.5 * angle_deg * std::numbers::pi / 180);
+  return filled(60, 30, 50, [=](int i, int, int k) { return k < plate || std::abs(i - 29.5) < slope * (48 - k); });
+}
+
 }  // namespace
 
 TEST_CASE("the thinnest wall of plates, also where a thick block stands on one, and across the axes") {
   for (const int n : {1, 2, 3, 4, 7, 8}) {
     const auto plate = filled(30, 30, 12, [n](int, int, int k) { return k >= 2 && k < 2 + n; });
-    CHECK(*solid::thinnest_wall_voxels(plate) == doctest::Approx(n).epsilon(0.2 / n));  // steps of a quarter
+    CHECK(thinnest(plate) == doctest::Approx(n).epsilon(0.2 / n));  // steps of a quarter
     const auto upright = filled(12, 40, 40, [n](int i, int, int) { return i >= 1 && i < 1 + n; });
-    CHECK(*solid::thinnest_wall_voxels(upright) == doctest::Approx(n).epsilon(0.2 / n));
+    CHECK(thinnest(upright) == doctest::Approx(n).epsilon(0.2 / n));
   }
   const auto block_on_plate =
       filled(40, 40, 24, [](int i, int j, int k) { return k < 3 || (i > 10 && i < 28 && j > 10 && j < 28); });
-  CHECK(*solid::thinnest_wall_voxels(block_on_plate) == doctest::Approx(3).epsilon(0.1));
+  CHECK(thinnest(block_on_plate) == doctest::Approx(3).epsilon(0.1));
   const auto tilted = filled(60, 60, 20, [](int i, int j, int) { return std::abs(i - j) <= 5; });
-  CHECK(std::abs(*solid::thinnest_wall_voxels(tilted) - 11 / std::sqrt(2.0)) < 1);  // good to a voxel
+  CHECK(std::abs(thinnest(tilted) - 11 / std::sqrt(2.0)) < 1);  // good to a voxel
 }
 
 TEST_CASE("a ball is as thick as its diameter: its rim is no wall") {
   const auto ball = filled(25, 25, 25, [](int i, int j, int k) { return std::hypot(i - 12, j - 12, k - 12) <= 10; });
   // Half of a voxel's diagonal at either end, and a step.
-  CHECK(std::abs(*solid::thinnest_wall_voxels(ball) - 21) < std::sqrt(3.0) + 0.25);
-  CHECK(!solid::thinnest_wall_voxels(filled(4, 4, 4, [](int, int, int) { return false; })));
+  CHECK(std::abs(thinnest(ball) - 21) < std::sqrt(3.0) + 0.25);
+  CHECK(!solid::walls(filled(4, 4, 4, [](int, int, int) { return false; })).thinnest_voxels);
+}
+
+TEST_CASE("the edge of a wedge is no wall, but sharp; nor is a cone's tip") {
+  for (const double angle_deg : {30.0, 40.0, 55.0}) {
+    const solid::Walls of_roof = solid::walls(roof(angle_deg, 6));
+    CHECK(*of_roof.thinnest_voxels == doctest::Approx(6).epsilon(0.2 / 6));  // of the plate, in steps of a quarter
+    CHECK(of_roof.sharp_edges);
+  }
+  // Without walls, the ball that touches base and flanks: of radius r = (h - r) sin(20 deg), h = 48.5.
+  const double sine = std::sin(20 * std::numbers::pi / 180);
+  CHECK(std::abs(thinnest(roof(40, 0)) - 2 * 48.5 * sine / (1 + sine)) < std::sqrt(3.0));
+  const auto cone =
+      filled(41, 41, 60, [](int i, int j, int k) { return std::hypot(i - 20, j - 20) < 0.35 * (58 - k); });
+  CHECK(thinnest(cone) > 20);
+  CHECK(solid::walls(cone).sharp_edges);
+}
+
+TEST_CASE("what is as thick everywhere has no sharp edges, however it stands") {
+  CHECK(!solid::walls(filled(30, 30, 12, [](int, int, int k) { return k >= 2 && k < 4; })).sharp_edges);
+  CHECK(!solid::walls(filled(60, 60, 20, [](int i, int j, int) { return std::abs(i - j) <= 3; })).sharp_edges);
+  CHECK(!solid::walls(filled(60, 60, 20, [](int i, int j, int) { return std::abs(3 * i - 2 * j) <= 3; })).sharp_edges);
+  CHECK(!solid::walls(filled(25, 25, 25, [](int i, int j, int k) {
+           return std::hypot(i - 12, j - 12, k - 12) <= 10;
+         })).sharp_edges);
 }
