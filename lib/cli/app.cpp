@@ -177,6 +177,11 @@ App& App::default_is(const std::string& text) {
   return *this;
 }
 
+App& App::when_left_out(const std::string& number) {
+  state_->current_group().options.back().left_out = number;
+  return *this;
+}
+
 App& App::usual(const std::vector<std::string>& flags) {
   for (Group& group : state_->tool.groups) {
     for (Option& option : group.options) {

@@ -85,6 +85,9 @@ class App {
   App& flag(const std::string& name, bool& target, const std::string& help);
   /// The default of the option declared last in words, where the tool works it out: "projector.pixel_mm".
   App& default_is(const std::string& text);
+  /// The number of the option declared last may be left out: then it is this one. What follows the option and is no
+  /// number is an operand, or the next option.
+  App& when_left_out(const std::string& number);
   /// Of the options declared so far, --help shows these and those that are required; --help=all shows all.
   App& usual(const std::vector<std::string>& flags);
   /// The option declared last must be given; or where that other one is not.

@@ -63,7 +63,7 @@ std::string zsh(const Declaration& tool) {
     if (!option->choices.empty())
       spec += ":" + option->value_name + ":(" + join(option->choices, " ") + ")";
     else if (!option->value_name.empty())
-      spec += ":" + option->value_name + ":_files";
+      spec += (option->left_out.empty() ? ":" : "::") + option->value_name + ":_files";
     out += "  " + literal(spec) + " \\\n";
   }
   for (const auto& name : about_flags()) out += "  " + literal(name) + " \\\n";
@@ -76,7 +76,8 @@ std::string fish(const Declaration& tool) {
   const std::string begin = "complete -c " + tool.manual.name;
   std::string out;
   for (const Option* option : options_of(tool)) {
-    out += begin + " -l " + long_flag(*option).substr(2) + (option->value_name.empty() ? "" : " -r");
+    out += begin + " -l " + long_flag(*option).substr(2) +
+           (option->value_name.empty() || !option->left_out.empty() ? "" : " -r");
     if (!option->choices.empty()) out += " -f -a " + literal(join(option->choices, " "));
     out += " -d " + literal(option->help) + "\n";
   }

@@ -16,7 +16,7 @@ constexpr int indent = 6;
 std::string operands(const Declaration& form) {
   std::string text;
   for (const auto& option : required_options(form)) {
-    text += " " + long_flag(option) + (option.value_name.empty() ? "" : " " + option.value_name);
+    text += " " + long_flag(option) + (option.value_name.empty() ? "" : " " + value_words(option));
   }
   for (const auto& positional : form.positionals) {
     const bool optional = !positional.default_text.empty();
@@ -42,7 +42,7 @@ std::string help_text(const Group& group) {
   std::string text = group.title + ":\n";
   for (const auto& option : group.options) {
     text += "  " + join(split(option.flag, ','), ", ");
-    if (!option.value_name.empty()) text += " " + option.value_name;
+    if (!option.value_name.empty()) text += " " + value_words(option);
     text += "\n" + wrap(join(details(option), " "), width, indent);
   }
   return text;
@@ -103,6 +103,7 @@ std::vector<std::string> details(const Option& option) {
   if (!option.choices.empty()) texts.push_back("One of " + join(option.choices, ", ") + ".");
   if (!option.range_text.empty()) texts.push_back("Range: " + option.range_text + ".");
   if (!option.default_text.empty()) texts.push_back("Default: " + option.default_text + ".");
+  if (!option.left_out.empty()) texts.push_back("Without a number: " + option.left_out + ".");
   if (option.repeatable) texts.emplace_back("May be repeated.");
   if (option.required) texts.push_back(option.unless.empty() ? "Required." : "Required without " + option.unless + ".");
   for (const auto& any_of : option.needs) texts.push_back("Requires " + join(any_of, " or ") + ".");
@@ -122,6 +123,10 @@ std::string long_flag(const Option& option) {
     if (name.rfind("--", 0) == 0) return name;
   }
   return option.flag;
+}
+
+std::string value_words(const Option& option) {
+  return option.left_out.empty() ? option.value_name : "[" + option.value_name + "]";
 }
 
 std::vector<ExitStatus> exit_statuses(const Declaration& tool) {

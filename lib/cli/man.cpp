@@ -90,7 +90,7 @@ std::string flag_words(const Option& option) {
     if (!out.empty()) out += " , ";
     out += "Fl " + name.substr(1);
   }
-  if (!option.value_name.empty()) out += " Ar " + argument(option.value_name);
+  if (!option.value_name.empty()) out += (option.left_out.empty() ? " Ar " : " Op Ar ") + argument(option.value_name);
   return out;
 }
 

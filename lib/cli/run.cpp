@@ -166,6 +166,7 @@ void App::parse(int argc, char** argv) {
   set_talk(given.talk);
   bound(given.memory_gib);
   rename_former(tool, words);
+  fill_left_out(tool, words);
   state_->words = words;
   require_command(tool, words);
   put_command_first(tool, words);

@@ -188,6 +188,19 @@ void rename_former(const Declaration& tool, std::vector<std::string>& words) {
   rename_values(form, words);
 }
 
+void fill_left_out(const Declaration& tool, std::vector<std::string>& words) {
+  const Declaration form = form_of(tool, words);
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    const Option* option = find_own(form, words[i]);
+    if (option == nullptr || option->value_name.empty()) continue;
+    if (option->left_out.empty()) {
+      ++i;  // its value may look like an option
+    } else if (i + 1 == words.size() || !parse_number(words[i + 1])) {
+      words[i] += "=" + option->left_out;
+    }
+  }
+}
+
 std::vector<std::string> words_without(const Declaration& tool, const std::vector<std::string>& words,
                                        const std::vector<std::string>& flags) {
   std::vector<std::string> kept;

@@ -133,10 +133,15 @@ quiet "an insert cut out of the part" $cutting --cut-insert 0 --report report.js
 holds "the part loses the volume of the insert" "($(json report.json volume_mm3) - (144 - 16))^2 < 1e-4"
 holds "part and insert touch and do not overlap" "$(json report.json insert.contact_voxels) > 500 && $(json report.json insert.shared_mm3) < 1e-6"
 is "the insert is in all slices of the part" "$(json report.json insert.slices_of_part)" "$(json report.json voxels.2)"
+quiet "without a number, too" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --report bare.json -o bare.vdb --cut-insert cube.stl
+quiet "which is none" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --report none.json -o none.vdb --cut-insert 0 cube.stl
+is "the same part" "$(json bare.json volume_mm3)" "$(json none.json volume_mm3)"
+holds "of which the insert is missing" "$(json bare.json insert.shared_mm3) < 1e-6 && $(json bare.json insert.contact_voxels) > 0"
+fails 64 'cube.stl: give either PART or --shape' $cutting -o x.vdb --cut-insert cube.stl
 quiet "with a clearance" $cutting --cut-insert 0.25 --report report.json -o insert.vdb
 # The faces move by one voxel, the edges by 0.59 of a voxel's square for the 0.79 of a quarter of a circle.
 holds "the clearance is subtracted, too" "($(json report.json volume_mm3) - (144 - 4 * (6.25 - 4 * 0.414 * 0.25^2)))^2 < 0.05^2"
-says 'overlaps the part by 16 mm3; --cut-insert 0 subtracts it' $cutting -o insert.vdb
+says 'overlaps the part by 16 mm3; --cut-insert subtracts it' $cutting -o insert.vdb
 says 'small.stl: misses the part; it measures 1 x 1 x 1 mm and is centred at .5, 0, 0. mm; check --insert-unit' \
   vam-slice cube.stl --insert small.stl --insert-scale 0.25 --insert-at 5,0,0 --voxel 0.25 -o insert.vdb
 says 'overlaps the part' vam-slice cube.stl --fit 8 --rotate 0,0,90 --insert small.stl --insert-unit cm --insert-scale 0.05 \

@@ -59,6 +59,7 @@ void declare_insert(cli::App& app, Options& options) {
       .needs(either);
   app.option("--cut-insert", "CLEARANCE_MM", options.clearance_mm, cli::non_negative,
              "Subtract the insert from the part, with this clearance all around.")
+      .when_left_out("0")
       .needs(either);
 }
 

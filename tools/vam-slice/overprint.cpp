@@ -30,7 +30,7 @@ void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Optio
          mm(placed.extent.box.centre(), stretch_z) + " mm; check --insert-unit, --insert-scale and --insert-at");
   } else if (!options.clearance_mm && fit.overlap()) {
     warn(placed.subject + ": overlaps the part by " + format_number(fit.shared_mm3(stretch_z), 3) +
-         " mm3; --cut-insert 0 subtracts it");
+         " mm3; --cut-insert subtracts it");
   }
 }
 

@@ -24,6 +24,7 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
+  std::string left_out = {};  // the number that stands for none behind the option; empty: there must be a value
   std::vector<std::vector<std::string>> needs = {};       // one option of each, where this one is given
   std::vector<Former> former = {};                        // not shown
   std::map<std::string, std::string> former_values = {};  // present values by the old ones; not shown
@@ -66,6 +67,9 @@ struct Declaration {
 
 /// "--voxel" of "-v,--voxel".
 [[nodiscard]] std::string long_flag(const Option& option);
+
+/// "MM", in brackets where it may be left out.
+[[nodiscard]] std::string value_words(const Option& option);
 
 /// The option of that name, of the tool itself or of one of its commands; null when there is none.
 [[nodiscard]] const Option* find_option(const Declaration& tool, const std::string& flag);

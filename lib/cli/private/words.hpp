@@ -33,6 +33,9 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
 /// Puts the present spelling of options for former ones, with a line on stderr, once each. A command's come first.
 void rename_former(const Declaration& tool, std::vector<std::string>& words);
 
+/// Puts the numbers behind options from which they are left out.
+void fill_left_out(const Declaration& tool, std::vector<std::string>& words);
+
 /// The values of options_of_all().
 struct ForAll {
   std::optional<std::string> memory_gib;  // as given

@@ -15,7 +15,7 @@ struct PreviewTask {
   model::Printer printer;  // with pixels as large (model::coarser)
   double radius_mm = 0;    // of the resin that is constrained (optics::judged_radius_mm)
   model::VoxelBox part;    // its box in the target
-  int angles = 92;  // a multiple of 4: quarters of a turn share their rays
+  int angles = 92;         // a multiple of 4: quarters of a turn share their rays
   int iterations = 12;
   model::Tolerances tolerances{};
 };

@@ -42,6 +42,37 @@ TEST_CASE("options can be left out of the history, with their values") {
   CHECK(without({"--angles", "90", "--half", "--", "part.vdb"}) == " --angles 90 -- part.vdb");
 }
 
+TEST_CASE("a number may be left out behind an option that says so") {
+  struct Case {
+    std::vector<std::string> words;
+    double clearance;
+    const char* input;
+    const char* window;
+  };
+  for (const auto& [words, clearance, input, window] :
+       std::vector<Case>{{{"--cut"}, 0.5, "-", "hann"},
+                         {{"--cut", "part.vdb"}, 0.5, "part.vdb", "hann"},
+                         {{"part.vdb", "--cut", "2"}, 2, "part.vdb", "hann"},
+                         {{"--cut=3", "part.vdb"}, 3, "part.vdb", "hann"},
+                         {{"--cut", "--window", "cosine"}, 0.5, "-", "cosine"},
+                         {{"--cut", "--", "7"}, 0.5, "7", "hann"},
+                         {{"--", "--cut"}, 0, "--cut", "hann"}}) {
+    Tool tool;
+    std::optional<double> cut;
+    tool.app.option("--cut", "MM", cut, non_negative, "Cut.").when_left_out("0.5");
+    CHECK(tool.run(words) == 0);
+    CHECK(cut.value_or(0) == clearance);
+    CHECK(tool.input == input);
+    CHECK(tool.window == window);
+  }
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--cut", "-1"}, {"--voxel", "--cut"}}) {
+    Tool tool;
+    std::optional<double> cut;
+    tool.app.option("--cut", "MM", cut, non_negative, "Cut.").when_left_out("0.5");
+    CHECK(tool.run(words) == 64);
+  }
+}
+
 TEST_CASE("a repeatable option takes one value each time and leaves positionals alone") {
   Tool tool;
   CHECK(tool.run({"--set", "a=1", "part.vdb"}) == 0);
