@@ -132,9 +132,15 @@ is "with its axes" "$(strings -n 6 sino.nrrd | grep -E '^(sizes|spacings|units)'
 # Wrong inputs
 fails 66 'none.vdb' vam-view none.vdb -o x.png
 echo hello >text.txt
-fails 65 'not a mesh of a known format' vam-view text.txt -o x.png
+fails 65 'text.txt: is text, but no mesh; a volume \(VDB\), .* or a mesh \(.*\) is needed$' vam-view text.txt -o x.png
+printf '<!DOCTYPE html><p>hello' >page.html
+fails 65 'page.html: is a web page; a volume \(VDB\), .* is needed$' vam-view page.html -o x.png
+printf '\223NUMPY\001\000' >array.npy
+fails 65 'array.npy: is a NumPy array .*; a volume .* is needed; vam-convert makes a volume or a stack of it$' vam-view array.npy -o x.png
+printf '\211PNG\r\n\032\n' >one.png
+fails 65 'one.png: is a PNG image; .* put the images into a folder' vam-view one.png -o x.png
 echo '{"schema": "vam-score/1"}' >score.json
-fails 65 'score.json: is JSON \(vam-report shows reports\), not a mesh' vam-view score.json -o x.png
+fails 65 'score.json: is JSON \(vam-report shows reports\); a volume' vam-view score.json -o x.png
 : >empty
 fails 65 'is empty' vam-view empty -o x.png
 fails 65 'stdin: is empty' sh -c ': | vam-view -o x.png'

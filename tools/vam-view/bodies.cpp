@@ -42,7 +42,8 @@ model::TriangleSoup beyond(const model::TriangleSoup& mesh, const std::vector<fl
 }  // namespace
 
 plot::ImageFigure mesh_figure(const std::string& path, const plot::ViewOptions& view) {
-  io::ColouredMesh read = io::read_coloured_mesh(path);
+  io::ColouredMesh read = io::read_coloured_mesh(
+      path, "a volume (VDB), a stack (EXR), a video (MKV, MP4), a folder of images, a trace of vam-optimize (.csv)");
   const plot::Body body{std::move(read.mesh), std::move(read.colours)};
   return single(body, view, "");
 }

@@ -120,8 +120,10 @@ void StackParser::begin() {
 void StackParser::refuse_foreign(std::int32_t first) {
   std::string more(400, '\0');
   more.resize(in_.read(more.data(), more.size()));
-  const std::string foreign = foreign_format(std::string(reinterpret_cast<const char*>(&first), sizeof first) + more);
-  throw std::runtime_error(foreign.empty() ? "is not OpenEXR" : "is " + foreign + ", not a stack (OpenEXR)");
+  const std::string head = std::string(reinterpret_cast<const char*>(&first), sizeof first) + more;
+  const std::string foreign = foreign_format(head);
+  throw std::runtime_error(foreign.empty() ? "is not OpenEXR"
+                                           : "is " + foreign + ", not a stack (OpenEXR)" + foreign_remedy(head));
 }
 
 void StackParser::take_first_header() {

@@ -31,18 +31,23 @@ std::string without_mark(std::string bytes) {
   return bytes;
 }
 
-// By content, whatever the name.
-PolygonSoup parse(const std::string& bytes) {
+// By content, whatever the name. others: what else the caller reads.
+PolygonSoup parse(const std::string& bytes, const std::string& others) {
   if (bytes.empty()) throw MeshProblem{"is empty"};
   for (const MeshFormat& format : mesh_formats()) {
     if (format.recognises(bytes)) return format.read(bytes);
   }
   const std::string foreign = foreign_format(bytes);
+  if (!others.empty() && (!foreign.empty() || bytes.find('\0') == std::string::npos)) {
+    throw MeshProblem{"is " + (foreign.empty() ? "text, but no mesh" : foreign) + "; " + others + " or a mesh (" +
+                      mesh_format_names() + ") is needed" + foreign_remedy(bytes)};
+  }
   if (foreign == "a volume (OpenVDB)") {
     throw MeshProblem{"is a volume (OpenVDB), not a mesh; vam-sdf takes both, vam-slice a mesh"};
   }
   if (!foreign.empty()) {
-    throw MeshProblem{"is " + foreign + ", not a mesh; one of " + mesh_format_names() + " is needed"};
+    throw MeshProblem{"is " + foreign + ", not a mesh; one of " + mesh_format_names() + " is needed" +
+                      foreign_remedy(bytes)};
   }
   // A binary STL has no signature; of no other format is anything left but text.
   if (bytes.find('\0') != std::string::npos) return parse_stl(bytes);
@@ -131,9 +136,9 @@ ColouredMesh triangulated(PolygonSoup&& soup) {
   return made;
 }
 
-ColouredMesh parsed(const std::string& bytes, const std::string& name) {
+ColouredMesh parsed(const std::string& bytes, const std::string& name, const std::string& others) {
   try {
-    PolygonSoup soup = parse(bytes);
+    PolygonSoup soup = parse(bytes, others);
     check_points(soup);
     return triangulated(std::move(soup));
   } catch (const MeshProblem& problem) {
@@ -203,14 +208,14 @@ void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const 
   format_of_output(path).write(path, mesh, comments);
 }
 
-ColouredMesh read_coloured_mesh(const std::string& path) {
+ColouredMesh read_coloured_mesh(const std::string& path, const std::string& others) {
   const std::string bytes = bytes_of(path);
   const std::string name = input_name(path);
   // These are 50 bytes a triangle and read by code of ours that any bytes will do for; the rest is read apart.
-  if (has_binary_stl_size(bytes)) return parsed(bytes, name);
+  if (has_binary_stl_size(bytes)) return parsed(bytes, name, others);
   ColouredMesh made;
   read_apart(
-      {name, bytes.size()}, [&](Sender& out) { send_mesh(parsed(bytes, name), out); },
+      {name, bytes.size()}, [&](Sender& out) { send_mesh(parsed(bytes, name, others), out); },
       [&](Receiver& in) { made = received(in); });
   check_indices(made, name);
   return made;

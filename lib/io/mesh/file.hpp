@@ -18,13 +18,14 @@ namespace vam::io {
 [[nodiscard]] model::TriangleSoup read_mesh(const std::string& path);
 
 /// The same, with what PLY has of its vertices: colours, and standard uncertainties (scalar_uncertainty, mm). Throws
-/// also for an uncertainty that is negative or not finite.
+/// also for an uncertainty that is negative or not finite. `others`, "a volume (VDB)": what else the caller reads, for
+/// the message about a file that is no mesh.
 struct ColouredMesh {
   model::TriangleSoup mesh;
   std::vector<std::array<std::uint8_t, 3>> colours;  // one a point, or none
   std::vector<float> uncertainty;                    // the same
 };
-[[nodiscard]] ColouredMesh read_coloured_mesh(const std::string& path);
+[[nodiscard]] ColouredMesh read_coloured_mesh(const std::string& path, const std::string& others = "");
 
 /// The formats that are read, for messages and help: "3MF, PLY, ...".
 [[nodiscard]] std::string mesh_format_names();

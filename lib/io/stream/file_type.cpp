@@ -94,7 +94,8 @@ FileType file_type(const std::string& path) {
   if (!foreign.empty()) {
     throw Error{Fault::data, name + ": is " + foreign +
                                  "; a volume (VDB), a stack (EXR), a video (MKV, MP4) or a folder of images "
-                                 "is needed"};
+                                 "is needed" +
+                                 foreign_remedy(head_of(path))};
   }
   throw Error{Fault::data, name + ": neither a volume (VDB), a stack (EXR), a video (MKV, MP4) nor a folder of images"};
 }

@@ -13,56 +13,79 @@ struct Signature {
   std::size_t at;
   std::string_view bytes;
   const char* name;
+  const char* remedy = "";
 };
+
+constexpr const char* by_convert = "; vam-convert makes a volume or a stack of it";
+constexpr const char* by_numpy = "; save it as a NumPy or HDF5 array, which vam-convert reads";
+constexpr const char* in_folder = "; put the images into a folder of their own, and give that";
+constexpr const char* by_export = "; export it as 3MF or STL";
+constexpr const char* unpack = "; unpack it";
 
 constexpr Signature signatures[] = {
     {0, " BDV"sv, "a volume (OpenVDB)"},
     {0, "\x76\x2f\x31\x01"sv, "a stack (OpenEXR)"},
-    {0, "\x93NUMPY"sv, "a NumPy array (.npy)"},
-    {0, "II*\0"sv, "a TIFF image"},
-    {0, "MM\0*"sv, "a TIFF image"},
-    {0, "II+\0"sv, "a TIFF image"},
-    {0, "\x89PNG\r\n"sv, "a PNG image"},
-    {0, "\xff\xd8\xff"sv, "a JPEG image"},
-    {0, "GIF8"sv, "a GIF image"},
-    {0, "\x89HDF\r\n"sv, "an HDF5 file"},
-    {0, "CDF\x01"sv, "a NetCDF file"},
-    {0, "NRRD000"sv, "an NRRD volume"},
-    {208, "MAP "sv, "an MRC volume"},
-    {128, "DICM"sv, "a DICOM image"},
-    {344, "n+1\0"sv, "a NIfTI volume"},
-    {0, "ISO-10303-21"sv, "a STEP model, surfaces without triangles"},
-    {72, "S      1"sv, "an IGES model, surfaces without triangles"},
-    {0, "\xd0\xcf\x11\xe0"sv, "a document of a CAD program"},
-    {0, "3D Geometry File Format"sv, "a Rhino model"},
-    {0, "glTF"sv, "a glTF model"},
-    {0, "Kaydara FBX"sv, "an FBX model"},
-    {0, "BLENDER"sv, "a Blender file"},
-    {0, "# vtk DataFile"sv, "a VTK file"},
-    {0, "\x1f\x8b"sv, "compressed by gzip"},
-    {0, "BZh"sv, "compressed by bzip2"},
-    {0, "\3757zXZ"sv, "compressed by xz"},
-    {0, "\x28\xb5\x2f\xfd"sv, "compressed by zstd"},
-    {0, "7z\xbc\xaf"sv, "a 7z archive"},
-    {0, "Rar!"sv, "a RAR archive"},
-    {257, "ustar"sv, "a tar archive"},
-    {0, "PK\3\4"sv, "a zip archive"},
+    {0, "\x93NUMPY"sv, "a NumPy array (.npy)", by_convert},
+    {0, "II*\0"sv, "a TIFF image", in_folder},
+    {0, "MM\0*"sv, "a TIFF image", in_folder},
+    {0, "II+\0"sv, "a TIFF image", in_folder},
+    {0, "\x89PNG\r\n"sv, "a PNG image", in_folder},
+    {0, "\xff\xd8\xff"sv, "a JPEG image", in_folder},
+    {0, "GIF8"sv, "a GIF image", in_folder},
+    {0, "\x89HDF\r\n"sv, "an HDF5 file", by_convert},
+    {0, "CDF\x01"sv, "a NetCDF file", by_numpy},
+    {0, "NRRD000"sv, "an NRRD volume", by_numpy},
+    {208, "MAP "sv, "an MRC volume", by_numpy},
+    {128, "DICM"sv, "a DICOM image", by_numpy},
+    {344, "n+1\0"sv, "a NIfTI volume", by_numpy},
+    {0, "ISO-10303-21"sv, "a STEP model, surfaces without triangles", by_export},
+    {72, "S      1"sv, "an IGES model, surfaces without triangles", by_export},
+    {0, "\xd0\xcf\x11\xe0"sv, "a document of a CAD program", by_export},
+    {0, "3D Geometry File Format"sv, "a Rhino model", by_export},
+    {0, "glTF"sv, "a glTF model", by_export},
+    {0, "Kaydara FBX"sv, "an FBX model", by_export},
+    {0, "BLENDER"sv, "a Blender file", by_export},
+    {0, "# vtk DataFile"sv, "a VTK file", by_numpy},
+    {0, "\x1f\x8b"sv, "compressed by gzip", unpack},
+    {0, "BZh"sv, "compressed by bzip2", unpack},
+    {0, "\3757zXZ"sv, "compressed by xz", unpack},
+    {0, "\x28\xb5\x2f\xfd"sv, "compressed by zstd", unpack},
+    {0, "7z\xbc\xaf"sv, "a 7z archive", unpack},
+    {0, "Rar!"sv, "a RAR archive", unpack},
+    {257, "ustar"sv, "a tar archive", unpack},
+    {0, "PK\3\4"sv, "a zip archive", unpack},
     {0, "\x1a\x45\xdf\xa3"sv, "a Matroska video"},
     {4, "ftyp"sv, "an MP4 video"},
     {0, "%PDF"sv, "a PDF document"},
     {0, "\xff\xfe"sv, "text of 16 bits a character; save it as ASCII or UTF-8"},
     {0, "\xfe\xff"sv, "text of 16 bits a character; save it as ASCII or UTF-8"},
     {0, "\177ELF"sv, "a program"},
+    {0, "<!DOCTYPE html"sv, "a web page"},
+    {0, "<!doctype html"sv, "a web page"},
+    {0, "<html"sv, "a web page"},
+    {0, "<?xml"sv, "XML"},
+    {0, "#!/"sv, "a script"},
     {0, "{"sv, "JSON (vam-report shows reports)"},
 };
+
+// Null for bytes without a known signature.
+const Signature* signature_of(std::string_view head) {
+  for (const Signature& signature : signatures) {
+    if (head.size() > signature.at && head.substr(signature.at).starts_with(signature.bytes)) return &signature;
+  }
+  return nullptr;
+}
 
 }  // namespace
 
 std::string foreign_format(std::string_view head) {
-  for (const Signature& signature : signatures) {
-    if (head.size() > signature.at && head.substr(signature.at).starts_with(signature.bytes)) return signature.name;
-  }
-  return "";
+  const Signature* signature = signature_of(head);
+  return signature == nullptr ? "" : signature->name;
+}
+
+std::string foreign_remedy(std::string_view head) {
+  const Signature* signature = signature_of(head);
+  return signature == nullptr ? "" : signature->remedy;
 }
 
 }  // namespace vam::io

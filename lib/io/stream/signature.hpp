@@ -11,4 +11,7 @@ namespace vam::io {
 /// suffice.
 [[nodiscard]] std::string foreign_format(std::string_view head);
 
+/// What makes such a file readable: "; unpack it", the end of a message. Empty where nothing does.
+[[nodiscard]] std::string foreign_remedy(std::string_view head);
+
 }  // namespace vam::io

@@ -89,7 +89,8 @@ TEST_CASE("a file that is not a stack is status 65") {
   CHECK(line.find("not OpenEXR") != std::string::npos);
   spill(folder / "array.exr", "\x93NUMPY\1");
   CHECK(open("array.exr") == 65);
-  CHECK(line.ends_with("array.exr: is a NumPy array (.npy), not a stack (OpenEXR)"));
+  CHECK(line.ends_with(
+      "array.exr: is a NumPy array (.npy), not a stack (OpenEXR); vam-convert makes a volume or a stack of it"));
 
   const Imf::Header plain = [] {
     Imf::Header header(4, 4);
