@@ -35,6 +35,12 @@ std::string page_image(const RgbImage& image, const std::string& alt) {
   return "<img src=\"data:image/png;base64," + base64(io::encode_png(image)) + "\" alt=\"" + page_text(alt) + "\">";
 }
 
+std::string page_plot(Plot plot, const std::string& alt) {
+  plot.width = 540;
+  plot.height = 400;
+  return page_image(draw(plot).image(), alt);
+}
+
 std::string page_figure(const std::string& title, const std::string& content, const std::string& caption) {
   return "<figure><h2>" + page_text(title) + "</h2>" + content + "<figcaption>" + page_text(caption) +
          "</figcaption></figure>\n";

@@ -5,11 +5,15 @@
 #include <string>
 
 #include "base/pixels.hpp"
+#include "plot/plot.hpp"
 
 namespace vam::plot {
 
 /// <img> with the PNG within.
 [[nodiscard]] std::string page_image(const RgbImage& image, const std::string& alt);
+
+/// A plot as such an image, small: its words are read in the columns of a page, and on a telephone.
+[[nodiscard]] std::string page_plot(Plot plot, const std::string& alt);
 
 /// <figure> with heading and caption around `content`, which is HTML; the other two are text.
 [[nodiscard]] std::string page_figure(const std::string& title, const std::string& content, const std::string& caption);

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "base/figure_text.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
@@ -94,7 +95,7 @@ std::string GreyScore::table() const {
   for (const auto& [name, meaning] : figure_list()) {
     char line[200];
     std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),
-                  format_number(values[name].get<double>()).c_str(), meaning.c_str());
+                  format_figure(values[name].get<double>()).c_str(), meaning.c_str());
     text += line;
   }
   const double within = 100 * (1 - figure("ver"));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/figure_text.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
@@ -195,7 +196,7 @@ std::string Score::table() const {
     if (!values.contains(name)) continue;
     char line[200];
     std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),
-                  format_number(values[name].get<double>()).c_str(), meaning.c_str());
+                  format_figure(values[name].get<double>()).c_str(), meaning.c_str());
     text += line;
   }
   return text + "verdict      " + words(verdict()) + "\n";

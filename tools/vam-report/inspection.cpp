@@ -73,8 +73,7 @@ InspectionViews views_of(const Json& report, const std::string& name) {
   views.limit_mm = histogram.edges.back();
   const double rms_mm = report.at("print_to_design").at("rms_mm");
   views.histogram = plot::page_figure(
-      "Deviation by area",
-      plot::page_image(plot::draw(plot::deviation_histogram(histogram, rms_mm)).image(), "histogram of the deviation"),
+      "Deviation by area", plot::page_plot(plot::deviation_histogram(histogram, rms_mm), "histogram of the deviation"),
       "The last bin holds all beyond it: " + format_number(histogram.percent.back(), 2) + " % of the area above " +
           format_number(histogram.edges[histogram.percent.size() - 1], 3) + " mm; the first one " +
           format_number(histogram.percent.front(), 2) + " % below " + format_number(histogram.edges[1], 3) + " mm.");

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/figure_text.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "base/printable.hpp"
@@ -25,7 +26,7 @@ constexpr std::size_t most_values = 24;  // of a list that is written out
 
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return format_number(value.get<double>(), 5);
+  if (value.is_number_float()) return format_figure(value.get<double>(), 5);
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -78,9 +79,8 @@ std::string convergence(const std::string& path) {
     trace.ver.push_back(table.number(row, 1));
     trace.window.push_back(table.number(row, 2));
   }
-  return plot::page_figure(
-      "Convergence", plot::page_image(plot::draw(plot::convergence({trace})).image(), "figures over the iterations"),
-      file_name(path) + ": the part prints if the process window is positive.");
+  return plot::page_figure("Convergence", plot::page_plot(plot::convergence({trace}), "figures over the iterations"),
+                           file_name(path) + ": the part prints if the process window is positive.");
 }
 
 std::string provenance(const std::vector<std::string>& paths) {

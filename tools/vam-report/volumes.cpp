@@ -74,8 +74,7 @@ std::string histogram(const io::SparseVolume& dose, const io::SparseVolume& targ
   options.name = "dose";
   return plot::page_figure(
       "Dose in part and void",
-      plot::page_image(plot::draw(plot::dose_histogram(dose, target, how.circle, options)).image(),
-                       "histogram of the dose"),
+      plot::page_plot(plot::dose_histogram(dose, target, how.circle, options), "histogram of the dose"),
       "If the distributions overlap, no threshold separates part and void. Voxels that the surface cuts are excluded.");
 }
 

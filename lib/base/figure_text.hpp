@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of any kind, counts among them, as tables show them.
+#pragma once
+
+#include <string>
+
+namespace vam {
+
+/// A whole number in full, as counts are, however many digits it has; any other as format_number() has it.
+[[nodiscard]] std::string format_figure(double value, int digits = 6);
+
+}  // namespace vam
