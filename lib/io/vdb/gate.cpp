@@ -36,7 +36,8 @@ std::optional<Promise> promise_of(const std::string& name, TargetKind target) {
     return Promise{0, most, "a grey target is a dose, 0 and more; make it again"};
   }
   if (is_shape(name)) {
-    return Promise{-slack, 1 + slack, "this is coverage, 0 to 1; make it with vam-slice, or scale it"};
+    return Promise{-slack, 1 + slack,
+                   "this is coverage, 0 to 1; make it with vam-slice, or scale it (vam-convert --full-scale)"};
   }
   if (name == "weight" || name == "tolerance" || name == "dose") {
     return Promise{0, most, "a " + name + " is 0 and more, below 1e9; make it again"};
