@@ -31,12 +31,6 @@ namespace {
 using namespace vam;
 using slice_tool::Options;
 
-void report_repairs(const solid::Part& part) {
-  if (!part.repair || (!part.repair->changed() && part.repair->closed())) return;
-  warn(part.subject + ": " + part.repair->summary() +
-       (part.repair->closed() ? "" : "; the inside is determined by majority"));
-}
-
 io::SparseVolume volume_of(const std::string& name, const solid::Part& part, const model::Grid& grid,
                            solid::FillSummary& content) {
   io::SparseVolume volume(name, grid);
@@ -45,7 +39,7 @@ io::SparseVolume volume_of(const std::string& name, const solid::Part& part, con
     volume.write_slices(k0, count, slices);
     progress.tick(count);
   });
-  report_repairs(part);
+  solid::warn_of_repairs(part);
   return volume;
 }
 

@@ -60,6 +60,10 @@ holds 'is as thick as the ball within' "($(json pyramid.json thinnest_wall_voxel
 is 'and has sharp edges' "$(json pyramid.json sharp_edges) $(grep -c '^sharp edges ' pyramid)" 'true 1'
 is 'unlike a box' "$(json plan.json sharp_edges) $(grep -c '^sharp edges ' plan)" 'false 0'
 
+sed -e '2s/.*/5 5 0/' -e '$d' pyramid.off >holed.off
+ok 'holes in a mesh are a warning' sh -c 'vam-plan holed.off --no-preview 2>&1 >holed | grep -q "holed.off: 3 boundary edges remain; the inside"'
+is 'closed meshes are none' "$(vam-plan box.off --no-preview 2>&1 >/dev/null)" ''
+
 # Of large parts walls are measured on larger voxels, and the estimate is coarser.
 box 16 0.05 45 >sheet.off
 ok 'a sheet in a tall part' sh -c 'vam-plan sheet.off --no-preview >sheet'

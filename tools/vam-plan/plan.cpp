@@ -200,6 +200,7 @@ Plan plan(const Options& options, const model::Printer& printer) {
   made.scale = made.now.fits() ? options.scale : solid::three_digits(options.scale * made.now.factor);
   const solid::Part part =
       within_rows(source.part(printer, made.scale / options.scale), room_of(printer), printer.projector.pixel_mm);
+  solid::warn_of_repairs(part);
   made.subject = part.subject;
   made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
   add_walls(made, part);

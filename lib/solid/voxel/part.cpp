@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
@@ -34,6 +35,12 @@ Part shape_part(const std::string& text, const Placement& placement, const Writa
     return Vote{};
   };
   return part;
+}
+
+void warn_of_repairs(const Part& part) {
+  if (!part.repair || (!part.repair->changed() && part.repair->closed())) return;
+  warn(part.subject + ": " + part.repair->summary() +
+       (part.repair->closed() ? "" : "; the inside is determined by majority"));
 }
 
 Part lifted(Part part, double lift_mm) {

@@ -31,6 +31,9 @@ struct Part {
 /// The part of a shape (see make_shape) under a placement.
 [[nodiscard]] Part shape_part(const std::string& text, const Placement& placement, const Writable& room);
 
+/// Says what of its mesh was repaired, and what could not be.
+void warn_of_repairs(const Part& part);
+
 /// The part moved up along z.
 [[nodiscard]] Part lifted(Part part, double lift_mm);
 
