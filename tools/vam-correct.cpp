@@ -59,7 +59,7 @@ cli::Manual manual() {
       {{"A cylinder whose resin is 10 % less sensitive than planned:",
         "vam-slice --shape cylinder:diameter=6,height=4 --voxel 0.25 --stretch-z 1 -o part.vdb\n"
         "vam-convert part.vdb -o part.npy\n"
-        "python3 -c \"import numpy as n; p = n.load('part.npy'); d = 25 + 35 * p; n.save('d', d); "
+        "/usr/bin/python3 -c \"import numpy as n; p = n.load('part.npy'); d = 25 + 35 * p; n.save('d', d); "
         "n.save('s', 0.08 / (1 + n.exp((50 - 0.9 * d) / 4)))\"\n"
         "vam-convert d.npy --voxel 0.25 --grid dose --value-unit mJ/cm3 -o dose.vdb\n"
         "vam-convert s.npy --voxel 0.25 --grid scatter --value-unit 'view units per mm' -o scatter.vdb\n"

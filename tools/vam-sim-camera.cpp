@@ -18,6 +18,7 @@
 #include "sim/cameras/gv_camera.hpp"
 #include "sim/cameras/makers.hpp"
 #include "sim/controllers/options.hpp"
+#include "sinogram_frames.hpp"
 
 namespace {
 
@@ -54,9 +55,10 @@ cli::Manual manual() {
        "The vial rotates as recorded in the log of vam-sim-stage (--follow), or at a constant --speed. The projector "
        "shows the frames recorded in the log of vam-project (--flips): those of the test pattern that the log "
        "describes, else those of --projected or --pattern. They also determine how the print grows. Without a log "
-       "the first frame is shown throughout. Frames of another sinogram that follow in a print (vam-project "
-       "--frames-from) are not known here: the program ends with an error that states the turn (status 65). A camera "
-       "frame integrates over its whole exposure, also across changes of the image.",
+       "the first frame is shown throughout. Where a print shows the frames of another sinogram (vam-project "
+       "--frames-from), its file is read by the name in the log. A camera frame integrates over its whole exposure, "
+       "also "
+       "across changes of the image.",
        "With --cure the print is what the light makes of the resin, voxel by voxel: the frames that --flips states, at "
        "the stage angles of --follow, along rays that climb, are first spent on the inhibitor, then convert the resin, "
        "which scatters from its gel point on (vam-physics(7), Simulated print). The model shares nothing with that of "
@@ -297,6 +299,11 @@ void run(const cli::App& app, Options& o) {
   camera.sources.images = images(o, camera.bench.printer.projector);
   camera.sources.draw = [&camera](const Json& event) {
     return images(pattern_of(event), camera.bench.printer.projector);
+  };
+  camera.sources.renew = [&camera](const Json& event, int frames) {
+    return tool::sinogram_frames(event.value("sinogram", ""), camera.bench.printer.projector, frames,
+                                 event.value("full_scale", 0.0))
+        .frames;
   };
   if (o.cure) cure(app, o);
   camera.lag_s = 1e-3 * o.lag_ms;

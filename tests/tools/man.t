@@ -49,7 +49,7 @@ for script in vam-batch vam-renew vam-print vam-calibrate-all; do
   done
   ok "$script: bash accepts its completion" bash -n "$script.bash"
   is "$script: a value, a switch, and what may be repeated" \
-    "$(grep -c "^  '--${value%:*}\[.*\]:${value#*:}:_files'" "$script.zsh") $(grep -c "^  '--$switch\[.*\.\]' " "$script.zsh") $(grep -c "^  '\*--set" "$script.zsh")" "1 1 $repeatable"
+    "$(grep -c "^  '--${value%:*}\[.*\]:${value#*:}:_files'" "$script.zsh") $(grep -c "^  '--$switch\[.*\.\]' " "$script.zsh") $(grep -c "^  '\*--set" "$script.zsh")" "1 $([ -n "$switch" ] && echo 1 || echo 0) $repeatable"
 
   mkdir -p installed/bin installed/share/man/man1  # as packages have it
   cp "$VAM_SOURCE/scripts/$script" installed/bin

@@ -26,6 +26,7 @@ speed_deg_s = 20
 [camera]
 pixel_mm = 0.2
 index_resin = 1.48
+# end of the settings
 TOML
 export VAM_PRINTER=$PWD/printer.toml
 bench='voxel=0.2 columns=66 rows=46 views=60'

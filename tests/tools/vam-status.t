@@ -48,6 +48,17 @@ touch -d '1 hour ago' half/*.jsonl
 ok 'watching it ends, too' sh -c 'timeout 20 vam-status half --watch >watched && grep -q "end not logged" watched'
 ok 'a print that was killed' sh -c 'vam-status half | grep -q "^no log entry for 3[56][0-9][0-9] s; end not logged"'
 echo '{"turns":1.5,"missing_percent":34.25,"iou":0.5}' >half/ost.jsonl
+echo '{"event":"hold","volume":1,"reason":"the sensitivity is known to 9 % only"}' >half/renewed.jsonl
+vam-status half --page held.html >/dev/null
+ok 'the page tells why there is no new light' grep -q 'as before: the sensitivity is known to 9 % only' held.html
+echo '{"event":"renewed","volume":2,"from_turn":11,"turns":2,"end":13,"sensitivity":0.953}' >>half/renewed.jsonl
+mkdir half/renewed
+vam-slice --shape box:x=4,y=4,z=3 --voxel 0.5 --stretch-z 1 -o box.vdb
+vam-convert box.vdb -o box.npy; vam-convert box.npy --voxel 0.5 --grid sensitivity --value-unit relative -o half/renewed/sensitivity.vdb
+vam-status half --page new.html >/dev/null
+ok 'or from when on' grep -q 'from turn 11 on, for 2 turns: sensitivity 0.953' new.html
+ok 'with the sensitivity' grep -q 'Sensitivity of the resin' new.html
+rm -r half/renewed half/renewed.jsonl
 ok 'live metrology' sh -c 'vam-status half | grep -q "cured 65.8 %, missing 34.2 %"'
 
 # Folders of prints that have just begun, or were killed at once: logs that are missing, empty or cut.

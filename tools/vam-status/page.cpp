@@ -15,6 +15,7 @@
 #include "io/image/image_file.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
+#include "vam-status/correction.hpp"
 #include "vam-status/overhead.hpp"
 
 namespace vam::status_tool {
@@ -119,6 +120,7 @@ std::string figures_table(const RunFolder& run) {
   rows += p.missing_percent ? row("cured / missing", fixed(100 - *p.missing_percent, 1) + " % / " +
                                                          fixed(*p.missing_percent, 1) + " % of the part")
                             : row("cured / missing", "not measured (vam-print --until)");
+  if (const std::string light = correction_text(run); !light.empty()) rows += row("new light", light);
   if (!p.simulated.empty()) rows += row("simulated", join(p.simulated, ", "));
   return rows + "</table>\n";
 }
@@ -166,6 +168,7 @@ std::string page(const std::string& name, const RunFolder& run, const LightView*
   body += "<h1>" + page_text(name) + ": " + page_text(state_of(progress)) + "</h1>\n<p>as of " + utc + "</p>\n";
   body += figures_table(run) + "<div class=\"images\">\n<div>" + camera_figure(run);
   if (light != nullptr) body += screen_figure(run, *light, progress.angle_deg, lit);
+  body += sensitivity_figure(run);
   body += "</div>\n" + (light != nullptr ? overhead_figure(run, *light, lit) : "");
   body += "</div>\n<h2>Calibration records</h2>\n" + records_table(progress);
   return plot::html(made);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the resin cures ahead of its dose or behind it: a smooth field, by the scattering that its views show, and what
-// the light that is left has to take into account [physics §15.3].
+// the light that is left has to take into account [physics §14.7].
 #pragma once
 
 #include <array>

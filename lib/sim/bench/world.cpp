@@ -53,7 +53,9 @@ void SimWorld::read_logs() {
 void SimWorld::show(const Json& event) {
   const std::string name = event.value("event", "");
   if (name == "pattern" && sources_.draw) images_ = std::make_shared<const Images>(sources_.draw(event));
-  if (name == "frames" && !images_->empty()) {
+  if (name == "frames" && !images_->empty() && sources_.renew) {
+    images_ = std::make_shared<const Images>(sources_.renew(event, count_of(*images_)));
+  } else if (name == "frames" && !images_->empty()) {
     throw Error{Fault::data, sources_.shown + ": shows other frames since turn " +
                                  std::to_string(event.value("turn", 0)) +
                                  ", which the simulated camera does not follow; print without --frames-from"};

@@ -23,6 +23,8 @@ struct SimSources {
   double latency_s = 0;           // of the projector, from a flip to its light
   std::vector<GreyImage> images;  // that glow in the resin, by frame index; none: the print alone is seen
   std::function<std::vector<GreyImage>(const Json& event)> draw;  // of the test pattern that `shown` names next
+  /// Of the sinogram that `shown` names next, as many as there were; may be empty.
+  std::function<std::vector<GreyImage>(const Json& event, int frames)> renew;
 };
 
 /// Times are on CLOCK_MONOTONIC, as in the logs.

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vam-status/correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "facts.hpp"
+#include "io/vdb/vdb.hpp"
+#include "plot/image_figure.hpp"
+#include "plot/page.hpp"
+
+namespace vam::status_tool {
+
+namespace {
+
+// x to the right, z up, in the heights of the print.
+plot::ImageFigure section_of(const io::SparseVolume& volume) {
+  const model::Grid& g = volume.grid();
+  Image section(g.nx, g.nz);
+  std::vector<float> slice(g.slice_size());
+  double most = 0.02;
+  for (int k = 0; k < g.nz; ++k) {
+    volume.read_slices(k, 1, slice.data());
+    for (int i = 0; i < g.nx; ++i) {
+      const float value = slice[static_cast<std::size_t>(g.ny / 2) * g.nx + i];
+      section(i, g.nz - 1 - k) = value;
+      most = std::max(most, std::abs(static_cast<double>(value) - 1));
+    }
+  }
+  const double stretch = tool::stretch_z(volume.metadata);
+  plot::ImageFigure figure;
+  figure.panels.push_back({std::move(section), "", {}});
+  figure.x = {"x (mm)", g.x_mm(-0.5), g.x_mm(g.nx - 0.5)};
+  figure.y = {"z (mm)", g.z_mm(-0.5) / stretch, g.z_mm(g.nz - 0.5) / stretch};
+  figure.scale = {plot::ColourMap::diverging, 1 - most, 1 + most, "dose that acts / planned dose"};
+  figure.size = 480;
+  return figure;
+}
+
+Json last_line(const std::string& path) {
+  std::ifstream log(path);
+  Json last;
+  for (std::string text; std::getline(log, text);) {
+    Json line = parse_json(text);
+    if (line.is_object()) last = std::move(line);
+  }
+  return last;
+}
+
+}  // namespace
+
+std::string correction_text(const RunFolder& run) {
+  const Json line = last_line(run.file("renewed.jsonl"));
+  if (!line.is_object()) return "";
+  if (line.value("event", "") == "hold") return "as before: " + line.value("reason", "");
+  return "from turn " + std::to_string(line.value("from_turn", 0)) + " on, for " +
+         std::to_string(line.value("turns", 0)) + (line.value("turns", 0) == 1 ? " turn" : " turns") +
+         ": sensitivity " + format_number(line.value("sensitivity", 0.0), 3);
+}
+
+std::string sensitivity_figure(const RunFolder& run) {
+  const std::string path = run.file("renewed/sensitivity.vdb");
+  if (!std::filesystem::exists(path)) return "";
+  try {
+    const plot::ImageFigure figure = section_of(io::read_volume(path, "sensitivity"));
+    return plot::page_figure(
+        "Sensitivity of the resin", plot::page_image(plot::draw(figure).image(), "section"),
+        "Section through the axis. Red: the resin cures ahead of its planned dose; blue: behind it.");
+  } catch (const Error&) {
+    return "";  // the page does not depend on it
+  }
+}
+
+}  // namespace vam::status_tool
