@@ -1,4 +1,4 @@
-#!/bin/bash
+#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # vam-renew and vam-correct in a simulated print without a clock: the resin is less sensitive at its upper end, absorbs
 # more and the axis is 0.2 mm beside its place, of which the plan knows nothing.
@@ -53,7 +53,7 @@ begin() {
   (cd "$1" && exec play_turns flips.jsonl $bench $true_one) <"$1/in" >"$1/out" &
   exec 3>"$1/in" 4<"$1/out"
 }
-tell() { echo "$@" >&3; read -r -u 4 _; }
+tell() { echo "$@" >&3; read -r _ <&4; }
 deviation() {  # deviation NAME: RMS of the print's surface
   tell settled settled.vdb
   vam-sdf "$1/settled.vdb" part.vdb --align none --samples 20000 --isovalue 1 --report "$1.json" >/dev/null && json "$1.json" print_to_design.rms_mm
