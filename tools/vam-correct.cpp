@@ -66,8 +66,8 @@ cli::Manual manual() {
         "echo '{\"schema\":\"vam-working-curve/1\",\"isovalue\":0.04,\"saturation\":0.08,\"critical_dose_mj_cm3\":50,"
         "\"rate_per_mj_cm3\":0.0625}' >curve.json\n"
         "vam-correct scatter.vdb --curve curve.json --acted dose.vdb --dose dose.vdb "
-        "--max-uncertainty 50 --resolution 0 -o delivered.vdb --report correction.json"}},
-      {"Time and memory: a second and 24 bytes for a million voxels with a third of the critical dose.",
+        "--resolution 0 -o delivered.vdb --report correction.json"}},
+      {"Memory: 32 bytes for each voxel with a third of the critical dose, besides the volumes.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, which names new "
        "projections during the print as future work."},
       {"vam-ost", "vam-dose", "vam-optimize", "vam-calibrate", "vam-print"},
