@@ -4,33 +4,10 @@
 # planned, gets new light once it begins to scatter, and ends by it; without a record that fits it goes on until --until.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 . "$VAM_SOURCE/tests/tools/printlib.sh"
-cat >printer.toml <<'TOML'
-[projector]
-columns = 64
-rows = 44
-pixel_mm = 0.2
-axis_column = 31.5
-axis_row = 21.5
-lens_distance_mm = 90
-max_intensity_mw_cm2 = 3
-[vial]
-radius_mm = 6
-wall_mm = 0.5
-[resin]
-index = 1.49
-absorption_per_mm = 0.06
-critical_dose_mj_cm3 = 60
-[stage]
-device = "sim:?acceleration=1000&log=TRUTH"
-speed_deg_s = 60
-[camera]
-device = "aravis:127.0.0.1"
-pixel_mm = 0.2
-index_resin = 1.48
-axis_column = 32.5
-# end of the settings
-TOML
-sed -i "s#TRUTH#$PWD/truth#" printer.toml
+sed -e 's/^max_intensity_mw_cm2.*/max_intensity_mw_cm2 = 3/' \
+  -e "s|^speed_deg_s.*|device = \"sim:?acceleration=1000\&log=$PWD/truth\"\nspeed_deg_s = 60|" \
+  -e 's/^\[camera\]/&\ndevice = "aravis:127.0.0.1"\naxis_column = 32.5/' \
+  "$VAM_SOURCE/tests/tools/curing_printer.toml" >printer.toml
 export VAM_PRINTER=$PWD/printer.toml
 vam-slice --shape gyroid:cell=6,sheet=1.2,diameter=7,height=5 --voxel 0.2 -o part.vdb
 vam-optimize --angles 60 part.vdb -o whole.exr

@@ -5,29 +5,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 export PATH="$VAM_SOURCE/scripts:$VAM_BUILD:$PATH"
 
-cat >printer.toml <<'TOML'
-[projector]
-columns = 64
-rows = 44
-pixel_mm = 0.2
-axis_column = 31.5
-axis_row = 21.5
-lens_distance_mm = 90
-max_intensity_mw_cm2 = 0.9
-[vial]
-radius_mm = 6
-wall_mm = 0.5
-[resin]
-index = 1.49
-absorption_per_mm = 0.06
-critical_dose_mj_cm3 = 60
-[stage]
-speed_deg_s = 20
-[camera]
-pixel_mm = 0.2
-index_resin = 1.48
-# end of the settings
-TOML
+cp "$VAM_SOURCE/tests/tools/curing_printer.toml" printer.toml
 export VAM_PRINTER=$PWD/printer.toml
 bench='voxel=0.2 columns=66 rows=46 views=60'
 vam-slice --shape gyroid:cell=6,sheet=1.2,diameter=7,height=5 --voxel 0.2 -o part.vdb
