@@ -45,6 +45,10 @@ void put(const Vector& vector, SensitivityField& field) {
 }
 Matrix matrix_of(const std::vector<double>& covariance) { return Eigen::Map<const Matrix>(covariance.data()); }
 
+void put_covariance(const Matrix& covariance, SensitivityField& field) {
+  field.covariance.assign(covariance.data(), covariance.data() + covariance.size());
+}
+
 /// The voxels that the fit looks at: a box of the scattering volume.
 struct Sight {
   model::Grid grid;
@@ -239,9 +243,10 @@ struct Attempt {
 template <class Try>
 Vector whole_first(const Vector& start, double wide, const Try& try_at) {
   Attempt best = try_at(start);
-  for (double whole = -wide; whole <= wide; whole += std::max(0.04, wide / 8)) {
+  const int count = std::max(1, floor_int(wide / std::max(0.04, wide / 8)));
+  for (int n = -count; n <= count; ++n) {
     Vector other = start;
-    other[0] += whole;
+    other[0] += n * wide / count;
     const Attempt tried = try_at(other);
     if (tried.cost < best.cost) best = tried;
   }
@@ -331,7 +336,7 @@ SensitivityField expected_sensitivity(const model::Volume& dose, const ScatterCu
   const double critical = curve.critical_sigma_mj_cm3 / curve.critical_dose_mj_cm3;
   covariance(0, 0) = prior.whole * prior.whole + critical * critical;
   covariance(terms, terms) = std::max(prior.axis_px * prior.axis_px, certain * certain);
-  field.covariance.assign(covariance.data(), covariance.data() + numbers * numbers);
+  put_covariance(covariance, field);
   return field;
 }
 
@@ -371,7 +376,7 @@ SensitivityFit fit_sensitivity(const model::Volume& scatter, const model::Volume
   fit.rms = normal.voxels > 0 ? std::sqrt(normal.cost * together / static_cast<double>(normal.voxels)) : 0;
   // Residuals that are larger than their sigmas are of a model that is wrong by as much.
   const Matrix covariance = (normal.matrix / std::max(1.0, fit.rms * fit.rms) + precision).inverse();
-  field.covariance.assign(covariance.data(), covariance.data() + numbers * numbers);
+  put_covariance(covariance, field);
   fit.field = field;
   fit.voxels = normal.voxels;
   fit.explained = nothing > 0 ? std::sqrt(normal.squares / nothing) : 1;
