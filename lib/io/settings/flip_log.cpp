@@ -118,9 +118,11 @@ void FlipLog::go_on(double image_s, std::vector<ShownImage>& shown) const {
   if (flips_.size() < 2 || flips_.back().frame < 0 || flips_[flips_.size() - 2].frame < 0 || !(image_s > 0)) return;
   const double step_deg = flips_.back().angle_deg - flips_[flips_.size() - 2].angle_deg;
   double angle_deg = flips_.back().angle_deg;
-  for (double t_s = flips_.back().t_s + image_s; t_s < *end_s_; t_s += image_s) {
+  double t_s = flips_.back().t_s + image_s;
+  while (t_s < *end_s_) {
     angle_deg += step_deg;
     shown.push_back({angle_deg, std::min(image_s, *end_s_ - t_s)});
+    t_s += image_s;
   }
 }
 
