@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "model/mesh.hpp"
 
@@ -31,10 +32,21 @@ inline void unstretch(model::TriangleSoup& mesh, const Facts& facts) {
 /// The dose at which the projections print, in the unit of the dose.
 inline std::optional<double> threshold_dose(const Facts& facts) { return stated_number(facts, "vam:threshold_dose"); }
 
+/// Throws Fault::data where it is stated, but not above 0 and at most a million.
+inline std::optional<double> stated_positive(const Facts& facts, const std::string& name) {
+  const auto found = facts.find(name);
+  if (found == facts.end()) return std::nullopt;
+  const auto value = parse_number(found->second);
+  constexpr double most = 1e6;
+  if (value && *value > 0 && *value <= most) return value;
+  throw Error{Fault::data, "the projections state " + name + " '" + found->second +
+                               "', which is not above 0 and at most 1e6; compute them again"};
+}
+
 /// The value of a sinogram that is shown at full intensity.
-inline std::optional<double> full_scale(const Facts& facts) { return stated_number(facts, "vam:full_scale"); }
+inline std::optional<double> full_scale(const Facts& facts) { return stated_positive(facts, "vam:full_scale"); }
 
 /// For how many turns it is shown.
-inline std::optional<double> shown_turns(const Facts& facts) { return stated_number(facts, "vam:shown_turns"); }
+inline std::optional<double> shown_turns(const Facts& facts) { return stated_positive(facts, "vam:shown_turns"); }
 
 }  // namespace vam::tool

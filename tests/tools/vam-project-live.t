@@ -115,6 +115,9 @@ vam-dose one.exr --shown renewed --before "$(awk "BEGIN { printf \"%.6f\", $begu
 holds 'in the first second half a turn was shown' "($(json early.json shown_turns) - 0.5) ^ 2 < 0.02 ^ 2"
 fails 65 'no light was shown in this run before that time; check --before' vam-dose one.exr --shown renewed --before 0 --size 2 --set stage.speed_deg_s=180 -o x.vdb
 fails 64 'before: requires --shown|--before requires --shown' vam-dose one.exr --before 0 --size 2 -o x.vdb
+cp one.exr same.exr
+fails 64 'same.exr: is given twice, but its light was delivered once' vam-dose one.exr same.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o x.vdb
+fails 64 'one.exr: is given twice' vam-dose one.exr one.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o x.vdb
 fails 64 'SINOGRAM: several add up only as a print showed them; give its --shown' vam-dose one.exr new/b.exr --size 2 -o x.vdb
 fails 64 'full-scale: renewed showed one.exr at a full scale of 1, not 2; omit it' vam-dose one.exr --shown renewed --full-scale 2 --size 2 --set stage.speed_deg_s=180 -o x.vdb
 # What completes a dose states its scale, its turns and the turn that it is for: taken there, or not at all.
@@ -134,6 +137,8 @@ is 'a print whose projections say for how long' $? 0
 is 'they are for turns two and three' "$(grep -o '"event":"frames",.*' stated | sed 's/.*"turn":\([0-9]*\),.*"full_scale":\([0-9.]*\).*"turns":\([0-9]*\).*/\2 \1 \3/' | tr '\n' ' ')" '0.5 2 2 0.5 3 2 '
 is 'others come too late' "$(grep '"event":"frames-refused"' stated | grep -c 'the frames of turn 1 came too late')" 1
 holds 'and after two turns more it is dark' "$(grep '"frame":[0-9]' stated | tail -n 1 | sed 's/.*"angle_deg":\([0-9.]*\).*/\1/') > 1780 && $(grep '"frame":[0-9]' stated | tail -n 1 | sed 's/.*"angle_deg":\([0-9.]*\).*/\1/') < 1800"
+$exr make nothing.exr space=projector width=64 height=36 count=3 value=0.25 full_scale=-1
+fails 65 "state vam:full_scale '-1', which is not above 0" vam-project nothing.exr --fps 30 -o x.mkv
 vam-project for/turn-2.exr --fps 30 -o stated.mkv --report scale.json
 holds 'a video has that scale, too' "$(json scale.json full_scale) == 0.5"
 

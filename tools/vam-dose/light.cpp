@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "io/exr/stack_batches.hpp"
+#include "io/stream/stream.hpp"
 #include "resin/dither.hpp"
 #include "response.hpp"
 #include "vam-dose/shown.hpp"
@@ -61,6 +63,16 @@ void require_alike(const model::StackInfo& first, const model::StackInfo& info, 
                                ", so that no print can have shown both"};
 }
 
+/// By what is in them, as the log knows them.
+void require_distinct(const std::vector<std::string>& paths) {
+  std::set<std::string> hashes;
+  for (const std::string& path : paths) {
+    if (path == "-") throw Error{Fault::usage, "SINOGRAM: of several each is a file, whose hash is in the log"};
+    if (hashes.insert(io::sha256_of(path)).second) continue;
+    throw Error{Fault::usage, path + ": is given twice, but its light was delivered once; give each sinogram once"};
+  }
+}
+
 }  // namespace
 
 struct Light::Part {
@@ -76,6 +88,7 @@ Light::Light(io::StackReader& first, const model::StackInfo& info, const Options
   if (options.inputs.size() > 1 && options.shown.empty()) {
     throw Error{Fault::usage, "SINOGRAM: several add up only as a print showed them; give its --shown, or one of them"};
   }
+  if (options.inputs.size() > 1) require_distinct(options.inputs);
   const bool projector = info.space == model::Space::projector;
   for (const std::string& path : options.inputs) {
     std::unique_ptr<io::StackReader> own;

@@ -104,7 +104,8 @@ int turn_named(const std::string& path) {
   constexpr std::string_view named = "turn-";
   if (!stem.starts_with(named)) return 0;
   const auto turn = parse_number(stem.substr(named.size()));
-  return turn && *turn > 0 ? round_int(*turn) : 0;
+  constexpr double most = 1e6;
+  return turn && *turn > 0 && *turn <= most ? round_int(*turn) : 0;
 }
 
 std::string hash_of(const std::string& path) { return path == "-" ? "" : io::sha256_of(path); }
