@@ -75,6 +75,7 @@ class Play {
     if (!dark && path != shown_) {
       turn_ = read_turn(path, bench_.printer.projector, full_scale_);
       say({{"event", shown_.empty() ? "sinogram" : "frames"},
+           {"sinogram", path},
            {"sinogram_sha256", io::sha256_of(path)},
            {"full_scale", turn_.full_scale}});
       shown_ = path;
