@@ -137,13 +137,19 @@ Dose read_doses(const std::vector<std::string>& paths, const Options& options, c
   return {std::move(planned), std::move(first)};
 }
 
-metrology::ScatterCurve curve_of(const std::string& path) {
+/// What is made of a file's numbers, where the error does not know its name.
+template <class Make>
+auto of_file(const std::string& path, const Make& make) {
   try {
-    return metrology::scatter_curve(io::sealed_record(path, "vam-working-curve/1"));
+    return make();
   } catch (const Error& error) {
-    if (error.fault != Fault::data || std::string(error.what()).starts_with(path)) throw;
-    throw Error{Fault::data, path + ": " + error.what()};
+    throw Error{error.fault, path + ": " + error.what()};
   }
+}
+
+metrology::ScatterCurve curve_of(const std::string& path) {
+  const Json record = io::sealed_record(path, "vam-working-curve/1");
+  return of_file(path, [&] { return metrology::scatter_curve(record); });
 }
 
 metrology::SensitivityField field_before(const Options& options, const model::Volume& dose,
@@ -152,8 +158,9 @@ metrology::SensitivityField field_before(const Options& options, const model::Vo
   prior.axis_px = options.column_offset_px.value_or(0) > 0 ? options.axis_sigma_px : 0;
   if (options.before.empty()) return metrology::expected_sensitivity(dose, curve, prior);
   const Json report = io::sealed_record(options.before, "vam-correct/1");
-  if (!report.contains("field")) throw Error{Fault::data, options.before + ": has no field of vam-correct"};
-  return carried_on(metrology::sensitivity_field(report.at("field")), prior);
+  return of_file(options.before, [&] {
+    return carried_on(metrology::sensitivity_field(report.value("field", Json::object())), prior);
+  });
 }
 
 void write(const cli::App& app, const std::string& path, const std::string& name, const std::string& units,

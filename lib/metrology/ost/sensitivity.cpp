@@ -424,15 +424,15 @@ std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRang
                                 const CorrectionLimits& limits) {
   const auto percent = [](double part) { return format_number(100 * part, 3) + " %"; };
   std::vector<std::string> found;
-  if (range.sigma > limits.sigma) {
+  if (!(range.sigma <= limits.sigma)) {
     found.push_back("the sensitivity is known to " + percent(range.sigma) + " only, not " + percent(limits.sigma));
   }
-  if (std::max(std::abs(std::log(range.low)), std::abs(std::log(range.high))) > limits.deviation) {
+  if (!(std::abs(std::log(range.low)) <= limits.deviation && std::abs(std::log(range.high)) <= limits.deviation)) {
     found.push_back("the sensitivity is " + format_number(range.low, 3) + " to " + format_number(range.high, 3) +
                     ", beyond " + format_number(std::exp(-limits.deviation), 3) + " to " +
                     format_number(std::exp(limits.deviation), 3));
   }
-  if (fit.rms > limits.rms) {
+  if (!(fit.rms <= limits.rms)) {
     found.push_back("the densities differ from those of any smooth sensitivity by " + format_number(fit.rms, 3) +
                     " standard deviations (RMS), more than " + format_number(limits.rms, 3));
   }
@@ -460,6 +460,10 @@ SensitivityField sensitivity_field(const Json& json) {
   }
   if (count_of(field.covariance) != numbers * numbers) {
     throw Error{Fault::data, "its covariance is not of eleven numbers"};
+  }
+  const bool sized = std::all_of(field.half_mm.begin(), field.half_mm.end(), [](double half) { return half > 0; });
+  if (!sized || matrix_of(field.covariance).llt().info() != Eigen::Success) {
+    throw Error{Fault::data, "its box or covariance is none"};
   }
   return field;
 }

@@ -189,4 +189,12 @@ TEST_CASE("A delivered dose that planned light completes to the critical one is 
   CHECK(copy.value == field.value);
   CHECK(copy.covariance == field.covariance);
   CHECK(fault_of([] { (void)sensitivity_field({{"centre_mm", 3}}); }) == Fault::data);
+  Json none = to_json(field);
+  for (auto& value : none["covariance"]) value = 0;
+  CHECK(fault_of([&] { (void)sensitivity_field(none); }) == Fault::data);
+  none = to_json(field);
+  none["half_mm"][1] = 0;
+  CHECK(fault_of([&] { (void)sensitivity_field(none); }) == Fault::data);
+  const double nan = std::nan("");
+  CHECK(doubts({field, nan, 0, 0}, {nan, nan, nan, nan}, {}).size() == 3);
 }

@@ -1,0 +1,65 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# vam-correct: volumes and a record to the dose that the light for the rest starts from, and what it refuses;
+# tests/lib/metrology judges the fit, vam-renew.t what a print makes of it.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+python3 - <<'PY'
+import math, struct
+def save(path, value, n=24):
+    head = "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, %d), }" % (n, n, n)
+    head += " " * (-(len(head) + 11) % 64) + "\n"
+    with open(path, "wb") as out:
+        out.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode())
+        out.write(struct.pack("<%df" % n ** 3, *(value(i, j, k) for k in range(n) for j in range(n) for i in range(n))))
+def dose(i, j, k):  # ripples about the critical dose
+    return 50 + 15 * math.sin(0.6 * i) * math.cos(0.5 * j) * math.sin(0.5 * k)
+save("dose.npy", dose)
+save("scatter.npy", lambda i, j, k: 0.08 / (1 + math.exp((50 - 0.9 * dose(i, j, k)) / 4)))
+save("clear.npy", lambda i, j, k: 0)
+save("small.npy", dose, 12)
+PY
+volume() { vam-convert $1.npy --voxel 0.2 --grid $2 --value-unit "$3" -o $1.vdb; }
+volume dose dose mJ/cm3; volume small dose mJ/cm3; volume scatter scatter 'view units per mm'; volume clear scatter 'view units per mm'
+vam-convert dose.npy --voxel 0.2 --grid dose --value-unit relative -o relative.vdb
+echo '{"schema":"vam-working-curve/1","isovalue":0.04,"saturation":0.08,"critical_dose_mj_cm3":50,"rate_per_mj_cm3":0.0625}' >curve.json
+correct() { scatter=$1; shift; vam-correct $scatter --curve curve.json --resolution 0 "$@"; }
+quiet 'a resin that needs a ninth more' correct scatter.vdb --acted dose.vdb -o delivered.vdb --sensitivity field.vdb --report report.json
+is 'light may be made' "$(json report.json verdict)" go
+holds 'its sensitivity' "($(json report.json sensitivity_mean) - 0.9) ^ 2 < 0.002 ^ 2 && $(json report.json sensitivity_sigma) < 0.03"
+vam-convert delivered.vdb -o delivered.npy; vam-convert field.vdb -o field.npy
+python3 - >judged <<'PY'
+import struct
+def load(path):
+    data = open(path, "rb").read()
+    size = struct.unpack("<H", data[8:10])[0]
+    return struct.unpack("<%df" % 24 ** 3, data[10 + size:])
+off = max(abs(d - (p + 50 * (1 - 1 / s))) for d, p, s in zip(load("delivered.npy"), load("dose.npy"), load("field.npy")))
+print("%.9f" % off)
+PY
+holds 'the dose that planned light completes' "$(cat judged) < 1e-4"  # floats of 50
+quiet 'the turn after it' correct scatter.vdb --acted dose.vdb --before report.json -o delivered.vdb --report later.json
+holds 'is surer' "$(json later.json sensitivity_sigma) < $(json report.json sensitivity_sigma)"
+
+rm -f none.vdb
+correct clear.vdb --acted dose.vdb -o none.vdb --report held.json 2>said
+is 'a volume in which nothing scatters' "$? $(grep -c 'clear.vdb: the sensitivity is known to .* % only, not 3 %' said)" '1 1'
+is 'doubt is reported, and no dose is written' "$(json held.json verdict) $(ls none.vdb 2>/dev/null)" 'hold '
+fails 1 'sensitivity is 0.9.*, beyond 0.952 to 1.05' correct scatter.vdb --acted dose.vdb --max-factor 1.05 -o none.vdb
+fails 65 "relative.vdb: the dose is in units of 'relative'" correct scatter.vdb --acted relative.vdb -o none.vdb
+fails 64 'acted: is given 3 times, not 1; three need --column-offset' correct scatter.vdb --acted dose.vdb --acted dose.vdb --acted dose.vdb -o none.vdb
+fails 64 'acted: is given 1 times, not 3, as --column-offset requires' correct scatter.vdb --acted dose.vdb --column-offset 1 -o none.vdb
+fails 65 'small.vdb: has other voxels than dose.vdb' correct scatter.vdb --acted dose.vdb --acted small.vdb --acted dose.vdb --column-offset 1 -o none.vdb
+fails 64 'axis-sigma' correct scatter.vdb --acted dose.vdb --axis-sigma 1 -o none.vdb
+fails 66 'absent.vdb' correct absent.vdb --acted dose.vdb -o none.vdb
+fails 65 'curve.json|vam-correct/1' correct scatter.vdb --acted dose.vdb --before curve.json -o none.vdb
+sed 's/"seal".*/"x": 0/; s/"log_terms"/"terms"/' report.json >edited.json
+fails 65 'edited.json: has no field of vam-correct' correct scatter.vdb --acted dose.vdb --before edited.json -o none.vdb
+head -c 2000 scatter.vdb >cut.vdb
+fails 65 'cut.vdb' correct cut.vdb --acted dose.vdb -o none.vdb
+: >empty.json
+fails 65 'empty.json' vam-correct scatter.vdb --curve empty.json --acted dose.vdb -o none.vdb
+echo '{"schema":"vam-working-curve/1","isovalue":0.04,"saturation":0.08}' >half.json
+fails 65 'half.json: rate_per_mj_cm3 is not a number above 0' vam-correct scatter.vdb --curve half.json --acted dose.vdb -o none.vdb
+fails 74 '/dev/full' correct scatter.vdb --acted dose.vdb -o /dev/full
+is 'nothing is left' "$(ls none.vdb 2>/dev/null)" ''
+done_testing
