@@ -19,6 +19,7 @@ namespace vam::metrology {
 struct SensitivityField {
   static constexpr int terms = 10;  // 1, x, y, z, x^2, y^2, z^2, xy, xz, yz
   static constexpr int numbers = terms + 1;
+  static constexpr double certain_px = 1e-6;  // of an axis that is where it is
   using Terms = std::array<double, terms>;
 
   std::array<double, 3> centre_mm{};
