@@ -9,6 +9,7 @@
 namespace {
 
 using namespace vam;
+using calibrate_tool::CriticalDoseOptions;
 using calibrate_tool::ResinOptions;
 using calibrate_tool::ScanOptions;
 using calibrate_tool::WorkingCurveOptions;
@@ -41,6 +42,14 @@ cli::Manual manual() {
        "(vam-dose), and the density of each class over the turns is fitted by a rise at the critical dose, the "
        "saturation and a delay (vam-physics(7), Working curve of scattering). One volume, of the time after the print, "
        "gives all but the delay. Its record is a --resin, too.",
+       "critical-dose determines the dose with which the resin gels at a print's surface: the dose (vam-dose, or "
+       "vam-dose --shown for what was really given) at points spread over the surface of a print that was measured. "
+       "It differs from that of working-curve, which is of the inside of parts: inhibitor diffuses to a surface from "
+       "the resin that is left dark. With --design the report has next_critical_dose_mj_cm3, too: "
+       "resin.critical_dose_mj_cm3, and the difference between the doses at the surfaces of print and design added. "
+       "With it in the printer file the next print is as large as its design. The standard deviations are of eight "
+       "parts of the surface; gradient_mj_cm3_mm is what a millimetre of deviation costs. Status 1: the dose varies by "
+       "more than 20 %, so that the surface does not follow it.",
        "A frame with more than 0.01 % of its pixels (and more than 3) at full scale is refused as over-exposed; the "
        "error states the fraction. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "
@@ -194,7 +203,38 @@ void add_working_curve(cli::App& app, std::string& command, WorkingCurveOptions&
   curve.option("--classes", "N", o.classes, {4, 256}, "Classes of dose.");
 }
 
-void declare(cli::App& app, ScanOptions& o, ResinOptions& resin, WorkingCurveOptions& curve) {
+void add_critical_dose(cli::App& app, std::string& command, CriticalDoseOptions& o) {
+  auto& critical = app.subcommand("critical-dose", "dose with which the resin gels at the surface of a print", command);
+  critical
+      .positional(
+          "PRINT", o.print,
+          "Mesh of the print in the part's frame (vam-ost --mesh, vam-sdf -o), or a volume (VDB) with --isovalue.")
+      .reads();
+  critical.option("--dose", "FILE.vdb", o.dose, "Dose that the print was given, in mJ/cm3 (vam-dose).")
+      .reads()
+      .required();
+  critical
+      .option(
+          "--design", "FILE", o.design,
+          "Mesh of the design in the part's frame, or volume of vam-slice: also find the critical dose that makes the "
+          "next print as large as the design.")
+      .reads();
+  critical.option("-o,--output", "FILE.json", o.record, "Report; - is standard output.");
+  critical.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Value of the volume at the print's surface.")
+      .default_is("required for a volume");
+  cli::add_printer(critical, o.printer);
+}
+
+/// What the commands read.
+struct AllOptions {
+  ScanOptions scan;
+  ResinOptions resin;
+  WorkingCurveOptions curve;
+  CriticalDoseOptions critical;
+};
+
+void declare(cli::App& app, AllOptions& all) {
+  ScanOptions& o = all.scan;
   add_edges(app, o);
   add_response(app, o);
   add_flat(app, o);
@@ -202,17 +242,21 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin, WorkingCurveOpt
   add_axis(app, o);
   add_delays(app, o);
   add_check(app, o);
-  add_resin(app, o.command, resin);
-  add_working_curve(app, o.command, curve);
+  add_resin(app, o.command, all.resin);
+  add_working_curve(app, o.command, all.curve);
+  add_critical_dose(app, o.command, all.critical);
 }
 
-void run(const cli::App& app, const ScanOptions& scan, const ResinOptions& resin, const WorkingCurveOptions& curve) {
-  if (scan.command == "resin") {
-    calibrate_tool::measure_resin(resin);
-  } else if (scan.command == "working-curve") {
-    calibrate_tool::measure_working_curve(curve);
+void run(const cli::App& app, const AllOptions& all) {
+  const std::string& command = all.scan.command;
+  if (command == "resin") {
+    calibrate_tool::measure_resin(all.resin);
+  } else if (command == "working-curve") {
+    calibrate_tool::measure_working_curve(all.curve);
+  } else if (command == "critical-dose") {
+    calibrate_tool::measure_critical_dose(all.critical);
   } else {
-    calibrate_tool::run_scan(app, scan);
+    calibrate_tool::run_scan(app, all.scan);
   }
 }
 
@@ -225,9 +269,7 @@ int main(int argc, char** argv) {
   const int all = tool::follow_script(argc, argv, "all", "vam-calibrate-all");
   if (all >= 0) return all;
   cli::App app(manual());
-  ScanOptions scan;
-  ResinOptions resin;
-  WorkingCurveOptions curve;
-  declare(app, scan, resin, curve);
-  return app.run(argc, argv, [&] { run(app, scan, resin, curve); });
+  AllOptions all_options;
+  declare(app, all_options);
+  return app.run(argc, argv, [&] { run(app, all_options); });
 }

@@ -148,10 +148,10 @@ is "it stops there" "$(value goal.json stopped_by)" goal
 quiet "grey levels" vam-optimize --method fbp --angles 90 --bits 3 --dither 1 part.vdb -o grey.exr
 
 # Interrupted again and again, later each time, until it completes: the same bytes as in one run.
-vam-optimize --angles 90 --iterations 60 --patience 0 --trace whole.csv --report whole.json part.vdb -o whole.exr
-attempt() { timeout -s INT "$1" vam-optimize --angles 90 --iterations 60 --patience 0 --trace parts.csv \
+vam-optimize --angles 60 --iterations 36 --patience 0 --trace whole.csv --report whole.json part.vdb -o whole.exr
+attempt() { timeout -s INT "$1" vam-optimize --angles 60 --iterations 36 --patience 0 --trace parts.csv \
   --report parts.json --checkpoint run.state part.vdb -o parts.exr; }
-for seconds in 0.2 0.3 0.4 0.6 0.9 1.5 3 10 60; do
+for seconds in 0.2 0.3 0.5 0.9 1.5 3 10 60; do
   attempt $seconds && break
   [ -e parts.exr ] && break
 done
@@ -260,7 +260,7 @@ fails 64 '--budget: does not apply to --checkpoint' vam-optimize --budget 10 --c
 
 # Printers off their settings.
 off='axis=2px,index=0.02,angle=1deg,radius=0.5%,lamp=2%,psf=0.1mm'
-robust() { vam-optimize --angles 60 --iterations 24 --robust "$off" --yield-printers 8 "$@"; }
+robust() { vam-optimize --angles 60 --iterations 16 --robust "$off" --yield-printers 8 "$@"; }
 quiet "for printers off their settings" robust --report robust.json --threads 1 coarse.vdb -o robust.exr
 is "each tolerance is judged" "$(grep -c margin_of_threshold robust.json)" 13
 is "a yield is reported" "$(grep -c '"yield": ' robust.json)" 1
@@ -270,7 +270,7 @@ is "1 and 2 threads give the same pixels for them" \
   "$(tail -c 200000 robust.exr | cksum)" "$(tail -c 200000 again.exr | cksum)"
 same "and the same report" robust.json again.json
 for seconds in 0.3 0.5 0.8 1.2 2 4 60; do
-  timeout -s INT $seconds vam-optimize --angles 60 --iterations 24 --robust "$off" --yield-printers 8 --report parts.json \
+  timeout -s INT $seconds vam-optimize --angles 60 --iterations 16 --robust "$off" --yield-printers 8 --report parts.json \
     --checkpoint robust.state coarse.vdb -o robust-parts.exr && break
   [ -e robust-parts.exr ] && break
 done

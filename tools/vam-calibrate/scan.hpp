@@ -57,6 +57,16 @@ struct WorkingCurveOptions {
   int classes = 16;
 };
 
+/// critical-dose: a print that was measured, and the dose that it was given.
+struct CriticalDoseOptions {
+  std::string print;
+  std::string dose;
+  std::string design;  // none: only the dose at the print's surface
+  std::string record = "-";
+  std::optional<double> isovalue;
+  cli::PrinterOptions printer;
+};
+
 /// Throws as the scan does, Fault::judged when its result must not be used.
 void run_scan(const cli::App& app, const ScanOptions& options);
 
@@ -65,6 +75,10 @@ void measure_resin(const ResinOptions& options);
 
 /// Writes scattering against dose as a resin record. Throws Error: usage, no_input, data, no_output.
 void measure_working_curve(const WorkingCurveOptions& options);
+
+/// Writes the dose at the surface of a print. Throws Error: usage, no_input, data, no_output; judged where the surface
+/// does not follow the dose.
+void measure_critical_dose(const CriticalDoseOptions& options);
 
 // ---- frames.cpp: which pattern frame each camera frame shows
 

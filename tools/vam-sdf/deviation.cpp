@@ -21,6 +21,7 @@
 #include "plot/save.hpp"
 #include "solid/mesh/align.hpp"
 #include "solid/mesh/signed_distance.hpp"
+#include "surface.hpp"
 #include "vam-sdf/figure_names.hpp"
 #include "vam-sdf/options.hpp"
 #include "vam-sdf/pose.hpp"
@@ -144,7 +145,7 @@ void deviation(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--isovalue, --resin: both determine the isovalue of the print; give only one"};
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
-  const model::TriangleSoup design_mesh = read_surface(options.design, options.design_isovalue);
+  const model::TriangleSoup design_mesh = tool::read_surface(options.design, options.design_isovalue);
   PrintSurface surface = read_print(options, isovalue);
   model::TriangleSoup& print = surface.mesh;
   const auto& bodies = surface.bodies;

@@ -64,10 +64,6 @@ struct TrendOptions {
   std::string report;
 };
 
-/// A mesh as it is, or the surface of a volume at `isovalue`, in the frame of the part: vam-slice's stretch in z
-/// undone.
-[[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue);
-
 /// A print: without the bodies that are too small to belong to it (metrology::keep_bodies), which are counted; a mesh
 /// stays as it is.
 struct PrintSurface {

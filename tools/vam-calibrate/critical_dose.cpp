@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// vam-calibrate critical-dose: the dose with which the resin gels at the surface of a print.
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "facts.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/settings/report.hpp"
+#include "io/vdb/vdb.hpp"
+#include "metrology/compare/surface_dose.hpp"
+#include "surface.hpp"
+#include "vam-calibrate/scan.hpp"
+
+namespace vam::calibrate_tool {
+
+namespace {
+
+constexpr double design_isovalue = 0.5;  // of coverage
+constexpr double most_spread = 0.2;      // of the dose
+
+}  // namespace
+
+void measure_critical_dose(const CriticalDoseOptions& options) {
+  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  const io::SparseVolume sparse = io::read_volume(options.dose, "dose");
+  if (sparse.units != "mJ/cm3") {
+    throw Error{Fault::data,
+                options.dose + ": its doses are " + sparse.units +
+                    ", not mJ/cm3; set resin.absorption_per_mm and resin.critical_dose_mj_cm3 for vam-dose"};
+  }
+  const model::Volume dose = io::dense_volume(sparse);
+  const double stretch_z = tool::stretch_z(sparse.metadata);
+  const auto at_print = metrology::surface_dose(tool::read_surface(options.print, options.isovalue), dose, stretch_z);
+  Json figures = metrology::to_json(at_print);
+  const double middle = at_print.critical_dose_mj_cm3.value;
+  if (!options.design.empty()) {
+    if (!printer.resin.critical_dose_mj_cm3) {
+      throw Error{Fault::usage, "--design: requires resin.critical_dose_mj_cm3, with which the print was planned"};
+    }
+    const auto at_design =
+        metrology::surface_dose(tool::read_surface(options.design, design_isovalue), dose, stretch_z);
+    const double designed = at_design.critical_dose_mj_cm3.value;
+    figures["design_dose_mj_cm3"] = designed;
+    figures["next_critical_dose_mj_cm3"] = *printer.resin.critical_dose_mj_cm3 + middle - designed;
+    figures["next_critical_dose_sigma_mj_cm3"] =
+        std::hypot(at_print.critical_dose_mj_cm3.sigma, at_design.critical_dose_mj_cm3.sigma);
+  }
+  io::write_report(options.record, "vam-critical-dose/1", figures);
+  if (at_print.spread_mj_cm3 > most_spread * middle) {
+    throw Error{Fault::judged, "the dose at the print's surface varies by " + format_number(at_print.spread_mj_cm3, 3) +
+                                   " of " + format_number(middle, 3) +
+                                   " mJ/cm3, so that it is no surface of this dose; check how the print is aligned"};
+  }
+}
+
+}  // namespace vam::calibrate_tool
