@@ -33,6 +33,14 @@ cli::Manual manual() {
        "greatest column.",
        "beam: either a bare sensor is moved along the beam, with one frame per plane, or, with --side, the camera "
        "beside the vial sees one lit row in fluorescent resin, where each image column is a different plane.",
+       "registration brings a print, as the camera saw it in the vial, onto its design and so determines where the "
+       "camera stands to the projector: camera.azimuth_deg, axis_row and, where it is wrong by more than two standard "
+       "deviations, pixel_mm. The standard deviations are from 16 parts of the surface; a fifth of a pixel is added "
+       "for "
+       "the scale. The print must be near already (a few degrees, a fifth of its size), not round and not "
+       "alike at all heights. A displacement across the axis is reported, which no setting of the camera explains. "
+       "What a print is larger all around, as by its exposure, is told from the scale by its different dimensions "
+       "(outside_mm); in the vial it has not shrunk yet.",
        "resin determines the gelation threshold I_p from the scattering volume of a printed standard cylinder "
        "(vam-ost): the threshold at which its cross-section, averaged over its height, has the known diameter. Its "
        "record is the --resin of vam-ost and vam-sdf.",
@@ -167,6 +175,22 @@ void add_delays(cli::App& app, ScanOptions& o) {
       o, Flips::required);
 }
 
+void add_registration(cli::App& app, ScanOptions& o) {
+  auto& scan =
+      app.subcommand("registration", "height, angle and scale of the camera in the projector's frame", o.command);
+  scan.positional("PRINT", o.from,
+                  "Scattering volume of a print (vam-ost), as it stands in the vial, with --isovalue; or its mesh.")
+      .reads();
+  scan.option("--design", "FILE", o.design,
+              "Volume of vam-slice from which it was printed, or mesh in the part's frame.")
+      .reads()
+      .required();
+  scan.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Value of the volume at the print's surface.")
+      .default_is("required for a volume");
+  scan.option("--devices", "FILE", o.devices, "Identities of the devices in use, for the record.");
+  cli::add_printer(scan, o.printer);
+}
+
 void add_check(cli::App& app, ScanOptions& o) {
   auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);
   check.option("--need", "SCANS", o.needed, "Scans whose records are required, separated by commas.");
@@ -241,6 +265,7 @@ void declare(cli::App& app, AllOptions& all) {
   add_beam(app, o);
   add_axis(app, o);
   add_delays(app, o);
+  add_registration(app, o);
   add_check(app, o);
   add_resin(app, o.command, all.resin);
   add_working_curve(app, o.command, all.curve);

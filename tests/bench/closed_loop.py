@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Is a print that corrects itself better than one that is stopped at its best moment? Simulated prints without a clock.
 
-    python3 tests/bench/closed_loop.py [--build BUILD] [--seeds N] [--jobs N] [--nominal] [--unjudged]
-                                        [--keep FOLDER] [--table CSV]
+    python3 tests/bench/closed_loop.py [--seeds N] [--jobs N] [--nominal] [--drift] [--unjudged] [--keep FOLDER]
+                                       [--table CSV] [BUILD]
 
 The plan knows nothing of what is wrong with each printer: a lamp 20 % weaker (with --drift, one that becomes so),
 a resin that inhibits 15 % more at one end of the vial, absorbs 30 % more, and stands with its axis 0.2 mm to one side.
@@ -202,7 +202,7 @@ def write_table(path, trials):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--build", default="build/release")
+    parser.add_argument("build", nargs="?", default="build/release")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--unjudged", action="store_true")

@@ -67,6 +67,13 @@ ok "a coloured mesh" vam-view blue.ply -o blue.png
 holds "in blue" "$($png get blue.png 420 420 | awk '{ print ($1 < 5 && $2 < 5 && $3 > 80) }')"
 printf '%s\n' iteration,ver,pw 1,0.1,-0.2 2,0.05,-0.1 3,0,0.02 >trace.csv
 ok "a trace" vam-view trace.csv -o trace.svg
+printf '%s\n' turn,open_loop_mm,closed_loop_mm 10,0.4,0.4 11,0.2,0.1 12,0.1,0.03 >table.csv
+ok "any table" vam-view table.csv -o table.svg
+printf '%s\n' 1,2 2,3 >bare.csv
+fails 65 'bare.csv:1: no header' vam-view bare.csv -o x.png
+fails 65 'no trace' vam-view table.csv --compare table.csv -o x.png
+printf '%s\n' a,b,c,d,e,f 1,2,3,4,5,6 >wide.csv
+fails 65 'has 6 columns' vam-view wide.csv -o x.png
 ok "two traces" vam-view trace.csv --compare trace.csv -o traces.png
 fails 64 'exclude each other' vam-view wider.vdb --target small.vdb --cure-map --render -o x.png
 fails 64 'requires --cure-map' vam-view wider.vdb --threshold 1 -o x.png

@@ -13,6 +13,7 @@
 #include "io/image/capture_folder.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-calibrate/scan.hpp"
 
@@ -40,7 +41,8 @@ std::string hash_of(const std::string& path) {
 
 Json hashes(const ScanOptions& options) {
   Json json = Json::object();
-  for (const auto& path : {options.from, options.reverse, options.angles, options.flips, options.dark}) {
+  for (const auto& path :
+       {options.from, options.reverse, options.angles, options.flips, options.dark, options.design}) {
     if (!path.empty() && path != "-") json[fs::path(path).filename().string()] = hash_of(path);
   }
   return json;
@@ -71,6 +73,8 @@ bool is_simulated(const std::string& frames, const Json& facts) {
     const Json head = Json::parse(io::read_manifest(frames).head);
     return head.value("camera", Json::object()).contains("simulated");
   }
+  const auto type = io::known_file_type(frames);
+  if (!type || *type == io::FileType::volume) return false;  // the print of a registration
   const auto history = io::ViewSource(frames, 1).history();
   return std::find(history.begin(), history.end(), "frames of a simulated camera") != history.end();
 }

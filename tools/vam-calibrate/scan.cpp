@@ -18,7 +18,7 @@ using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
 const std::map<std::string, Scan>& scans() {
   static const std::map<std::string, Scan> all{
       {"edges", scan_edges}, {"response", scan_response}, {"flat", scan_flat}, {"beam", scan_beam},
-      {"axis", scan_axis},   {"latency", scan_latency},   {"lag", scan_lag}};
+      {"axis", scan_axis},   {"latency", scan_latency},   {"lag", scan_lag},   {"registration", scan_registration}};
   return all;
 }
 
@@ -26,7 +26,9 @@ const std::map<std::string, Scan>& scans() {
 
 void run_scan(const cli::App& app, const ScanOptions& options) {
   const std::string& command = options.command;
-  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
+  // A print was reconstructed with the records in force.
+  const auto records = command == "registration" ? io::Records::apply : io::Records::ignore;
+  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, records);
   if (command == "check") return check_records(options, printer);
   // The axis in the camera's image, as measured before.
   const auto axis_record = io::current_record(printer.calibration, "axis");

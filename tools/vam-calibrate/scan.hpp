@@ -34,6 +34,8 @@ struct ScanOptions {
   std::optional<double> step_deg;           // axis: frames without recorded angles
   std::string devices;                      // identities of the devices in use
   std::vector<std::string> needed;          // check: lists of scans
+  std::string design;                       // registration
+  std::optional<double> isovalue;           // of the print's surface in its volume
   cli::PrinterOptions printer;
 };
 
@@ -131,6 +133,7 @@ class Finding;
 [[nodiscard]] Finding scan_lag(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_latency(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_beam(const ScanOptions& options, const model::Printer& printer);
+[[nodiscard]] Finding scan_registration(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_flat(const ScanOptions& options, const model::Printer& printer);
 inline constexpr double wanted_axis_sigma_px = 0.1;   // of an axis, the vial's or the camera's
 inline constexpr double wanted_delay_sigma_ms = 0.5;  // of a delay, the camera's or the projector's

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The trace of an optimisation.
+// The trace of an optimisation, or another table, as curves.
 #pragma once
 
 #include "plot/plot.hpp"
@@ -7,7 +7,7 @@
 
 namespace vam::view_tool {
 
-/// Of the input, and of that of --compare.
+/// Of the input, and of a trace also that of --compare.
 [[nodiscard]] plot::Plot trace_plot(const Options& options);
 
 }  // namespace vam::view_tool

@@ -113,7 +113,12 @@ constexpr ScanKind scans[] = {
      [](model::Printer& printer, const CalibrationRecord& record) {
        printer.projector.latency_ms = record.value("latency");
      }},
-    {"lag", false, take_over_lag}};
+    {"lag", false, take_over_lag},
+    {"registration", false, [](model::Printer& printer, const CalibrationRecord& record) {
+       printer.camera.azimuth_deg = record.value("azimuth");
+       printer.camera.axis_row = record.value("axis_row");
+       if (record.json->at("values").contains("pixel")) printer.camera.pixel_mm = record.value("pixel");
+     }}};
 
 // What a record sets is held to the ranges of the printer file, and the axis to the image.
 void require_possible(model::Printer printer, const CalibrationRecord& record) {

@@ -16,7 +16,7 @@
 
 namespace vam::io {
 
-/// edges, response, flat, beam, axis, latency, lag: the order in which their records are taken over.
+/// edges, response, flat, beam, axis, latency, lag, registration: the order in which their records are taken over.
 [[nodiscard]] const std::vector<std::string>& calibration_scans();
 
 /// The path of a new file that belongs to the record, "FOLDER/cal-INSTRUMENT-SCAN-UTC" + ending. Makes the folder.
@@ -55,7 +55,7 @@ void apply_record(model::Printer& printer, const CalibrationRecord& record);
 
 /// Takes over what the current records say: projector.axis_column and vial.radius_mm (edges), projector.response
 /// (response), projector.latency_ms (latency), camera.axis_column and tilt_deg (axis), camera.flat (flat),
-/// camera.lag_ms (lag). The beam is for people. Nothing without calibration.folder. Throws Fault::data with the
+/// camera.lag_ms (lag), camera.azimuth_deg, axis_row and pixel_mm (registration). The beam is for people. Nothing without calibration.folder. Throws Fault::data with the
 /// first objection.
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s);
 

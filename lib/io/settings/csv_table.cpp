@@ -76,15 +76,18 @@ CsvTable read_csv(const std::string& path, const std::vector<std::string>& colum
       const bool numbers = std::all_of(cells.begin(), cells.end(),
                                        [](const std::string& cell) { return parse_number(cell).has_value(); });
       for (std::size_t i = 0; numbers && i < columns.size(); ++i) places.push_back(i);
+      if (numbers && columns.empty()) throw Error{Fault::data, place + ": no header; the first line names the columns"};
       if (!numbers) {
-        places = places_of(cells, columns, place);
+        if (columns.empty()) table.columns = cells;
+        places = places_of(cells, table.columns, place);
         continue;
       }
     }
     std::vector<std::string>& row = table.rows.emplace_back();
     for (const std::size_t at : places) {
       if (at >= cells.size()) {
-        throw Error{Fault::data, place + ": " + std::to_string(cells.size()) + " cells; give " + join(columns, ",")};
+        throw Error{Fault::data,
+                    place + ": " + std::to_string(cells.size()) + " cells; give " + join(table.columns, ",")};
       }
       row.push_back(cells[at]);
     }

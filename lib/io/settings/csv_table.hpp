@@ -19,7 +19,8 @@ struct CsvTable {
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;
 };
 
-/// Reads the named columns, in whatever order the header has them; further columns are ignored. Lines that are empty or
+/// Reads the named columns, in whatever order the header has them; further columns are ignored. Without names, all that
+/// the header has, which must be there. Lines that are empty or
 /// begin with # are skipped. A file whose first line is all numbers has no header: its columns are taken in the order
 /// given here. former: old names of columns and the present ones, read with a warning. "-" is stdin. Throws Error:
 /// no_input, io, data (a column missing, a row too short, no rows).

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "metrology/calibrate/registration.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/stats/median.hpp"
+#include "base/text.hpp"
+#include "solid/mesh/align.hpp"
+#include "solid/mesh/surface_samples.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+constexpr int samples = 20000;
+constexpr std::size_t parts = 16;  // two by two by four
+constexpr double deg_per_rad = 180 / std::numbers::pi;
+
+std::vector<std::size_t> parts_of(const std::vector<solid::SurfaceSample>& points) {
+  Vector3 low = points.front().point;
+  Vector3 high = low;
+  for (const auto& one : points) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], one.point[d]);
+      high[d] = std::max(high[d], one.point[d]);
+    }
+  }
+  const auto cell = [&](const Vector3& at, std::size_t d, double count) {
+    const double place = count * (at[d] - low[d]) / std::max(high[d] - low[d], 1e-9);
+    return static_cast<std::size_t>(std::clamp(place, 0.0, count - 1));
+  };
+  std::vector<std::size_t> part;
+  for (const auto& one : points) {
+    part.push_back((cell(one.point, 0, 2) * 2 + cell(one.point, 1, 2)) * 4 + cell(one.point, 2, 4));
+  }
+  return part;
+}
+
+/// By what share of its way a turn about the axis, or a shift along it, moves the surface along its normals: 0 where it
+/// slides on itself. The facets of a round surface leave some 0.001.
+struct Grip {
+  double turn = 0;
+  double shift = 0;
+};
+
+Grip grip_of(const std::vector<solid::SurfaceSample>& points, const Vector3& middle) {
+  double moved = 0;
+  double way = 0;
+  double lifted = 0;
+  for (const auto& [point, normal, triangle] : points) {
+    const double x = point[0] - middle[0];
+    const double y = point[1] - middle[1];
+    moved += std::pow(normal[1] * x - normal[0] * y, 2);
+    way += x * x + y * y;
+    lifted += normal[2] * normal[2];
+  }
+  return {moved / std::max(way, 1e-12), lifted / static_cast<double>(points.size())};
+}
+
+/// x -> x + turn x (x - middle) + shift + growth (x - middle), and how far the surface lies outside by itself: too much
+/// light, or an isovalue that is not the gel's, are no scale.
+enum Component : int { turn_x, turn_y, turn_z, shift_x, shift_y, shift_z, growth, outside, components };
+using Motion = Eigen::Matrix<double, components, 1>;
+
+Motion row_of(const solid::SurfaceSample& sample, const Vector3& middle) {
+  const Vector3 at = sample.point - middle;
+  const Vector3 turn = cross(at, sample.normal);
+  Motion row;
+  row << turn[0], turn[1], turn[2], sample.normal[0], sample.normal[1], sample.normal[2], dot(at, sample.normal), -1;
+  return row;
+}
+
+struct Fit {
+  Motion motion = Motion::Zero();
+  Motion variance = Motion::Zero();  // by parts of the surface, whose errors are independent
+};
+
+using Normal = Eigen::Matrix<double, components, components>;
+
+/// Edges that the camera or the resin has rounded lie far out: weights of [BT74], from the median of what is left.
+std::vector<double> weights_of(const std::vector<solid::SurfaceSample>& points, const std::vector<float>& distances,
+                               const Vector3& middle, const Motion& motion) {
+  std::vector<double> left;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    left.push_back(std::abs(static_cast<double>(distances[i]) + row_of(points[i], middle).dot(motion)));
+  }
+  constexpr double reach = 4.685 * 1.4826;  // in medians
+  const double limit = std::max(reach * stats::median(left), 1e-9);
+  for (double& one : left) one = one < limit ? std::pow(1 - one * one / (limit * limit), 2) : 0.0;
+  return left;
+}
+
+Fit fit(const std::vector<solid::SurfaceSample>& points, const std::vector<float>& distances, const Vector3& middle) {
+  const std::vector<std::size_t> part = parts_of(points);
+  Fit result;
+  constexpr int rounds = 8;
+  for (int round = 0; round < rounds; ++round) {
+    const auto weights = weights_of(points, distances, middle, result.motion);
+    Normal normal = Normal::Zero();
+    Motion right = Motion::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Motion row = row_of(points[i], middle);
+      normal += weights[i] * row * row.transpose();
+      right -= weights[i] * static_cast<double>(distances[i]) * row;
+    }
+    const Eigen::CompleteOrthogonalDecomposition<Normal> solver(normal);
+    result.motion = solver.solve(right);
+    std::array<Motion, parts> errors;
+    errors.fill(Motion::Zero());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Motion row = row_of(points[i], middle);
+      errors[part[i]] -= weights[i] * (static_cast<double>(distances[i]) + row.dot(result.motion)) * row;
+    }
+    result.variance.setZero();
+    for (const Motion& one : errors) result.variance += solver.solve(one).cwiseAbs2();
+  }
+  return result;
+}
+
+}  // namespace
+
+Registration registration(const model::TriangleSoup& print, const solid::Surface& design, double pixel_mm) {
+  const solid::Alignment found = solid::refine(print, design, {.with_scale = true, .samples = samples});
+  const solid::Similarity& pose = found.transform;
+  auto points = solid::sample_surface(print, samples);
+  std::vector<Vector3> places;
+  Vector3 middle{};
+  for (auto& one : points) {
+    one.point = pose(one.point);
+    one.normal = {dot(pose.rotation[0], one.normal), dot(pose.rotation[1], one.normal),
+                  dot(pose.rotation[2], one.normal)};
+    places.push_back(one.point);
+    middle = middle + (1.0 / static_cast<double>(points.size())) * one.point;
+  }
+  const auto [motion, variance] = fit(points, design.signed_distances(places), middle);
+  const auto sigma = [&, &spread = variance](Component c) { return std::sqrt(spread[c]); };
+  const int n = static_cast<int>(points.size());
+  Registration result;
+  result.angle_deg = {deg_per_rad * (std::atan2(pose.rotation[1][0], pose.rotation[0][0]) + motion[turn_z]),
+                      deg_per_rad * sigma(turn_z), n};
+  double reach_mm = 0;
+  for (const Vector3& one : places) reach_mm += length(one - middle) / static_cast<double>(n);
+  constexpr double surface_px = 0.2;  // by which faces of unlike directions lie unlike in a reconstruction
+  const double growth_sigma = std::hypot(sigma(growth), surface_px * pixel_mm / reach_mm);
+  result.scale = {pose.scale * (1 + motion[growth]), pose.scale * growth_sigma, n};
+  // The height of the origin, to which the growth about the middle adds.
+  result.z_mm = {pose.shift_mm[2] * (1 + motion[growth]) + motion[shift_z] - motion[growth] * middle[2],
+                 std::hypot(sigma(shift_z), middle[2] * growth_sigma), n};
+  result.aside_mm = std::hypot(pose.shift_mm[0] + motion[shift_x], pose.shift_mm[1] + motion[shift_y]);
+  result.tilt_deg = deg_per_rad * std::acos(std::clamp(pose.rotation[2][2], -1.0, 1.0));
+  result.outside_mm = motion[outside];
+  result.rms_mm = found.rms_mm;
+  constexpr double least_grip = 0.01;
+  const Grip grip = grip_of(points, middle);
+  if (!found.converged) {
+    result.failure = "the print was not brought onto the design in " + std::to_string(found.iterations) + " iterations";
+  } else if (grip.turn < least_grip) {
+    result.failure = "the part is round about its axis, so that its angle cannot be found; take another part";
+  } else if (grip.shift < least_grip) {
+    result.failure = "the part has no faces across the axis, so that its height cannot be found; take another part";
+  }
+  return result;
+}
+
+}  // namespace vam::metrology
