@@ -175,6 +175,10 @@ std::vector<std::string> notes() {
       "256 voxels at 360 angles then take 3 s on two cores. Otherwise identical slices are computed once. A parallel "
       "beam gives the same dose from either side, so for an even number of angles half of them are computed and "
       "mirrored.",
+      "Where rays climb, all methods share one scale, one step and one goal among all slices. The light of halves of a "
+      "gyroid and of a boat that were optimised apart (osmo, pm, apg; 8 iterations) differs from that of the whole by "
+      "0.09 to 1 of the peak (largest value; RMS 0.0007 to 0.03), with 32 slices of the other half around each by 0.1 "
+      "to 1 (RMS 0.001 to 0.03). --slices is therefore refused there.",
       "Memory: three arrays of a slice and three of a sinogram's lit columns each (apg: seven and three), with "
       "--patience one more of the latter, 4 bytes per "
       "value, of all slices if they are coupled, else of 64 slices at a time, plus 0.2 GiB and at most 512 MiB for "

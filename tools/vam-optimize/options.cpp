@@ -284,8 +284,9 @@ void declare(cli::App& app, Options& options) {
       "Compute these slices only, counted from 0 at the bottom: FROM to TO - 1 as FROM:TO, or the I-th of N "
       "similar shares as I/N, which begin at multiples of 64. vam-stack joins such pieces to the stack of the whole "
       "part, with the same images and attributes. "
-      "For level rays (projector.telecentric, --geometry parallel), as rays that climb couple all slices. The "
-      "report describes these slices. Does not apply to options that need the whole part: --preview, --budget, "
+      "For level rays (projector.telecentric, --geometry parallel): rays that climb couple all slices (IMPLEMENTATION "
+      "NOTES). The report describes these slices. Does not apply to options that need the whole part: --preview, "
+      "--budget, "
       "--robust, --tradeoff, --certify, --bits, --poses, --helix, --wobble-record.");
   cli::add_report(app, options.report);
   cli::add_stack_output(app, options.stack.half, options.stack.compression);

@@ -86,11 +86,13 @@ model::StackInfo written_info(const model::StackInfo& whole, const std::optional
 
 void require_independent(const optimize::VolumeTask& task, const light::Operator& light) {
   if (!task.slices || !optimize::takes_whole(task, light)) return;
-  throw Error{Fault::usage,
-              light.couples_slices()
-                  ? "--slices: rays that climb couple all slices, which are optimised together; omit it, or use level "
-                    "rays (projector.telecentric, --geometry parallel)"
-                  : "--slices: the dose is blurred farther than 16 slices, so all are optimised together; omit it"};
+  throw Error{
+      Fault::usage,
+      light.couples_slices()
+          ? "--slices: rays that climb couple all slices, and light of a piece differs from that of the whole part "
+            "by a tenth of the peak or more, however many slices around it are known; omit it, or use level rays "
+            "(projector.telecentric, --geometry parallel)"
+          : "--slices: the dose is blurred farther than 16 slices, so all are optimised together; omit it"};
 }
 
 namespace {
