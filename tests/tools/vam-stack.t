@@ -31,6 +31,23 @@ vam-stack frames.exr -o all.exr && vam-stack frames.exr --slices 0:1 -o f1.exr &
 vam-stack f1.exr f2.exr -o f.exr
 same 'frames are cut and joined, too' all.exr f.exr
 
+# ---- memory: 0.5 kB for each image -----------------------------------------------------------------------------------
+vam-slice --shape cylinder:diameter=0.25,height=360 --voxel 0.018 --any-height --stretch-z 1 2>/dev/null |
+  vam-sinogram --angles 24 -o tall.exr
+peak() {  # peak COMMAND...: its peak RSS in KiB
+  python3 -c 'import os, sys
+pid = os.spawnvp(os.P_NOWAIT, sys.argv[1], sys.argv[1:])
+_, status, usage = os.wait4(pid, 0)
+print(usage.ru_maxrss if status == 0 else "failed")' "$@"
+}
+if sanitized; then
+  echo '# the memory of a sanitizer is not measured'
+else
+  low=$(peak vam-stack tall.exr --slices 0:1000 -o low.exr) high=$(peak vam-stack tall.exr -o all.exr)
+  same '20000 images are copied' tall.exr all.exr
+  [ $((high - low)) -le $((19000 / 2)) ]; report $? "in memory that hardly grows with them: $low and $high KiB"
+fi
+
 # ---- what is no stack together ---------------------------------------------------------------------------------------
 fails 65 "^vam-stack: a.exr: holds images 0:20 of $n; name the other pieces, too, or choose some of these by --slices" vam-stack a.exr -o x.exr
 fails 65 'c.exr: holds images 30:40, but the pieces before it end at 20; the piece in between is missing' vam-stack a.exr c.exr -o x.exr

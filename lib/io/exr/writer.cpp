@@ -69,7 +69,10 @@ struct StackWriter::State {
 
   void put(const Image& image, const ImageInfo& own);
   void settle(const ImageInfo& own);
-  [[nodiscard]] std::string head() const;
+  template <class Take>
+  void for_head(const Take& take) const;
+  [[nodiscard]] std::size_t count_head() const;
+  [[nodiscard]] std::uint64_t offset(std::size_t chunk) const;
   void flush();
   void send(const std::string& bytes);
   void finish();
@@ -79,8 +82,9 @@ struct StackWriter::State {
   std::vector<ImageInfo> about;
   Imf::PixelType type;
   Imf::Compression compression;
-  std::vector<std::uint64_t> offsets;  // of every chunk of every part, from the start of the file
-  std::uint64_t position = 0;          // of the next chunk
+  std::vector<std::uint64_t>
+      offsets;                 // of every chunk of every part, from the start of the file; empty: not compressed
+  std::uint64_t position = 0;  // of the next chunk
   std::size_t head_bytes = 0;
   std::vector<Digest> seals;  // of the values, a part
   bool trailing = false;      // they follow the pixels
@@ -110,8 +114,11 @@ StackWriter::State::State(const std::string& path, const StackInfo& stack, std::
   }
 }
 
-// Magic, version, all headers and all tables: all that stands before the first chunk.
-std::string StackWriter::State::head() const {
+// Magic, version, all headers and all tables: all that stands before the first chunk. It is handed on by the MiB, as
+// 50,000 images have 60 MiB of headers and, with 360 rows each, 140 MiB of tables.
+template <class Take>
+void StackWriter::State::for_head(const Take& take) const {
+  constexpr std::size_t block = std::size_t{1} << 20U;
   const int chunks = exr::chunk_count(info.height, compression);
   Imf::Header header = exr::layout_header(info.width, info.height, type, compression);
   header.setType(Imf::SCANLINEIMAGE);
@@ -122,16 +129,38 @@ std::string StackWriter::State::head() const {
     if (name.size() > 31) flags |= exr::long_names_flag;
   }
   std::string bytes;
+  const auto hand_on = [&](std::size_t from) {
+    if (bytes.size() < from) return;
+    take(bytes);
+    bytes.clear();
+  };
   exr::append(bytes, exr::magic);
   exr::append(bytes, flags);
   for (int i = 0; i < info.count; ++i) {
     exr::set_own(header, info, i, about[i]);
     exr::set_seals(header, exr::facts_digest(info, i, about[i]), trailing ? std::nullopt : std::optional(seals[i]));
     bytes += exr::serialize(header);
+    hand_on(block);
   }
   bytes += '\0';
-  bytes.append(reinterpret_cast<const char*>(offsets.data()), offsets.size() * sizeof(offsets[0]));
-  return bytes;
+  for (std::size_t chunk = 0; chunk < about.size() * static_cast<std::size_t>(chunks); ++chunk) {
+    exr::append(bytes, offset(chunk));
+    hand_on(block);
+  }
+  hand_on(1);
+}
+
+std::size_t StackWriter::State::count_head() const {
+  std::size_t size = 0;
+  for_head([&](const std::string& bytes) { size += bytes.size(); });
+  return size;
+}
+
+/// Where a chunk stands. Those that are not compressed are of one size.
+std::uint64_t StackWriter::State::offset(std::size_t chunk) const {
+  if (!offsets.empty()) return offsets[chunk];
+  const std::size_t pixel = type == Imf::HALF ? 2 : sizeof(float);
+  return head_bytes + chunk * (12 + static_cast<std::uint64_t>(info.width) * pixel);
 }
 
 // The first image settles which facts the headers hold; their values can still be filled in later where the output can
@@ -144,23 +173,19 @@ void StackWriter::State::settle(const ImageInfo& own) {
     each.has_time = own.has_time;
     each.has_number = own.has_number;
   }
-  const auto chunks = static_cast<std::size_t>(exr::chunk_count(info.height, compression));
-  offsets.resize(chunks * about.size());
+  if (compression != Imf::NO_COMPRESSION) {
+    offsets.resize(static_cast<std::size_t>(exr::chunk_count(info.height, compression)) * about.size());
+  }
   seals.resize(about.size());
   trailing = out.is_stream() && !late_facts;
-  head_bytes = head().size();
+  head_bytes = count_head();
   position = head_bytes;
-  if (out.is_stream()) {
-    const std::size_t pixel = type == Imf::HALF ? 2 : sizeof(float);
-    const std::uint64_t chunk_bytes = 12 + static_cast<std::uint64_t>(info.width) * pixel;
-    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = head_bytes + i * chunk_bytes;
-  }
   if (out.is_stream() && late_facts) {
     spool.reset(std::tmpfile());
     if (!spool) throw Error{Fault::no_output, out.name() + ": cannot create a temporary file"};
     return;
   }
-  out.write(head());
+  for_head([this](const std::string& bytes) { out.write(bytes); });
 }
 
 void StackWriter::State::put(const Image& image, const ImageInfo& own) {
@@ -198,7 +223,7 @@ void StackWriter::State::flush() {
     std::string bytes;
     bytes.reserve(image.bytes.size() + 4 * image.starts.size());
     for (std::size_t chunk = 0; chunk < image.starts.size(); ++chunk) {
-      if (!out.is_stream()) offsets[part * image.starts.size() + chunk] = position + bytes.size();
+      if (!offsets.empty()) offsets[part * image.starts.size() + chunk] = position + bytes.size();
       const auto size = exr::number_at<std::int32_t>(image.bytes, image.starts[chunk] + 4);
       exr::append(bytes, static_cast<std::int32_t>(part));
       bytes.append(image.bytes, image.starts[chunk], 8 + size);
@@ -223,10 +248,9 @@ void StackWriter::State::finish() {
     throw Error{Fault::bug, out.name() + ": " + std::to_string(done) + " images of the " + std::to_string(info.count) +
                                 " announced"};
   }
-  const std::string complete = head();
-  if (complete.size() != head_bytes) throw Error{Fault::bug, out.name() + ": the header changed its size"};
+  if (count_head() != head_bytes) throw Error{Fault::bug, out.name() + ": the header changed its size"};
   if (spool) {
-    out.write(complete);
+    for_head([this](const std::string& bytes) { out.write(bytes); });
     std::rewind(spool.get());
     std::vector<char> buffer(std::size_t{1} << 20);
     while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), spool.get())) {
@@ -234,7 +258,11 @@ void StackWriter::State::finish() {
     }
     if (std::ferror(spool.get()) != 0) throw Error{Fault::io, out.name() + ": cannot read a temporary file back"};
   } else if (!out.is_stream()) {
-    out.write_at(0, complete.data(), complete.size());
+    std::size_t at = 0;
+    for_head([&](const std::string& bytes) {
+      out.write_at(at, bytes.data(), bytes.size());
+      at += bytes.size();
+    });
   }
   out.commit();
 }
