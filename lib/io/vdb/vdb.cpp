@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -106,10 +107,23 @@ Leaf::NodeMaskType active_mask(const float* values, float background) {
   return mask;
 }
 
+// The value of all voxels of a whole block, which most have: they need no order of a leaf (gyroid: 8 % of vam-slice).
+std::optional<float> shared_value(const CoordBBox& part, const CoordBBox& slab, const float* in) {
+  if (part.volume() < Leaf::SIZE) return std::nullopt;
+  std::optional<std::uint32_t> first;
+  std::uint32_t difference = 0;
+  for_rows(part, slab, [&](int, int, int, int, std::size_t from) {
+    if (!first) first = std::bit_cast<std::uint32_t>(in[from]);
+    for (std::size_t i = 0; i < edge; ++i) difference |= std::bit_cast<std::uint32_t>(in[from + i]) ^ *first;
+  });
+  return difference == 0 ? std::optional(std::bit_cast<float>(*first)) : std::nullopt;
+}
+
 LeafBlock block_at(const Coord& at, const LeafSlab& slab, const float* in, const SparseVolume::State& state,
                    ConstAccessor& accessor) {
   const float background = state.sparse->background();
   const CoordBBox part = slab.part(at);
+  if (const auto value = shared_value(part, slab.box, in); value && all_finite(&*value, 1)) return {nullptr, *value};
   LeafStore::Values room;
   float values[Leaf::SIZE] = {};
   if (part.volume() < Leaf::SIZE) {

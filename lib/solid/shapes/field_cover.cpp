@@ -54,25 +54,48 @@ class Cover {
 
   // Voxels [i, i + edge) x [j, j + edge) x [k, k + edge), as far as they are of the grid; k relative to k0.
   void box(int edge, int i, int j, int k) {
+    const Point middle = middle_of(edge, i, j, k);
+    box(edge, i, j, k, middle, field_.value(middle));
+  }
+
+ private:
+  // With the field's value in the middle.
+  void box(int edge, int i, int j, int k, const Point& middle, double value) {
     if (i >= grid_.nx || j >= grid_.ny || k >= count_) return;
-    const Point middle = voxel(i, j, k) + (0.5 * (edge - 1) * grid_.voxel_mm) * Point{1, 1, 1};
-    const double value = field_.value(middle);
     if (std::abs(value) > clear_mm(field_, half_diagonal * edge * grid_.voxel_mm)) {
       each(edge, i, j, k, [&](int, int, int) { return value < 0 ? 1.0 : 0.0; });
       return;
     }
     if (edge == 8 && is_smooth<8>(i, j, k, middle)) return;
     if (edge > block) {
-      const int half = edge / 2;
-      for (int part = 0; part < 8; ++part) {
-        box(half, i + (part & 1) * half, j + ((part >> 1) & 1) * half, k + (part >> 2) * half);
-      }
+      halves(edge / 2, i, j, k);
     } else if (!is_smooth<block>(i, j, k, middle)) {
       voxel_by_voxel(i, j, k);
     }
   }
 
- private:
+  // The eight boxes of half the edge, whose values are found at once.
+  void halves(int half, int i, int j, int k) {
+    const auto place = [&](int part) {
+      return std::array{i + (part & 1) * half, j + ((part >> 1) & 1) * half, k + (part >> 2) * half};
+    };
+    std::array<Point, 8> middles;
+    std::array<double, 8> values{};
+    for (int part = 0; part < 8; ++part) {
+      const auto [x, y, z] = place(part);
+      middles[part] = middle_of(half, x, y, z);
+    }
+    values_at(field_, middles, values.data());
+    for (int part = 0; part < 8; ++part) {
+      const auto [x, y, z] = place(part);
+      box(half, x, y, z, middles[part], values[part]);
+    }
+  }
+
+  [[nodiscard]] Point middle_of(int edge, int i, int j, int k) const {
+    return voxel(i, j, k) + (0.5 * (edge - 1) * grid_.voxel_mm) * Point{1, 1, 1};
+  }
+
   // Fills the box if it is.
   template <int edge>
   bool is_smooth(int i, int j, int k, const Point& middle) {
