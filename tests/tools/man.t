@@ -31,7 +31,7 @@ is 'no page says "Default: none" of an option without a value none' "$undue" ""
 
 for script in vam-batch vam-renew vam-print vam-calibrate-all; do
   options='display light set home' value=display:DEVICE switch=home repeatable=1
-  [ $script != vam-batch ] || options='folder jobs slurm plan' value=folder:DIR switch=plan repeatable=0
+  [ $script != vam-batch ] || options='folder jobs slurm plan forecast' value=folder:DIR switch=plan repeatable=0
   [ $script != vam-renew ] || options='target curve turns once' value=target:PART switch= repeatable=0
   page=$VAM_SOURCE/man/$script.1
   is "$script: mandoc -Tlint is silent" "$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')" ""

@@ -20,6 +20,8 @@ is 'with its figures' "$(awk -F '\t' 'NR > 1 && $2 >= 0 && $4 > 0.5' batch/summa
 vam-optimize batch/two.vdb --method dose-norm --angles 12 --printer level.toml | vam-stack -o whole.exr
 same 'joined pieces are the undivided stack' batch/two.exr whole.exr
 is 'a second run does nothing' "$(vam-batch --plan parts.tsv | grep -c '^vam-')" 0
+is 'the beginning of each result is kept' "$(cut -f 1 batch/begun.tsv | grep '^batch/two' | sort | tr '\n' ' ')" \
+  'batch/two.1.exr batch/two.2.exr batch/two.exr batch/two.json batch/two.vdb '
 rm batch/two.2.exr
 is 'a lost piece is made again' "$(vam-batch --plan parts.tsv | grep '^vam-' | cut -d ' ' -f 1 | tr '\n' ' ')" 'vam-optimize vam-stack vam-dose '
 quiet 'and joined' vam-batch parts.tsv
@@ -62,6 +64,22 @@ vam-batch --retries 0 parts.tsv 2>errors; is 'a part that fails is named' "$? $(
 queue 'part|optimize' "box.off|--method 'cal' \$(touch pwned) ; touch pwned & \`touch pwned\`"
 vam-batch --retries 0 parts.tsv >/dev/null 2>&1
 [ ! -e pwned ] && [ ! -e batch/pwned ]; report $? 'no cell is run'
+
+# ---- forecast: one worker takes the sum of all times, many as long as the longest chain ---------------------------------
+mkdir told
+took() {  # took TARGET SECONDS
+  touch -d @100 "told/$1" && printf 'told/%s\t%s\n' "$1" $((100 - $2)) >>told/begun.tsv
+}
+took a.vdb 9; took a.vdb 2; took a.1.exr 8; took a.2.exr 6; took a.exr 1; took a.json 3; took b.exr 5
+queue 'part|name|pieces' 'box.off|a|2' 'box.off|b|1'
+forecast() { vam-batch --forecast --folder told parts.tsv | awk -F '\t' -v workers="$1" '$1 == workers { print $2, $3, $4 }'; }
+is 'a worker takes the sum, with the last time of each target' "$(forecast 1)" '30.0 30.0 1.00'
+# b.exr waits until the shorter piece of a is made: it runs from 8 to 13, and its score to 16.
+is 'two workers' "$(forecast 2)" '16.0 32.0 0.94'
+is 'many take as long as the longest chain' "$(forecast 64)" '14.0 896.0 0.03'
+rm told/*.exr
+fails 65 "told: has no result of the stage '(piece|join|optimize)'" vam-batch --forecast --folder told parts.tsv
+fails 66 'none/begun.tsv: cannot open it; make some parts of the queue first' vam-batch --forecast --folder none parts.tsv
 
 rm -rf batch; mkdir batch
 fails 64 '^vam-batch: no queue given; see --help' vam-batch
