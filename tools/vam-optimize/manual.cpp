@@ -181,7 +181,8 @@ std::vector<std::string> notes() {
       "to 1 (RMS 0.001 to 0.03). --slices is therefore refused there.",
       "Memory: three arrays of a slice and three of a sinogram's lit columns each (apg: seven and three), with "
       "--patience one more of the latter, 4 bytes per "
-      "value, of all slices if they are coupled, else of 64 slices at a time, plus 0.2 GiB and at most 512 MiB for "
+      "value, of all slices if they are coupled, else of 64 slices at a time, plus the target as stored in its file, "
+      "0.5 kB for each slice, 0.2 GiB and at most 512 MiB for "
       "finished slices that recur; with --bits all projections. Of coupled slices, what exceeds --memory is kept in "
       "scratch files in TMPDIR (default: /var/tmp). With --robust an iteration "
       "takes three times as long and needs one more array of the slices and four more of the sinograms, and all "
