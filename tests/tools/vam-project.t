@@ -37,6 +37,19 @@ packets() { ffmpeg -v error -i "$1" "$2" "$3" -level 3 -slices 4 -slicecrc 1 -g 
 packets print.mkv -c:v copy >own.packets
 packets print.mkv -c:v ffv1 >libav.packets
 same "and the bytes of FFmpeg's encoder" own.packets libav.packets
+if sanitized; then
+  echo '# the memory of a sanitizer is not measured'
+else
+  large='--pattern ramp --steps 4 --set projector.columns=2560 --set projector.rows=1600 --set projector.telecentric=true'
+  # shellcheck disable=SC2086
+  peak=$(python3 -c 'import os, sys
+_, status, usage = os.wait4(os.spawnvp(os.P_NOWAIT, sys.argv[1], sys.argv[1:]), 0)
+print(usage.ru_maxrss if status == 0 else 1 << 30)' vam-project $large -o large.mkv)
+  [ "$peak" -le 204800 ]; report $? "frames of 4 million pixels become a video in 200 MiB: $peak KiB"
+  packets large.mkv -c:v copy >own.packets
+  packets large.mkv -c:v ffv1 >libav.packets
+  same "with the bytes of FFmpeg's encoder, too" own.packets libav.packets
+fi
 
 # The printer that it was computed for.
 fails 65 'part.exr: computed for another printer: projector.axis_column 31.5, now 32; vial.radius_mm 12.7, now 6; compute it for this printer, .* --accept-printer' \

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/index.hpp"
+
 namespace vam::io {
 
 namespace {
@@ -13,10 +15,14 @@ constexpr std::size_t tail_bytes = 3 + 1 + 4;  // of a slice: its size, its stat
 
 }  // namespace
 
-Ffv1Frames::Ffv1Frames(int width, int height, Checksum checksum) : checksum_(checksum) {
+Ffv1Frames::Ffv1Frames(int width, int height, Checksum checksum) : checksum_(checksum), parts_(slices * slices) {
+  resize(width, height);
+}
+
+void Ffv1Frames::resize(int width, int height) {
   for (int y = 0; y < slices; ++y) {
     for (int x = 0; x < slices; ++x) {
-      Part& part = parts_.emplace_back();
+      Part& part = parts_[flat_index(y, slices, x)];
       part.place.left = width * x / slices;
       part.place.top = height * y / slices;
       part.place.width = width * (x + 1) / slices - part.place.left;

@@ -103,7 +103,7 @@ struct VideoWriter::State {
   AVFormatContext* container = nullptr;
   AVStream* stream = nullptr;
   av::Codec codec;
-  av::AvFrame frame{av::api().av_frame_alloc()};
+  av::AvFrame frame;
   av::Packet packet{av::api().av_packet_alloc()};
   std::int64_t written = 0;
   std::optional<Ffv1Frames> alone;  // frames of which each is encoded by one thread
@@ -138,39 +138,50 @@ struct VideoWriter::State {
     av::api().av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);
   }
 
-  void open_codec() {
+  av::Codec opened_codec(int width, int height) {
     const AVCodec* encoder =
         lossless ? av::api().avcodec_find_encoder(AV_CODEC_ID_FFV1) : av::api().avcodec_find_encoder_by_name("libx264");
     if (encoder == nullptr)
       throw Error{Fault::absent, sink.file.name() + ": this libavcodec has no H.264 encoder (libx264); " +
                                      (format.colour ? "install it" : "write .mkv")};
-    codec.reset(av::api().avcodec_alloc_context3(encoder));
+    av::Codec opened{av::api().avcodec_alloc_context3(encoder)};
     if (format.colour) {
-      codec->colorspace = AVCOL_SPC_BT709;
-      codec->color_primaries = AVCOL_PRI_BT709;
-      codec->color_trc = AVCOL_TRC_BT709;
+      opened->colorspace = AVCOL_SPC_BT709;
+      opened->color_primaries = AVCOL_PRI_BT709;
+      opened->color_trc = AVCOL_TRC_BT709;
     }
-    codec->width = lossless ? format.width : format.width + format.width % 2;
-    codec->height = lossless ? format.height : format.height + format.height % 2;
-    codec->pix_fmt = pixel_format(lossless, format.bits);
-    codec->color_range = AVCOL_RANGE_JPEG;
-    codec->framerate = av::api().av_d2q(format.fps, 1000000);
-    codec->time_base = av_inv_q(codec->framerate);
-    codec->thread_count = lossless ? threads() : 1;  // x264's bytes depend on it
-    codec->thread_type = FF_THREAD_SLICE;            // FFV1's do not: it has the same slices
-    codec->flags |= AV_CODEC_FLAG_BITEXACT;
-    if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    opened->width = lossless ? width : width + width % 2;
+    opened->height = lossless ? height : height + height % 2;
+    opened->pix_fmt = pixel_format(lossless, format.bits);
+    opened->color_range = AVCOL_RANGE_JPEG;
+    opened->framerate = av::api().av_d2q(format.fps, 1000000);
+    opened->time_base = av_inv_q(opened->framerate);
+    opened->thread_count = lossless ? threads() : 1;  // x264's bytes depend on it
+    opened->thread_type = FF_THREAD_SLICE;            // FFV1's do not: it has the same slices
+    opened->flags |= AV_CODEC_FLAG_BITEXACT;
+    if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) opened->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     if (lossless) {
-      codec->gop_size = 1;  // every frame stands alone
-      av::api().av_opt_set_int(codec.get(), "level", 3, 0);
+      opened->gop_size = 1;  // every frame stands alone
+      av::api().av_opt_set_int(opened.get(), "level", 3, 0);
       // libavcodec 59 loses flat pixels of slices one pixel high or wide, as of frames of 2 x 2.
-      codec->slices = std::min(codec->width, codec->height) < 4 ? 1 : 4;
-      av::api().av_opt_set_int(codec->priv_data, "slicecrc", 1, 0);
+      opened->slices = std::min(opened->width, opened->height) < 4 ? 1 : 4;
+      av::api().av_opt_set_int(opened->priv_data, "slicecrc", 1, 0);
     } else {
-      av::api().av_opt_set(codec->priv_data, "preset", "veryfast", 0);
-      av::api().av_opt_set(codec->priv_data, "crf", "16", 0);
+      av::api().av_opt_set(opened->priv_data, "preset", "veryfast", 0);
+      av::api().av_opt_set(opened->priv_data, "crf", "16", 0);
     }
-    check(av::api().avcodec_open2(codec.get(), encoder, nullptr), "video encoder");
+    check(av::api().avcodec_open2(opened.get(), encoder, nullptr), "video encoder");
+    return opened;
+  }
+
+  av::AvFrame frame_of(const av::Codec& of) {
+    av::AvFrame empty{av::api().av_frame_alloc()};
+    empty->format = of->pix_fmt;
+    empty->width = of->width;
+    empty->height = of->height;
+    empty->color_range = of->color_range;
+    check(av::api().av_frame_get_buffer(empty.get(), 0), "video frame");
+    return empty;
   }
 
   void open_stream() {
@@ -184,25 +195,25 @@ struct VideoWriter::State {
     const int status = av::api().avformat_write_header(container, &options);
     av::api().av_dict_free(&options);
     check(status, "video header");
-    frame->format = codec->pix_fmt;
-    frame->width = codec->width;
-    frame->height = codec->height;
-    frame->color_range = codec->color_range;
-    check(av::api().av_frame_get_buffer(frame.get(), 0), "video frame");
+    frame = frame_of(codec);
   }
 
-  // Before the first frame.
+  // By a small frame, as the encoder takes 148 bytes for each pixel of one.
   void try_alone() {
     if (!lossless || wide) return;
-    const GreyImage trial = Ffv1Frames::trial(format.width, format.height);
+    constexpr int enough = 64;
+    const GreyImage trial = Ffv1Frames::trial(std::min(format.width, enough), std::min(format.height, enough));
+    const av::Codec encoder = opened_codec(trial.width, trial.height);
+    const av::AvFrame tried = frame_of(encoder);
     for (int y = 0; y < trial.height; ++y) {
       const std::uint16_t* from = trial.values.data() + trial.index(0, y);
-      std::transform(from, from + trial.width, frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0],
+      std::transform(from, from + trial.width, tried->data[0] + static_cast<std::ptrdiff_t>(y) * tried->linesize[0],
                      [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
     }
-    check(av::api().avcodec_send_frame(codec.get(), frame.get()), "video encoding");
-    check(av::api().avcodec_receive_packet(codec.get(), packet.get()), "video encoding");
-    alone = Ffv1Frames::like({packet->data, packet->data + packet->size}, format.width, format.height, checksum);
+    check(av::api().avcodec_send_frame(encoder.get(), tried.get()), "video encoding");
+    check(av::api().avcodec_receive_packet(encoder.get(), packet.get()), "video encoding");
+    alone = Ffv1Frames::like({packet->data, packet->data + packet->size}, trial.width, trial.height, checksum);
+    if (alone) alone->resize(format.width, format.height);
     av::api().av_packet_unref(packet.get());
   }
 
@@ -303,7 +314,7 @@ VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   av::api().av_log_set_level(AV_LOG_QUIET);
   state_ = std::make_unique<State>(path, format);
   state_->open_container();
-  state_->open_codec();
+  state_->codec = state_->opened_codec(format.width, format.height);
   state_->open_stream();
   state_->try_alone();
 }

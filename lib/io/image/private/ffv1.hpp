@@ -32,6 +32,10 @@ class Ffv1Frames {
   /// Nothing if the packet is not what this would make, as another release of the library may have it.
   [[nodiscard]] static std::optional<Ffv1Frames> like(const Bytes& packet, int width, int height, Checksum checksum);
 
+  /// For images of another size of at least 4 x 4: what precedes the codes tells places in halves of an image, not in
+  /// pixels.
+  void resize(int width, int height);
+
   /// Many threads may ask at once.
   [[nodiscard]] Bytes packet(const GreyImage& image) const;
 
