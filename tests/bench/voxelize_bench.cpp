@@ -48,7 +48,8 @@ BENCHMARK(cgal_polygon_soup)->Unit(benchmark::kMillisecond)->UseRealTime();
 void voxelize(benchmark::State& state, solid::Fill fill) {
   for (auto _ : state) {
     double sum = 0;
-    (void)solid::voxelize(repaired(), grid, fill, [&](int, int, const float* slices) { sum += slices[0]; });
+    (void)solid::voxelize(repaired(), grid, fill, solid::Bounds{},
+                          [&](int, int, const float* slices) { sum += slices[0]; });
     benchmark::DoNotOptimize(sum);
   }
 }

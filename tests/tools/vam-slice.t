@@ -21,6 +21,9 @@ stl("inside-out.stl", turn(c))
 stl("lidless.stl", c[:2] + c[4:])
 stl("hollow.stl", c + turn(cube(-1, 1)))
 stl("twice.stl", c + c[:5])
+part = lambda low, high: [[[low + (v[0] + 2) / 4 * (high - low), v[1], v[2]] for v in t] for t in c]
+stl("common-sides.stl", part(-2, 1) + part(-1, 2))
+stl("common-end.stl", c + part(0, 2))
 stl("sheet.stl", c[:2])
 stl("point.stl", [[[1, 1, 1]] * 3] * 4)
 stl("nan.stl", [[[0, 0, 0], [1, 0, 0], [0, float("nan"), 0]]])
@@ -72,6 +75,10 @@ volume 56 vam-slice hollow.stl --voxel 0.25
 is "a cavity" "$(json report.json repair.cavities)" 1
 volume 64 vam-slice twice.stl --voxel 0.25
 is "duplicates" "$(json report.json repair.duplicates_dropped)" 5
+for shared in common-sides common-end; do
+  volume 64 vam-slice $shared.stl --voxel 0.23
+  quiet 'which is nothing to warn of' vam-slice $shared.stl --voxel 0.23 -o out.vdb
+done
 volume 64 vam-slice lidless.stl --voxel 0.25
 volume 64 vam-slice cube.stl --voxel 0.25 --fill vote
 volume 8 vam-slice quads.obj --voxel 0.25

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles that a mesh has more than once.
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 #include <vector>
 
@@ -101,12 +102,73 @@ class Patches {
   std::vector<char> met_;
 };
 
+// Which of further copies that run the same way round must stay: patches without which edges that are balanced would
+// not be, as where two overlapping solids end in one face.
+class Copies {
+ public:
+  Copies(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& copies)
+      : patch_(mesh.triangles.size()), gain_(mesh.triangles.size(), 0) {
+    std::iota(patch_.begin(), patch_.end(), std::size_t{0});
+    std::vector<char> copy(mesh.triangles.size(), 0);
+    for (const std::size_t t : copies) copy[t] = 1;
+    std::vector<Triangle> rest;
+    std::vector<std::size_t> original;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (drop[t] != 0 && copy[t] == 0) continue;
+      rest.push_back(mesh.triangles[t]);
+      original.push_back(t);
+    }
+    EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
+      long balance = 0;  // without the copies
+      long with = 0;
+      std::vector<std::size_t> patch;
+      for (const HalfEdge& half : edge) {
+        const std::size_t t = original[half.triangle];
+        with += half.rising ? 1 : -1;
+        if (copy[t] == 0) {
+          balance += half.rising ? 1 : -1;
+        } else {
+          patch.push_back(t);
+        }
+      }
+      if (!patch.empty()) join(patch, balance, with);
+    });
+  }
+
+  [[nodiscard]] bool needed(std::size_t triangle) { return gain_[find(triangle)] > 0; }
+
+ private:
+  std::size_t find(std::size_t t) {
+    while (patch_[t] != t) t = patch_[t] = patch_[patch_[t]];
+    return t;
+  }
+  // An edge of these copies.
+  void join(const std::vector<std::size_t>& copies, long balance, long with) {
+    if (with != 0) {
+      for (const std::size_t t : copies) gain_[find(t)] -= balance == 0 ? 1 : 0;
+      return;
+    }
+    const std::size_t root = find(copies.front());
+    for (const std::size_t t : copies) {
+      const std::size_t other = find(t);
+      if (other == root) continue;
+      patch_[other] = root;
+      gain_[root] += gain_[other];
+    }
+    gain_[root] += balance != 0 ? 1 : 0;
+  }
+
+  std::vector<std::size_t> patch_;
+  std::vector<long> gain_;  // edges that a patch balances, less those that it unbalances
+};
+
 }  // namespace
 
 long drop_duplicates(model::TriangleSoup& mesh) {
   const std::vector<TriangleKey> keys = sorted_keys(mesh);
   std::vector<char> drop(mesh.triangles.size(), 0);
   std::vector<std::size_t> cancelling;  // the first of copies that cancel
+  std::vector<std::size_t> copies;      // beyond the first of those that do not
   for (auto group = keys.begin(); group != keys.end();) {
     long balance = 0;
     auto stop = group;
@@ -114,12 +176,22 @@ long drop_duplicates(model::TriangleSoup& mesh) {
     const auto keep =
         std::find_if(group, stop, [&](const TriangleKey& key) { return balance == 0 || key.even == (balance > 0); });
     for (auto key = group; key != stop; ++key) drop[key->index] = key != keep ? 1 : 0;
+    long further = std::abs(balance) - 1;
+    for (auto key = keep; further > 0; ++key) {
+      if (key == keep || key->even != keep->even) continue;
+      copies.push_back(static_cast<std::size_t>(key->index));
+      --further;
+    }
     if (balance == 0) cancelling.push_back(static_cast<std::size_t>(keep->index));
     group = stop;
   }
   if (!cancelling.empty()) {
     Patches patches(mesh, drop, cancelling);
     for (const std::size_t index : cancelling) drop[index] = patches.needless(index) ? 1 : 0;
+  }
+  if (!copies.empty()) {
+    Copies patches(mesh, drop, copies);
+    for (const std::size_t index : copies) drop[index] = patches.needed(index) ? 0 : 1;
   }
   const std::size_t before = mesh.triangles.size();
   std::size_t kept = 0;

@@ -192,6 +192,8 @@ Orientation orient(model::TriangleSoup& mesh) {
   result.cavities = turn_outwards(mesh, components);
   turn_pieces(mesh, components);
   for (const Component& component : components) {
+    const bool inward = component.solid && (component.measure.volume < 0) != component.turn;
+    if (!inward) result.outward.push_back(component.bounds);
     if (!component.turn) continue;
     for (const int index : component.triangles) {
       const auto t = static_cast<std::size_t>(index);

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/orient.hpp"
+#include "solid/mesh/private/overlap.hpp"
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/weld.hpp"
 
@@ -80,6 +81,7 @@ Repair repair(model::TriangleSoup& mesh, const std::string& subject) {
   done.cavities = orientation.cavities;
   done.unorientable = orientation.unorientable;
   count_edges(mesh, done);
+  done.shared = done.non_manifold_edges > 0 ? bounding_box(mesh) : overlap(orientation.outward);
   return done;
 }
 

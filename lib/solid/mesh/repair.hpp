@@ -5,6 +5,7 @@
 #include <string>
 
 #include "model/mesh.hpp"
+#include "solid/mesh/geometry.hpp"
 
 namespace vam::solid {
 
@@ -21,6 +22,7 @@ struct Repair {
   long non_manifold_edges = 0;  // non-manifold: more than two triangles
   long unbalanced_edges = 0;    // as many triangles one way as the other: not so. 0 means that inside is exact
   long unorientable = 0;        // edges across which no consistent orientation exists
+  Bounds shared;                // where solids may overlap; empty when nowhere
 
   /// Every edge is run through as often one way as the other, so winding numbers are whole numbers everywhere.
   [[nodiscard]] bool closed() const { return unbalanced_edges == 0; }
@@ -31,13 +33,14 @@ struct Repair {
 };
 
 /// Welds equal points; where borders remain, also near points on them (up to 1e-4 of the diagonal and a fifth of the
-/// median border edge). Drops degenerate and duplicate triangles. Orients each component consistently, keeping the
-/// majority's choice, then outwards: a component inside another of the opposite orientation is a cavity and stays one;
-/// one of the same orientation is a solid within a solid. A file that is inside out as a whole is turned over.
-/// Pieces too open to have an outside keep the file's orientation. Throws Fault::data when no triangle remains.
-/// CGAL's polygon soup functions do the first half of this (tests/oracle/polygon_soup judges it by them), but neither
-/// cracks, outsides nor a count of what was turned, and take 2.0 s of the 3 s that a million triangles may take in all,
-/// where this takes 0.4 s (CPU time; build/release/voxelize_bench --benchmark_filter='repair|cgal').
+/// median border edge). Drops degenerate and duplicate triangles, but for those that two solids share. Orients each
+/// component consistently, keeping the majority's choice, then outwards: a component inside another of the opposite
+/// orientation is a cavity and stays one; one of the same orientation is a solid within a solid. A file that is inside
+/// out as a whole is turned over. Pieces too open to have an outside keep the file's orientation. Throws Fault::data
+/// when no triangle remains. CGAL's polygon soup functions do the first half of this (tests/oracle/polygon_soup judges
+/// it by them), but neither cracks, outsides nor a count of what was turned, and take 2.0 s of the 3 s that a million
+/// triangles may take in all, where this takes 0.4 s (CPU time; build/release/voxelize_bench
+/// --benchmark_filter='repair|cgal').
 Repair repair(model::TriangleSoup& mesh, const std::string& subject);
 
 }  // namespace vam::solid

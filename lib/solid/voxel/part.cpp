@@ -91,7 +91,7 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
   const auto kept = std::make_shared<model::TriangleSoup>(std::move(mesh));
   part.fill = [kept, subject, repair = *part.repair, voted = part.voted, extent = part.extent](const model::Grid& grid,
                                                                                                const SliceSink& sink) {
-    const Vote vote = voxelize(*kept, grid, voted ? Fill::vote : Fill::exact, sink);
+    const Vote vote = voxelize(*kept, grid, voted ? Fill::vote : Fill::exact, repair.shared, sink);
     if (voted) require_settled(vote, repair, is_tiny(extent, grid.voxel_mm), subject);
     return vote;
   };

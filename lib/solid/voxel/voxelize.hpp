@@ -6,6 +6,7 @@
 
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
+#include "solid/mesh/geometry.hpp"
 
 namespace vam::solid {
 
@@ -28,8 +29,8 @@ struct Vote {
 /// A piece with outward vector area (Ax, Ay, Az) in voxel faces removes Ax from all voxels of its row further along x,
 /// and the share of Ax behind it from its own: the divergence theorem for the field (x, 0, 0). Prefix sums along the
 /// row give the coverage, which for a closed mesh is the winding number averaged over the voxel; its magnitude is cut
-/// off at 1, so solids may overlap (where the surfaces of two overlapping solids cross in one voxel, its coverage is
-/// the sum).
+/// off at 1. Solids may overlap: voxels that they share in part are covered by their union, summed along rays
+/// (unite_row), in all rows of the box `shared` (Repair::shared) and in those that have a mean winding number above 1.
 ///
 /// With Fill::vote each axis gives an interval: the sums from either end of the row, which agree unless the row runs
 /// through a hole. The median of the six ends is the coverage; undecided are voxels where the two middle ones are more
@@ -37,6 +38,7 @@ struct Vote {
 ///
 /// Memory: the mesh, its bins (4 bytes a triangle and slice), 16 slices. Same bytes for any number of threads.
 /// Throws Fault::bug when the mesh leaves the grid in x or y.
-Vote voxelize(const model::TriangleSoup& mesh, const model::Grid& grid, Fill fill, const SliceSink& sink);
+Vote voxelize(const model::TriangleSoup& mesh, const model::Grid& grid, Fill fill, const Bounds& shared,
+              const SliceSink& sink);
 
 }  // namespace vam::solid

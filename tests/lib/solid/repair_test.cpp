@@ -86,6 +86,40 @@ TEST_CASE("a wall of zero thickness between closed surfaces is removed, both sid
   CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(16));
 }
 
+TEST_CASE("a face in which two overlapping solids end is kept twice") {
+  const TriangleSoup inner = vam::oracle::box({0, -1, -1}, {1, 1, 1});
+  TriangleSoup mesh = vam::oracle::join(cube, inner);  // both end in x = 1, in the same triangles
+  const Repair done = repaired(mesh);
+  CHECK(done.closed());
+  CHECK(done.duplicates_dropped == 0);
+  CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(12));
+  CHECK(done.shared.size()[0] > 0);
+  // Copies of other triangles are no face in common.
+  for (const auto& triangle : inner.triangles) {
+    if (std::all_of(triangle.begin(), triangle.end(), [&](int corner) { return inner.points[corner][0] == 1; }))
+      continue;
+    TriangleSoup more = vam::oracle::join(cube, inner);
+    more.triangles.push_back(triangle);
+    for (int& corner : more.triangles.back()) corner += static_cast<int>(cube.points.size());
+    CHECK(repaired(more).duplicates_dropped == 1);
+  }
+}
+
+TEST_CASE("where solids may overlap") {
+  const auto shared = [](const TriangleSoup& mesh) {
+    TriangleSoup copy = mesh;
+    return repaired(copy).shared;
+  };
+  const Bounds nowhere{};
+  CHECK(shared(cube).low == nowhere.low);
+  CHECK(shared(vam::oracle::join(cube, cube, {3, 0, 0})).low == nowhere.low);
+  const Bounds both = shared(vam::oracle::join(cube, cube, {1.5, 0.5, 0}));
+  CHECK(both.low == Vector3{0.5, -0.5, -1});
+  CHECK(both.high == Vector3{1, 1, 1});
+  const TriangleSoup cavity = vam::oracle::flipped(vam::oracle::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}), 1, 1);
+  CHECK(shared(vam::oracle::join(cube, cavity)).low == nowhere.low);
+}
+
 TEST_CASE("a surface in both orientations at once is kept once") {
   TriangleSoup mesh = vam::oracle::join(cube, vam::oracle::flipped(cube, 1, 1));
   const Repair done = repaired(mesh);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/mesh.hpp"
+#include "solid/mesh/geometry.hpp"
 
 namespace vam::solid {
 
@@ -12,7 +13,8 @@ struct Orientation {
   long flipped = 0;
   long components = 0;
   long cavities = 0;
-  long unorientable = 0;  // edges with two triangles that cannot agree
+  long unorientable = 0;        // edges with two triangles that cannot agree
+  std::vector<Bounds> outward;  // boxes of the components, but for those that face inwards
 };
 
 /// Orients in place; see repair().

@@ -18,7 +18,8 @@ long weld_near_points(model::TriangleSoup& mesh, std::span<const int> candidates
 /// Removes triangles that use a point twice. Returns how many went.
 long drop_degenerate(model::TriangleSoup& mesh);
 
-/// Of triangles with the same three points keeps one, with the orientation that most of them have. Where as many run
+/// Of triangles with the same three points keeps one, with the orientation that most of them have, and further ones
+/// where these balance edges, as where two overlapping solids end in one face. Where as many run
 /// one way round as the other they cancel: patches of such go altogether if the other triangles are closed without
 /// them. Returns how many went.
 long drop_duplicates(model::TriangleSoup& mesh);
