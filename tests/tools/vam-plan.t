@@ -9,6 +9,9 @@ is 'it fits' "$(json plan.json fits)" true
 is 'at the size that it has' "$(json plan.json size_mm.0) $(json plan.json size_mm.2)" '10.0 4.0'
 holds 'slices of a pixel' "$(json plan.json slices) >= 4 / 0.065 - 1 && $(json plan.json slices) < 1.1 * 4 / 0.065 + 2"
 holds 'the thinnest wall is its height' "($(json plan.json thinnest_wall_voxels) - $(json plan.json slices)) ^ 2 <= 4"
+holds 'in mm of the part, not of the stretched target' "($(json plan.json thinnest_wall_mm) - 4) ^ 2 < 0.0627 ^ 2"
+ok 'as the table says' grep -qE '^thinnest wall  *6[34][.0-9]* voxels \((3.9[4-9]|4|4.0[0-6])[0-9]* mm\)' plan
+ok 'and so are slices' grep -q '^slices .* of 0.0626 mm$' plan
 ok 'in words' sh -c 'grep -q "^fits  *yes: a cylinder of 16.6 mm diameter" plan && grep -q "^will it print" plan && grep -q "^  index +-0.005  *process window" plan'
 ok 'without the resin no duration' grep -q '^duration  *not known; set resin.critical_dose_mj_cm3' plan
 

@@ -146,9 +146,11 @@ Filled filled(const solid::Part& part, double voxel_mm) {
 void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
   plan.wall_resolution = std::max(1, static_cast<int>(by));
-  const solid::Walls walls = solid::walls(filled(part, plan.wall_resolution * plan.grid.voxel_mm).volume);
+  const solid::Walls walls =
+      solid::walls(filled(part, plan.wall_resolution * plan.grid.voxel_mm).volume, plan.stretch_z);
   plan.sharp_edges = walls.sharp_edges;
   plan.wall_voxels = walls.thinnest_voxels;
+  plan.wall_mm = walls.thinnest_mm;
   if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
 }
 
@@ -203,6 +205,7 @@ Plan plan(const Options& options, const model::Printer& printer) {
   solid::warn_of_repairs(part);
   made.subject = part.subject;
   made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
+  made.stretch_z = 1 / model::vertical_magnification(printer);
   add_walls(made, part);
   if (options.no_preview) return made;
   add_preview(made, part, printer);

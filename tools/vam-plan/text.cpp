@@ -69,11 +69,14 @@ std::string print_rows(const Plan& plan) {
 }
 
 std::string wall_words(const Plan& plan) {
-  const auto voxels = [&](double count) {
-    return number(count) + (count == 1 ? " voxel (" : " voxels (") + number(count * plan.grid.voxel_mm) + " mm)";
+  const auto voxels = [](double count, double mm) {
+    return number(count) + (count == 1 ? " voxel (" : " voxels (") + number(mm) + " mm)";
   };
-  if (!plan.wall_voxels) return "below " + voxels(plan.wall_resolution) + ": enlarge the part, or use smaller pixels";
-  return voxels(*plan.wall_voxels) +
+  if (!plan.wall_voxels) {
+    return "below " + voxels(plan.wall_resolution, plan.wall_resolution * plan.grid.voxel_mm) +
+           ": enlarge the part, or use smaller pixels";
+  }
+  return voxels(*plan.wall_voxels, plan.wall_mm) +
          (*plan.wall_voxels < solid::least_printed_voxels ? "; walls below 3 voxels seldom print" : "");
 }
 
@@ -102,7 +105,7 @@ std::string table(const Plan& plan) {
     text += row("index bath", "a bath of the resin's index widens it to " + number(2 * plan.bath->writable_radius_mm) +
                                   " mm: " + needed);
   }
-  text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm) + " mm");
+  text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm / plan.stretch_z) + " mm");
   text += row("thinnest wall", wall_words(plan));
   if (plan.sharp_edges)
     text += row("sharp edges", "some, or tips, taper to less than 3 voxels, and seldom print there");
@@ -116,7 +119,10 @@ Json report(const Plan& plan) {
   if (plan.bath) json["index_bath"] = fit_json(*plan.bath);
   json["slices"] = plan.grid.nz;
   json["voxel_mm"] = plan.grid.voxel_mm;
-  if (plan.wall_voxels) json["thinnest_wall_voxels"] = *plan.wall_voxels;
+  if (plan.wall_voxels) {
+    json["thinnest_wall_voxels"] = *plan.wall_voxels;
+    json["thinnest_wall_mm"] = plan.wall_mm;
+  }
   json["sharp_edges"] = plan.sharp_edges;
   if (plan.preview) {
     json["ver"] = plan.preview->trials.nominal.figures.ver;

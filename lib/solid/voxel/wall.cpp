@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
+#include <tuple>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -170,9 +171,18 @@ bool tapers(const model::Volume& part, const Crossing& across) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > widest_cosine * lengths;
 }
 
+/// In the stretched target and in the print.
+struct Thickness {
+  double voxels;
+  double print_voxels;  // voxels across
+  [[nodiscard]] bool operator<(const Thickness& other) const {
+    return std::tie(voxels, print_voxels) < std::tie(other.voxels, other.print_voxels);
+  }
+};
+
 /// Of the part's middle.
 struct Places {
-  std::vector<double> walls;  // thickness in voxels
+  std::vector<Thickness> walls;
   std::vector<Crossing> tapering;
   void add(const Places& more) {
     walls.insert(walls.end(), more.walls.begin(), more.walls.end());
@@ -180,7 +190,15 @@ struct Places {
   }
 };
 
-Places middle_of(const model::Volume& part, const Field& field) {
+/// A way across, of which the part along z is shorter in the print.
+Thickness thickness_of(const Crossing& across, double voxels, double stretch_z) {
+  std::array<double, 3> way{};
+  for (std::size_t axis = 0; axis < 3; ++axis) way[axis] = across.far[axis] - across.near[axis];
+  const double length = std::hypot(way[0], way[1], way[2]);
+  return {voxels, voxels * std::hypot(way[0], way[1], way[2] / stretch_z) / length};
+}
+
+Places middle_of(const model::Volume& part, const Field& field, double stretch_z) {
   Places all;
   std::mutex mutex;
   parallel_for(field.size[2] - 2, [&](int slice) {
@@ -193,7 +211,7 @@ Places middle_of(const model::Volume& part, const Field& field) {
         if (tapers(part, across)) {
           own.tapering.push_back(across);
         } else {
-          own.walls.push_back(across.thickness);
+          own.walls.push_back(thickness_of(across, across.thickness, stretch_z));
         }
       }
     }
@@ -205,25 +223,28 @@ Places middle_of(const model::Volume& part, const Field& field) {
 
 }  // namespace
 
-Walls walls(const model::Volume& part) {
+Walls walls(const model::Volume& part, double stretch_z) {
   Field field = padded(part);
   find_nearest(field);
-  Places places = middle_of(part, field);
+  Places places = middle_of(part, field, stretch_z);
   const std::size_t middle = places.walls.size() + places.tapering.size();
   if (middle == 0) return {};
-  double thinnest = 0;
+  Thickness thinnest{};
   if (places.walls.empty()) {
-    for (const Crossing& across : places.tapering) thinnest = std::max(thinnest, across.ball);
+    for (const Crossing& across : places.tapering) {
+      thinnest = std::max(thinnest, thickness_of(across, across.ball, stretch_z));
+    }
   } else {
     const auto at =
         places.walls.begin() + static_cast<std::ptrdiff_t>(thin_share * static_cast<double>(places.walls.size()));
     std::nth_element(places.walls.begin(), at, places.walls.end());
     thinnest = *at;
   }
-  const double sharp = std::min(least_printed_voxels, thinnest - 1);  // the ends of a thin wall are no thinner
+  const double sharp = std::min(least_printed_voxels, thinnest.voxels - 1);  // the ends of a thin wall are no thinner
   const auto thin = std::count_if(places.tapering.begin(), places.tapering.end(),
                                   [&](const Crossing& across) { return across.thickness < sharp; });
-  return {thinnest, static_cast<double>(thin) > sharp_share * static_cast<double>(middle)};
+  return {thinnest.voxels, thinnest.print_voxels * part.grid.voxel_mm,
+          static_cast<double>(thin) > sharp_share * static_cast<double>(middle)};
 }
 
 }  // namespace vam::solid

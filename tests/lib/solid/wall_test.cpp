@@ -45,6 +45,18 @@ TEST_CASE("the thinnest wall of plates, also where a thick block stands on one, 
   CHECK(std::abs(thinnest(tilted) - 11 / std::sqrt(2.0)) < 1);  // good to a voxel
 }
 
+TEST_CASE("walls of a stretched target in mm of the print") {
+  constexpr double stretch = 1.25;
+  auto plate = filled(30, 30, 16, [](int, int, int k) { return k >= 2 && k < 12; });
+  plate.grid.voxel_mm = 0.1;
+  const solid::Walls level = solid::walls(plate, stretch);
+  CHECK(*level.thinnest_voxels == doctest::Approx(10).epsilon(0.02));
+  CHECK(level.thinnest_mm == doctest::Approx(0.1 * *level.thinnest_voxels / stretch));
+  auto upright = filled(16, 40, 40, [](int i, int, int) { return i >= 1 && i < 11; });
+  upright.grid.voxel_mm = 0.1;
+  CHECK(solid::walls(upright, stretch).thinnest_mm == doctest::Approx(1).epsilon(0.02));
+}
+
 TEST_CASE("a ball is as thick as its diameter: its rim is no wall") {
   const auto ball = filled(25, 25, 25, [](int i, int j, int k) { return std::hypot(i - 12, j - 12, k - 12) <= 10; });
   // Half of a voxel's diagonal at either end, and a step.
