@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "grey_target.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
@@ -89,6 +90,7 @@ void run(const cli::App& app, Options& options) {
   if (options.grey) return score_grey(options, printer, conditions);
   require_files_for_outputs(options);
   const Inputs in = read(options);
+  tool::warn_of_grey(in.target(), options.target.empty() ? options.input : options.target);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
   require_known(conditions, options);
   score::Score result = tool::score_volumes(in.dose(), in.target(), options.how);

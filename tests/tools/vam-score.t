@@ -50,6 +50,13 @@ for rule in met below free; do
 done
 holds "the less is asked of the void, the more is met" \
   "$(json is-met.json ver) > $(json is-below.json ver) && $(json is-met.json ver) > $(json is-free.json ver)"
+vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set projector.telecentric=true -o ramp/
+vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb 2>.log/graded
+ok 'a grey target that is taken for coverage is a warning' sh -c "vam-score --grid target graded.vdb 2>&1 >table |
+  grep -q 'graded.vdb: the target is grey, or its voxels are too coarse for it: 36 % of its voxels above 0 .*--grey-target'"
+ok 'in vam-optimize, too' sh -c "vam-optimize --angles 30 --iterations 2 graded.vdb -o taken.exr 2>&1 |
+  grep -q 'graded.vdb: the target is grey'"
+quiet 'which it is said to be' vam-score --grid target graded.vdb --grey-target
 fails 64 'requires --grey-target' vam-score --grid target part.vdb --void free
 fails 64 'does not apply to --grey-target' vam-score --grid target part.vdb --grey-target --surface
 fails 64 "unknown figure 'turns'" vam-score --grid target part.vdb --grey-target --require 'turns<3'

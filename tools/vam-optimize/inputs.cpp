@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "grey_target.hpp"
 #include "io/vdb/gate.hpp"
 
 namespace vam::optimize_tool {
@@ -45,6 +46,7 @@ Inputs read(const Options& options) {
       in.tolerance.push_back(std::move(volume));
   }
   if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice writes one"};
+  if (!options.demands.grey) tool::warn_of_grey(in.target.front(), options.input);
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
   if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));
   for (const std::string& path : options.delivered) in.delivered.push_back(read_dose(path));

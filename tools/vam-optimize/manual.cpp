@@ -99,7 +99,7 @@ std::vector<std::string> part_and_resin() {
       "With --grey-target the target is a dose for every voxel, for graded stiffness or colour: doses (or responses) "
       "must be met within --band, or within the tolerance of each voxel. The projections are then not scaled. VER is "
       "the fraction of voxels outside their band, PW the smallest margin of any voxel, negative outside, IPDR the "
-      "largest and CV the root mean square error, IoU 1 - VER.",
+      "largest and CV the root mean square error, IoU 1 - VER. Without it a target that seems grey causes a warning.",
       "The point spread of the beam (resin.psf_mm) and the diffusion of dose (resin.diffusion_mm2_s) blur the dose; " +
           join(compensating, ", ") + " compensate for it. Slices are then optimised together with their neighbours."};
 }

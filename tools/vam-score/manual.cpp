@@ -32,7 +32,8 @@ std::vector<std::string> description() {
       "a "
       "voxel. VER is the fraction of voxels with E > EPSILON (--band), PW = - max (E - EPSILON), IPDR = max E, CV the "
       "root mean square of E, IoU = 1 - VER; bias is the mean of x - f in the part, which a longer or shorter exposure "
-      "changes. --void states the constraint on the void; with --void below, E of a void voxel is the amount by "
+      "changes. A target that seems grey causes a warning without this option. --void states the constraint on the "
+      "void; with --void below, E of a void voxel is the amount by "
       "which its dose exceeds LOW, with EPSILON = 0.",
       "With --require the exit status is 1 if a condition does not hold, so that a Makefile can reject a part that "
       "will not print, and 64 if it is on a figure that the inputs do not determine: cured_part, cured_void, cured_iou "
