@@ -50,6 +50,15 @@ void warn_of_size(const cli::App& app, const Options& options, const solid::Part
   if (!doubt.empty()) warn(doubt);
 }
 
+void warn_of_insert_size(const cli::App& app, const Options& options, const solid::Part& insert,
+                         const solid::Writable& room) {
+  if (!insert.repair || app.given("--insert-unit") || app.given("--insert-scale")) return;
+  const solid::Point size = insert.extent.box.size();
+  const double largest_mm = std::max({size[0], size[1], size[2] / options.placement.stretch_z});
+  const std::string doubt = solid::unit_doubt(insert.subject, "insert", largest_mm, room);
+  if (!doubt.empty()) warn(doubt + "; --insert-unit states it");
+}
+
 void write(const cli::App& app, const Options& options, const model::Printer& printer,
            std::vector<io::SparseVolume>& volumes) {
   for (io::SparseVolume& volume : volumes) {
@@ -87,6 +96,7 @@ void run(const cli::App& app, Options& options) {
   slice_tool::Correction correction;
   solid::Part part = part_of(options, printer.projector, room, correction);
   std::optional<solid::Part> insert = insert_of(options, part, room);
+  if (insert) warn_of_insert_size(app, options, *insert, room);
   const double lift_mm = slice_tool::lift_mm(options, printer, part, room);
   part = solid::lifted(std::move(part), lift_mm);
   if (insert) insert = solid::lifted(std::move(*insert), lift_mm);

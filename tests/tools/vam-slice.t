@@ -149,6 +149,10 @@ quiet "with a clearance" $cutting --cut-insert 0.25 --report report.json -o inse
 # The faces move by one voxel, the edges by 0.59 of a voxel's square for the 0.79 of a quarter of a circle.
 holds "the clearance is subtracted, too" "($(json report.json volume_mm3) - (144 - 4 * (6.25 - 4 * 0.414 * 0.25^2)))^2 < 0.05^2"
 says 'overlaps the part by 16 mm3; --cut-insert subtracts it' $cutting -o insert.vdb
+says 'metres.obj: the insert is only 0.02 mm large; is its unit m[?]; --insert-unit states it' \
+  vam-slice cube.stl --insert metres.obj --cut-insert --voxel 0.25 -o insert.vdb
+stated() { vam-slice cube.stl --insert metres.obj "$@" --voxel 0.25 -o insert.vdb 2>&1 | grep -c 'is its unit'; }
+is 'a unit that is stated is none to doubt' "$(stated --insert-unit mm; stated --insert-scale 100)" "$(printf '0\n0')"
 says 'small.stl: misses the part; it measures 1 x 1 x 1 mm and is centred at .5, 0, 0. mm; check --insert-unit' \
   vam-slice cube.stl --insert small.stl --insert-scale 0.25 --insert-at 5,0,0 --voxel 0.25 -o insert.vdb
 says 'overlaps the part' vam-slice cube.stl --fit 8 --rotate 0,0,90 --insert small.stl --insert-unit cm --insert-scale 0.05 \

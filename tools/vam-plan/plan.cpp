@@ -112,7 +112,8 @@ void require_plausible(const Fit& fit, const model::Printer& printer, const std:
 
 void warn_of_unit(const Fit& fit, const Options& options, const solid::Writable& room, const std::string& subject) {
   if (!options.shape.empty() || options.unit_known) return;
-  const std::string doubt = solid::unit_doubt(subject, *std::max_element(fit.size_mm.begin(), fit.size_mm.end()), room);
+  const std::string doubt =
+      solid::unit_doubt(subject, "part", *std::max_element(fit.size_mm.begin(), fit.size_mm.end()), room);
   if (!doubt.empty()) warn(doubt);
 }
 

@@ -42,7 +42,8 @@ std::vector<std::string> limits() {
       "and so do walls of which no voxel is half covered: they are not printed.",
       "Slices of meshes and shapes begin where a row of the projector does (projector.axis_row), so that voxels "
       "that are one or several pixels high coincide with rows.",
-      "An insert keeps the size of its file, in mm or --insert-unit. Its origin coincides with that of PART's file and "
+      "An insert keeps the size of its file, in mm or --insert-unit; one smaller than a tenth of the writable width "
+      "causes a warning with the probable unit. Its origin coincides with that of PART's file and "
       "it is rotated with PART, so that the parts of an assembly stay together as long as PART is not scaled; "
       "--insert-at, --insert-rotate and --insert-scale override this. An insert that misses the part, or overlaps it, "
       "causes a warning; --cut-insert subtracts it from the part with a clearance. The report contains its size, its "

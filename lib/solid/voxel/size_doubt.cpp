@@ -39,9 +39,10 @@ double mm_per(const std::string& unit) {
   return std::find_if(std::begin(units), std::end(units), [&](const auto& one) { return unit == one.first; })->second;
 }
 
-std::string unit_doubt(const std::string& subject, double largest_mm, const Writable& room) {
+std::string unit_doubt(const std::string& subject, const std::string& body, double largest_mm, const Writable& room) {
   const std::string unit = likely_unit(largest_mm, room);
-  return unit.empty() ? "" : subject + ": the part is only " + format_number(largest_mm, 3) + " mm large" + unit;
+  return unit.empty() ? ""
+                      : subject + ": the " + body + " is only " + format_number(largest_mm, 3) + " mm large" + unit;
 }
 
 std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
@@ -65,7 +66,7 @@ std::string size_doubt(const Part& part, const FillSummary& content, const model
            " mm no voxel of theirs is half covered, and they will not be printed; voxels of " +
            format_number(grid.voxel_mm * static_cast<double>(content.lost.most), 2) + " mm or thicker walls may help";
   }
-  return unit_known ? "" : unit_doubt(part.subject, largest_mm, room);
+  return unit_known ? "" : unit_doubt(part.subject, "part", largest_mm, room);
 }
 
 }  // namespace vam::solid

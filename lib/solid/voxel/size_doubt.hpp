@@ -13,9 +13,11 @@ namespace vam::solid {
 [[nodiscard]] const std::vector<std::string>& unit_names();
 [[nodiscard]] double mm_per(const std::string& unit);
 
-/// "FILE: the part is only 0.02 mm large; is its unit m?" of a part that is less than a tenth as large as the writable
-/// width when read in mm: the units in which it would be between a quarter and twelve times as large. Else empty.
-[[nodiscard]] std::string unit_doubt(const std::string& subject, double largest_mm, const Writable& room);
+/// "FILE: the part is only 0.02 mm large; is its unit m?" of a body (part, insert) that is less than a tenth as large
+/// as the writable width when read in mm: the units in which it would be between a quarter and twelve times as large.
+/// Else empty.
+[[nodiscard]] std::string unit_doubt(const std::string& subject, const std::string& body, double largest_mm,
+                                     const Writable& room);
 
 /// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
 /// is less than a tenth as large as the writable width, or a thousandth of it or more is in walls that no voxel
