@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Is a print that corrects itself better than one that is stopped at its best moment? Simulated prints without a clock.
 
-    python3 tests/bench/closed_loop.py [--seeds N] [--jobs N] [--nominal] [--drift] [--unjudged] [--keep FOLDER]
-                                       [--table CSV] [BUILD]
+    python3 tests/bench/closed_loop.py [--seeds N] [--jobs N] [--nominal] [--drift] [--unjudged] [--faults]
+                                       [--keep FOLDER] [--table CSV] [BUILD]
 
 The plan knows nothing of what is wrong with each printer: a lamp 20 % weaker (with --drift, one that becomes so),
 a resin that inhibits 15 % more at one end of the vial, absorbs 30 % more, and stands with its axis 0.2 mm to one side.
-Ends, sides, noise and specks are drawn by the seed. --nominal: nothing is wrong. As a lab would, the
-resin's working curve is measured first, and its critical dose at the surface by a print that is judged (--unjudged:
-not). Printed for each seed is the RMS
-deviation of the print's surface from the design (vam-sdf) when the open loop is stopped at its best sixth of a turn,
-that of the closed loop, and their ratio; --table writes both against turns, the median over the seeds.
+Ends, sides, noise and specks are drawn by the seed. --nominal: nothing is wrong. As a lab would, the resin's working
+curve is measured first, and its critical dose at the surface by a print that is judged (--unjudged: not).
+
+Printed for each seed is the RMS deviation of the print's surface from the design (vam-sdf) when the open loop is stopped
+at its best sixth of a turn, that of the closed loop, and their ratio. --faults: the camera or its volumes fail from some
+turn on, and the open loop ends as planned. --table writes both against turns, the median over the seeds.
 """
 import argparse
 import json
@@ -148,10 +149,26 @@ def open_loop(plan, folder, truth):
     return found
 
 
-def closed_loop(plan, folder, truth):
-    """Deviations by turns, and the last one; vam-renew takes the volume of each."""
+FAULTS = ("lost", "late", "stale", "damaged", "turned")  # of the camera's volumes, from some turn on
+
+
+def broken(path, fault, first):
+    """The volume as that fault leaves it; False: there is none."""
+    if fault == "stale" and first:
+        shutil.copy(first, path)
+    elif fault == "damaged":
+        with open(path, "r+b") as file:
+            file.seek(os.path.getsize(path) // 2)
+            file.write(b"not a volume")
+    return fault != "lost"
+
+
+def closed_loop(plan, folder, truth, fault="", fault_turn=0):
+    """Deviations by turns; vam-renew takes the volume of each. Without new light the print ends as planned."""
     one = Print(plan, folder, truth)
-    light, end, found, axis = "sinogram.exr", LAST_TURN, {}, "1"
+    light, end, found, axis, first = "sinogram.exr", LAST_TURN, {}, "1", ""
+    if fault:
+        end = math.ceil(plan.turns)
     for turn in range(LAST_TURN):
         if turn >= end:
             break
@@ -163,15 +180,21 @@ def closed_loop(plan, folder, truth):
         if turn + 1 < 0.6 * plan.turns:
             continue
         found[turn + 1] = one.deviation()
-        run("vam-ost", "views.exr", "--live", *SEEN, "-o", "of_turn", folder=folder, good=(0, 1, 65))
+        failing = fault if turn >= fault_turn else ""
+        wrong = ["--set", "camera.azimuth_deg=120"] if failing == "turned" else []
+        run("vam-ost", "views.exr", "--live", *SEEN, *wrong, "-o", "of_turn", folder=folder, good=(0, 1, 65))
         if not os.path.exists(folder + "/of_turn/scatter-0000.vdb"):
+            continue
+        if failing and not broken(folder + "/of_turn/scatter-0000.vdb", failing, first):
             continue
         number = len([name for name in os.listdir(folder + "/ost") if name.startswith("scatter")])
         os.rename(folder + "/of_turn/scatter-0000.vdb", folder + "/ost/scatter-%04d.vdb" % number)
+        first = first or folder + "/ost/scatter-0000.vdb"
         with open(folder + "/ost.jsonl", "a") as log:
             print(json.dumps({"turns": turn + 1, "time_s": 18 * turn + 18}), file=log)
         run("vam-renew", ".", "--target", plan.folder + "/part.vdb", "--curve", plan.curve, "--turns",
-            plan.turns, "--axis-sigma", axis, "--once", number, folder=folder, good=(0, 1))
+            plan.turns, "--axis-sigma", axis, "--once", number, *(["--lead", "1.5"] if failing == "late" else []), folder=folder,
+            good=(0, 1))
     one.end()
     return found
 
@@ -186,6 +209,25 @@ def trial(plan, seed, options):
     print("seed %2d  open %.4f mm at turn %5.2f (mean %+.4f)  closed %.4f mm at turn %d (mean %+.4f)  ratio %.3f" %
           (seed, best[0], best_turn, best[1], last[0], max(closed), last[1], last[0] / best[0]), flush=True)
     return opened, closed, last[0] / best[0]
+
+
+def fault_trial(plan, seed, options):
+    """Against the same print in open loop, which ends as planned: without a camera nothing can stop it earlier."""
+    draw = random.Random(1000 + seed)
+    fault = FAULTS[seed % len(FAULTS)]
+    turn = draw.randrange(int(0.6 * plan.turns), math.ceil(plan.turns))
+    folder = "%s/fault-%d" % (plan.folder, seed)
+    truth = truth_of(seed, options)
+    one = Print(plan, folder + "-open", truth)
+    one.tell("play", "sinogram.exr", 0, 360 * math.ceil(plan.turns), "-")
+    opened = one.deviation()
+    one.end()
+    closed = closed_loop(plan, folder + "-closed", truth, fault, turn)
+    last = closed[max(closed)]
+    ratio = 1.0 if last == opened else last[0] / opened[0]  # also where nothing is solid in either
+    print("seed %2d  %-7s from turn %2d  open %.4f mm  closed %.4f mm at turn %d  ratio %.3f" %
+          (seed, fault, turn, opened[0], last[0], max(closed), ratio), flush=True)
+    return {}, {}, ratio
 
 
 def write_table(path, trials):
@@ -208,6 +250,7 @@ def main():
     parser.add_argument("--unjudged", action="store_true")
     parser.add_argument("--nominal", action="store_true")
     parser.add_argument("--drift", action="store_true")
+    parser.add_argument("--faults", action="store_true")
     parser.add_argument("--keep")
     parser.add_argument("--table")
     options = parser.parse_args()
@@ -221,10 +264,10 @@ def main():
         plan = Plan(folder + "/again", plan.next_critical(), plan.curve)
         print("critical dose by a judged print: %.2f mJ/cm3" % plan.critical, flush=True)
     with ThreadPoolExecutor(options.jobs) as pool:
-        trials = list(pool.map(lambda seed: trial(plan, seed, options), range(1, options.seeds + 1)))
+        trials = list(pool.map(lambda seed: (fault_trial if options.faults else trial)(plan, seed, options), range(1, options.seeds + 1)))
     ratios = [ratio for _, _, ratio in trials]
     print("ratio: median %.3f, mean %.3f, largest %.3f" % (statistics.median(ratios), statistics.mean(ratios), max(ratios)))
-    if options.table:
+    if options.table and not options.faults:
         write_table(options.table, trials)
     if not options.keep:
         shutil.rmtree(folder)

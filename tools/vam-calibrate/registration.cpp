@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate registration: height, angle and scale of the camera's volumes in the projector's frame.
-#include "metrology/calibrate/registration.hpp"
+#include "metrology/compare/registration.hpp"
 
 #include <cmath>
 

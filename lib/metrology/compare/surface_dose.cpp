@@ -10,7 +10,7 @@
 #include "base/json.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
-#include "metrology/ost/cured.hpp"
+#include "model/value_at.hpp"
 #include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
@@ -55,7 +55,7 @@ double slope_at(const model::Volume& dose, const Vector3& at, const Vector3& nor
   const double step = dose.grid.voxel_mm;
   const auto along = [&](double way) {
     return static_cast<double>(
-        value_at(dose, at[0] + way * normal[0], at[1] + way * normal[1], at[2] + way * normal[2] * stretch_z));
+        model::value_at(dose, at[0] + way * normal[0], at[1] + way * normal[1], at[2] + way * normal[2] * stretch_z));
   };
   return (along(-step) - along(step)) / (2 * step);
 }
@@ -71,7 +71,7 @@ SurfaceDose surface_dose(const model::TriangleSoup& print, const model::Volume& 
   for (const auto& [point, normal, triangle] : points) {
     const Vector3 at{point[0], point[1], point[2] * stretch_z};
     if (!is_within(dose.grid, at)) continue;
-    all.push_back(static_cast<double>(value_at(dose, at[0], at[1], at[2])));
+    all.push_back(static_cast<double>(model::value_at(dose, at[0], at[1], at[2])));
     slopes.push_back(slope_at(dose, at, normal, stretch_z));
     parts[octant(point, box)].push_back(all.back());
   }

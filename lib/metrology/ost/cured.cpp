@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/parallel.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -33,35 +34,6 @@ SumProjections sum_projections(const model::Volume& volume, std::optional<double
   return sums;
 }
 
-float value_at(const model::Volume& volume, double x_mm, double y_mm, double z_mm) {
-  const model::Grid& g = volume.grid;
-  const double at[3] = {(x_mm - g.origin_mm[0]) / g.voxel_mm, (y_mm - g.origin_mm[1]) / g.voxel_mm,
-                        (z_mm - g.origin_mm[2]) / g.voxel_mm};
-  const int size[3] = {g.nx, g.ny, g.nz};
-  int low[3];
-  float high_part[3];
-  for (int d = 0; d < 3; ++d) {
-    const double whole = std::floor(at[d]);
-    if (!(whole >= -1) || !(whole < size[d])) return 0;
-    low[d] = static_cast<int>(whole);
-    high_part[d] = static_cast<float>(at[d] - whole);
-  }
-  float sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    float weight = 1;
-    int index[3];
-    bool inside = true;
-    for (int d = 0; d < 3; ++d) {
-      const int up = corner >> d & 1;
-      index[d] = low[d] + up;
-      weight *= up != 0 ? high_part[d] : 1 - high_part[d];
-      inside = inside && index[d] >= 0 && index[d] < size[d];
-    }
-    if (inside) sum += weight * volume.slice(index[2])[index[1] * g.nx + index[0]];
-  }
-  return sum;
-}
-
 Cured cured(const model::Volume& scatter, double level, const model::Volume& target) {
   const double whole = std::accumulate(target.values.begin(), target.values.end(), 0.0,
                                        [](double sum, float v) { return sum + (model::half_covered(v) ? 1 : 0); });
@@ -74,7 +46,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& tar
     for (int j = 0; j < g.ny; ++j) {
       for (int i = 0; i < g.nx; ++i) {
         const bool print = static_cast<double>(in[j * g.nx + i]) >= level;
-        const bool design = model::half_covered(value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k)));
+        const bool design = model::half_covered(model::value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k)));
         count[0] += print && design ? 1 : 0;
         count[1] += print && !design ? 1 : 0;
         count[2] += !print && design ? 1 : 0;

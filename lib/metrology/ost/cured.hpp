@@ -21,9 +21,6 @@ struct SumProjections {
 };
 [[nodiscard]] SumProjections sum_projections(const model::Volume& volume, std::optional<double> threshold = {});
 
-/// The value at a point in mm, trilinear between voxel centres; 0 outside.
-[[nodiscard]] float value_at(const model::Volume& volume, double x_mm, double y_mm, double z_mm);
-
 /// Volumes in mm^3, of what is cured ({scatter >= I_p}) against a target (coverage of 1/2 or more).
 struct Cured {
   double target_mm3 = 0;

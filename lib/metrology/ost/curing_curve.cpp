@@ -10,7 +10,7 @@
 #include "base/json.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/text.hpp"
-#include "metrology/ost/cured.hpp"
+#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -161,7 +161,7 @@ void widen(stats::Measured& number, const stats::Measured& one, const stats::Mea
 }
 
 double dose_at(const model::Volume& dose, const std::array<double, 3>& place) {
-  return static_cast<double>(value_at(dose, place[0], place[1], place[2]));
+  return static_cast<double>(model::value_at(dose, place[0], place[1], place[2]));
 }
 
 // Where a neighbour has another dose, scatter is a mixture.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -38,7 +39,8 @@ model::Volume sampled(const model::Volume& target, const model::Grid& g) {
   model::Volume out{g, std::vector<float>(g.size())};
   parallel_for(g.nz, [&](int k) {
     for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) out.slice(k)[j * g.nx + i] = value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k));
+      for (int i = 0; i < g.nx; ++i)
+        out.slice(k)[j * g.nx + i] = model::value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k));
     }
   });
   return out;

@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "metrology/ost/cured.hpp"
 #include "metrology/ost/sensitivity.hpp"
+#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -57,7 +57,7 @@ Sight sight_of(const model::Volume& scatter, const model::Volume* sigma, const A
                const ScatterCurve& curve, int margin) {
   const model::Grid& g = scatter.grid;
   const auto dose_at = [&](const model::Volume& volume, int i, int j, int k) {
-    return value_at(volume, g.x_mm(i), g.y_mm(j), g.z_mm(k) * dose.stretch_z);
+    return model::value_at(volume, g.x_mm(i), g.y_mm(j), g.z_mm(k) * dose.stretch_z);
   };
   const auto least = static_cast<float>(least_dose * curve.critical_dose_mj_cm3);
   std::vector<std::array<int, 6>> of_slice(g.nz, {g.nx, g.ny, g.nz, 0, 0, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/calibrate/registration.hpp"
+#include "metrology/compare/registration.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
