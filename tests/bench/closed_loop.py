@@ -10,9 +10,9 @@ a resin that inhibits 15 % more at one end of the vial, absorbs 30 % more, and s
 Ends, sides, noise and specks are drawn by the seed. --nominal: nothing is wrong. As a lab would, the resin's working
 curve is measured first, and its critical dose at the surface by a print that is judged (--unjudged: not).
 
-Printed for each seed is the RMS deviation of the print's surface from the design (vam-sdf) when the open loop is stopped
-at its best sixth of a turn, that of the closed loop, and their ratio. --faults: the camera or its volumes fail from some
-turn on, and the open loop ends as planned. --table writes both against turns, the median over the seeds.
+Printed for each seed is the RMS deviation of the print's surface from the design (vam-sdf) when the open loop is
+stopped at its best sixth of a turn, that of the closed loop, and their ratio. --faults: the camera or its volumes fail
+from some turn on, and the open loop ends as planned. --table writes both against turns, the median over the seeds.
 """
 import argparse
 import json
@@ -140,7 +140,7 @@ def open_loop(plan, folder, truth):
     for sixth in range(6 * LAST_TURN):
         one.tell("play", "sinogram.exr", 60 * sixth, 60 * sixth + 60, "-")
         turns = (sixth + 1) / 6
-        if turns < 0.6 * plan.turns:
+        if turns < 0.7 * plan.turns:
             continue
         found[turns] = one.deviation()
         if found[turns][0] > 2 * min(found.values())[0] and turns > plan.turns:
@@ -176,10 +176,13 @@ def closed_loop(plan, folder, truth, fault="", fault_turn=0):
             light = "renewed/turn-%d.exr" % turn
             with open(folder + "/renewed.jsonl") as log:
                 end = [entry["end"] for entry in map(json.loads, log) if entry.get("from_turn") == turn][-1]
-        one.tell("play", light, 360 * turn, 360 * turn + 360, "views.exr")
+        for sixth in range(6):
+            start = 360 * turn + 60 * sixth
+            one.tell("play", light, start, start + 60, "+" if sixth < 5 else "views.exr")
+            if turn + (sixth + 1) / 6 >= 0.7 * plan.turns:
+                found[turn + (sixth + 1) / 6] = one.deviation()
         if turn + 1 < 0.6 * plan.turns:
             continue
-        found[turn + 1] = one.deviation()
         failing = fault if turn >= fault_turn else ""
         wrong = ["--set", "camera.azimuth_deg=120"] if failing == "turned" else []
         run("vam-ost", "views.exr", "--live", *SEEN, *wrong, "-o", "of_turn", folder=folder, good=(0, 1, 65))
@@ -193,8 +196,8 @@ def closed_loop(plan, folder, truth, fault="", fault_turn=0):
         with open(folder + "/ost.jsonl", "a") as log:
             print(json.dumps({"turns": turn + 1, "time_s": 18 * turn + 18}), file=log)
         run("vam-renew", ".", "--target", plan.folder + "/part.vdb", "--curve", plan.curve, "--turns",
-            plan.turns, "--axis-sigma", axis, "--once", number, *(["--lead", "1.5"] if failing == "late" else []), folder=folder,
-            good=(0, 1))
+            plan.turns, "--axis-sigma", axis, "--once", number, *(["--lead", "1.5"] if failing == "late" else []),
+            folder=folder, good=(0, 1))
     one.end()
     return found
 
@@ -231,15 +234,16 @@ def fault_trial(plan, seed, options):
 
 
 def write_table(path, trials):
-    """Turns and the median deviations; of a closed print that has ended, its last."""
-    turns = sorted({turn for opened, closed, _ in trials for turn in closed})
+    """Turns and the median deviations, once there is a surface; of a closed print that has ended, its last."""
+    turns = sorted({turn for opened, _, _ in trials for turn in opened})
     with open(path, "w") as file:
-        print("turn,open_mm,closed_mm", file=file)
+        print("turn,open_loop_mm,closed_loop_mm", file=file)
         for turn in turns:
             opened = [one[turn][0] for one, _, _ in trials if turn in one]
             closed = [one[min(turn, max(one))][0] for _, one, _ in trials if min(turn, max(one)) in one]
-            if opened and closed:
-                print("%g,%.5f,%.5f" % (turn, statistics.median(opened), statistics.median(closed)), file=file)
+            row = [statistics.median(values or [math.inf]) for values in (opened, closed)]
+            if max(row) < math.inf:
+                print("%.3f,%.5f,%.5f" % (turn, *row), file=file)
 
 
 def main():
@@ -264,9 +268,11 @@ def main():
         plan = Plan(folder + "/again", plan.next_critical(), plan.curve)
         print("critical dose by a judged print: %.2f mJ/cm3" % plan.critical, flush=True)
     with ThreadPoolExecutor(options.jobs) as pool:
-        trials = list(pool.map(lambda seed: (fault_trial if options.faults else trial)(plan, seed, options), range(1, options.seeds + 1)))
+        one = fault_trial if options.faults else trial
+        trials = list(pool.map(lambda seed: one(plan, seed, options), range(1, options.seeds + 1)))
     ratios = [ratio for _, _, ratio in trials]
-    print("ratio: median %.3f, mean %.3f, largest %.3f" % (statistics.median(ratios), statistics.mean(ratios), max(ratios)))
+    print("ratio: median %.3f, mean %.3f, largest %.3f" %
+          (statistics.median(ratios), statistics.mean(ratios), max(ratios)))
     if options.table and not options.faults:
         write_table(options.table, trials)
     if not options.keep:
