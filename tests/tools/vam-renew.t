@@ -5,9 +5,11 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 export PATH="$VAM_SOURCE/scripts:$VAM_BUILD:$PATH"
 
-cp "$VAM_SOURCE/tests/tools/curing_printer.toml" printer.toml
+# The resin gels with 60 mJ/cm3. A judged print (vam-calibrate critical-dose, as in tests/bench/closed_loop.py) has shown
+# that surfaces need 60.7 to be in their place.
+sed 's/critical_dose_mj_cm3 = 60/critical_dose_mj_cm3 = 60.7/' "$VAM_SOURCE/tests/tools/curing_printer.toml" >printer.toml
 export VAM_PRINTER=$PWD/printer.toml
-bench='voxel=0.2 columns=66 rows=46 views=60'
+bench='voxel=0.2 columns=66 rows=46 views=60 resin.critical_dose_mj_cm3=60'
 vam-slice --shape gyroid:cell=6,sheet=1.2,diameter=7,height=5 --voxel 0.2 -o part.vdb
 vam-optimize --angles 60 part.vdb -o whole.exr
 vam-dose whole.exr --like part.vdb --exposure-plan -o plan.vdb --report plan.json
@@ -36,7 +38,7 @@ deviation() {  # deviation NAME: RMS of the print's surface
   tell settled settled.vdb
   vam-sdf "$1/settled.vdb" part.vdb --align none --samples 20000 --isovalue 1 --report "$1.json" >/dev/null && json "$1.json" print_to_design.rms_mm
 }
-true_one='gradient=0.15 centre=1 resin.absorption_per_mm=0.078 projector.max_intensity_mw_cm2=0.75'
+true_one='gradient=0.15 centre=1 resin.absorption_per_mm=0.078 projector.max_intensity_mw_cm2=0.72'
 first=$(awk "BEGIN { print int(0.6 * $planned) }")
 
 begin open
@@ -76,6 +78,5 @@ axis=$(json "$(ls closed/renewed/sensitivity-*.json | tail -n 1)" axis_offset_px
 holds 'for the axis as it is' "($axis - 1) ^ 2 < 0.15 ^ 2"
 holds 'and a resin that needs 5 % more light' "($(json "$(ls closed/renewed/sensitivity-*.json | tail -n 1)" sensitivity_mean) - 0.98) ^ 2 < 0.04 ^ 2"
 echo "# open at its best $best mm, closed $closed mm"
-# Measured 0.57; a print whose plan is true has 0.59 of it at its own best moment.
-holds 'the print deviates less than the open loop, stopped at its best moment' "$closed < 0.65 * $best"
+holds 'the print deviates by less than half of the open loop, stopped at its best moment' "$closed < 0.5 * $best"
 done_testing
