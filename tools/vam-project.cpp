@@ -21,7 +21,9 @@ using namespace vam;
 using project::Options;
 
 void freeze(const Options& options, const model::Printer& printer) {
-  require_printer(options, io::StackReader(options.input).info(), printer);
+  const io::StackReader reader(options.input);
+  project::require_whole(options.input, reader.info());
+  require_printer(options, reader.info(), printer);
   project::write_frozen(options.freeze, printer);
 }
 

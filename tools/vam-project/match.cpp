@@ -34,6 +34,13 @@ std::vector<std::string> require_printer(const Options& options, const model::St
   return differences;
 }
 
+void require_whole(const std::string& input, const model::StackInfo& info) {
+  if (info.piece.whole()) return;
+  throw Error{Fault::data, io::input_name(input) + ": holds " + std::to_string(info.count) + " of " +
+                               std::to_string(info.piece.of) + " slices (vam:piece " + model::piece_text(info.piece) +
+                               "); join the pieces by vam-stack"};
+}
+
 void write_frozen(const std::string& path, model::Printer printer) {
   for (std::string* file : {&printer.projector.response, &printer.camera.flat}) {
     if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();

@@ -15,6 +15,7 @@
 #include "io/stream/input_name.hpp"
 #include "optics/slice_place.hpp"
 #include "response.hpp"
+#include "vam-project/match.hpp"
 
 namespace vam::project {
 
@@ -77,6 +78,7 @@ Frames frames_of(const SliceStack& stack, double fps, const Options& options, co
 
 SliceStack slices_of(const std::string& path, io::StackReader& reader) {
   io::require(path, reader.info(), model::Kind::frames, model::Space::projector);
+  require_whole(path, reader.info());
   return {io::input_name(path), reader.info(), reader.about(), [&reader](Image& slice) {
             model::ImageInfo about;
             return reader.next(slice, about);
@@ -117,7 +119,6 @@ Json slice_figures(const Frames& frames, const Options& options, const model::Pr
 
 model::StackInfo facts_of(const SliceStack& stack, double fps, const model::Projector& projector) {
   model::StackInfo info = stack.info;
-  info.piece = {};
   info.pixel_mm = info.row_mm = projector.pixel_mm;
   optics::SlicePlace(stack.name, projector, stack.info).apply(info);
   info.units = "fraction of full intensity";

@@ -14,6 +14,7 @@
 #include "base/text.hpp"
 #include "facts.hpp"
 #include "optics/flatland_movie.hpp"
+#include "vam-project/match.hpp"
 
 namespace vam::project {
 
@@ -51,6 +52,7 @@ void warn_beside_rows(double rows, const std::string& name) {
 
 Light read_light(const Options& options, io::StackReader& reader, const model::Projector& projector) {
   const auto& info = reader.info();
+  require_whole(options.input, info);
   const double right = options.column_offset;
   const double down = options.row_offset;
   const PixelRect whole{0, 0, projector.columns, projector.rows};
