@@ -11,7 +11,7 @@ App& add_output(App& app, std::string& output) {
 
 App& add_printer(App& app, PrinterOptions& options) {
   app.group("Printer");
-  app.option("--printer", "FILE", options.file, "Printer settings (TOML).");
+  app.option(printer_flag, "FILE", options.file, "Printer settings (TOML).");
   app.default_is(
       "$VAM_PRINTER, else ./printer.toml, else the built-in printer (1024 x 768 pixels of 0.065 mm, throw ratio 1.8, "
       "vial of 25.4 mm, index 1.53)");

@@ -19,6 +19,7 @@ struct PrinterOptions {
   std::vector<std::string> sets;  // "vial.radius_mm=12"
   bool print = false;             // --print-printer
 };
+inline constexpr const char* printer_flag = "--printer";
 App& add_printer(App& app, PrinterOptions& options);
 
 /// --report FILE.json

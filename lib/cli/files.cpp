@@ -11,9 +11,11 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/printer_path.hpp"
 #include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "cli/app.hpp"
+#include "cli/common.hpp"
 #include "cli/private/app_state.hpp"
 
 namespace vam::cli {
@@ -87,6 +89,7 @@ std::vector<std::string> App::inputs() const {
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {
       if (option.reads) paths.push_back(option.value());
+      if (option.flag == printer_flag && option.value() != "-") paths.push_back(printer_path(option.value()));
     }
   }
   std::erase(paths, "");

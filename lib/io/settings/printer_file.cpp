@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "base/printer_path.hpp"
 #include "base/text.hpp"
 #include "base/utc.hpp"
 #include "io/settings/calibration_record.hpp"
@@ -82,7 +83,8 @@ struct Store {
   const char* operator()(int* target) const {
     const auto value = node.is_integer() ? node.value<int>() : std::nullopt;
     if (value) *target = *value;
-    return value ? nullptr : "a whole number";
+    if (value) return nullptr;
+    return node.is_integer() ? "a whole number up to 2147483647" : "a whole number";
   }
   const char* operator()(double* target) const {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
@@ -213,13 +215,6 @@ void override_one(Printer& printer, const std::string& set) {
   assign(printer, *field, *node, Fault::usage, subject);
 }
 
-std::string settings_file(const std::string& file) {
-  if (!file.empty()) return file;
-  if (const char* named = std::getenv("VAM_PRINTER"); named != nullptr && *named != '\0') return named;
-  std::error_code ignored;
-  return std::filesystem::exists("printer.toml", ignored) ? "printer.toml" : "";
-}
-
 std::string slurp(const std::string& file) {
   if (file == "-") throw Error{Fault::usage, "-: printer settings are not read from standard input; name a file"};
   if (std::filesystem::is_directory(file)) throw Error{Fault::no_input, file + ": is a folder, not a printer file"};
@@ -256,7 +251,7 @@ Printer parse_printer(std::string_view toml, const std::string& subject) {
 }
 
 Printer load_printer(const std::string& file, const std::vector<std::string>& sets, Records records) {
-  const std::string path = settings_file(file);
+  const std::string path = printer_path(file);
   Printer printer = without_axis();
   if (!path.empty()) {
     const std::string text = slurp(path);
