@@ -35,6 +35,9 @@ mkdir ".vam-$(cat .log/zombie)-0" && touch ".vam-$(cat .log/zombie)-0/frame.png"
 mkdir ".vam-$parent-0"
 quiet 'a run beside what a zombie has left' vam-slice box.off --voxel 0.2 -o part.vdb
 is 'removes it, and nothing of one that runs' "$(ls -A | grep '^\.vam-')" ".vam-$parent-0"
+mkdir ".vam-$(cat .log/zombie)-1"
+quiet 'a run that replaces nothing' vam-slice box.off --voxel 0.2 -o new.vdb
+is 'removes it, too' "$(ls -A | grep '^\.vam-')" ".vam-$parent-0"
 kill $parent; rmdir ".vam-$parent-0"
 is 'nothing else is left' "$(ls -A | grep '^\.vam-')" ''
 done_testing

@@ -146,6 +146,7 @@ void OutputFile::publish() {
   // Without the wait a crash could leave the new name on an empty file.
   if (fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail(Fault::io, name_, "cannot finish", errno);
   if (temporary_.empty()) {
+    sweep_folder_of(target_);
     const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
     if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
       synchronise_folder_of(target_);

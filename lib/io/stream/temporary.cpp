@@ -136,12 +136,15 @@ void sweep(const std::string& folder) {
   static std::set<std::string> swept;  // NOLINT: one per process
   const std::scoped_lock lock(mutex);
   if (!swept.insert(folder).second) return;
-  std::error_code problem;
-  for (fs::directory_iterator at(folder.empty() ? "." : folder, problem), end; !problem && at != end;
-       at.increment(problem)) {
+  DIR* const entries = opendir(folder.empty() ? "." : folder.c_str());
+  if (entries == nullptr) return;
+  while (const dirent* entry = readdir(entries)) {
+    if (std::strncmp(entry->d_name, ".vam-", 5) != 0) continue;
+    const fs::path path = fs::path(folder) / entry->d_name;
     std::error_code ignored;
-    if (is_left_over(at->path())) fs::remove_all(at->path(), ignored);
+    if (is_left_over(path)) fs::remove_all(path, ignored);
   }
+  closedir(entries);
 }
 
 // Tries names until `create` meets one that does not exist. The name is listed before the file exists: a signal between
@@ -193,6 +196,8 @@ int name_temporary(int descriptor, const std::string& target, std::string& name,
     return linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path, AT_SYMLINK_FOLLOW);
   });
 }
+
+void sweep_folder_of(const std::string& target) { sweep(directory_of(target)); }
 
 void synchronise_folder_of(const std::string& target) {
   const std::string folder = directory_of(target);

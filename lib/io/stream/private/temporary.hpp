@@ -19,6 +19,9 @@ int name_temporary(int descriptor, const std::string& target, std::string& name,
 /// The same for a folder that will hold files, no folders. Returns 0, or -1 with errno set.
 int create_temporary_folder(const std::string& target, std::string& name, int& slot);
 
+/// Removes what dead processes left in the folder of `target`; once a folder and process.
+void sweep_folder_of(const std::string& target);
+
 /// Waits until the disk knows the names in the folder of `target`; what it does not know would be gone after a loss of
 /// power. File systems that cannot are left in peace.
 void synchronise_folder_of(const std::string& target);
