@@ -109,6 +109,8 @@ void take_metadata(const FloatGrid& sparse, VolumeFacts& facts) {
     if (it->second->typeName() != openvdb::StringMetadata::staticTypeName()) continue;
     const std::string value = it->second->str();
     if (it->first == history_key) {
+      constexpr std::size_t most_bytes = 1 << 20;
+      if (value.size() > most_bytes) throw std::runtime_error("has a history of more than 1 MiB");
       std::istringstream lines(value);
       for (std::string line; std::getline(lines, line);) facts.history.push_back(line);
     } else if (it->first == units_key) {

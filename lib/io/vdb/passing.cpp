@@ -91,6 +91,7 @@ class PassingGrid : public FloatGrid {
     throw std::runtime_error(mismatch("grid '" + getName() + "'", seals_->values, values));
   }
   [[nodiscard]] const Digest& values() const { return values_; }
+  [[nodiscard]] bool sealed() const { return seals_.has_value(); }
 
  private:
   void check(bool finite) const {
@@ -168,10 +169,13 @@ class PassingArchive : public openvdb::io::Archive {
     if (wanted_.heads_alone && new_order && about.getEndPos() > stream.tellg()) {
       readGridCompression(stream);
       grid->send_head_alone(stream);
+      require_seals(*grid);
       stream.seekg(about.getEndPos() - stream.tellg(), std::ios_base::cur);
       return;
     }
     readGrid(grid, about, stream);
+    if (about.isInstance()) grid->take_seals();
+    require_seals(*grid);
     if (!shown) {
       out_.put(Record::other);
       out_.put(about.gridName());
@@ -179,14 +183,24 @@ class PassingArchive : public openvdb::io::Archive {
       const auto parent = grids.find(about.instanceParentName());
       if (parent == grids.end()) throw std::runtime_error("grid '" + about.gridName() + "' shares unknown voxels");
       grid->setTree(parent->second->treePtr());
-      grid->take_seals();
       grid->judge(parent->second->values());
       grid->send(about.instanceParentName());
     }
   }
 
+  // The tools seal every grid of an archive.
+  void require_seals(const PassingGrid& grid) {
+    if (!first_) first_ = &grid;
+    if (grid.sealed() == first_->sealed()) return;
+    const PassingGrid& sealed = grid.sealed() ? grid : *first_;
+    const PassingGrid& other = grid.sealed() ? *first_ : grid;
+    throw std::runtime_error("grid '" + sealed.getName() + "' is sealed, and grid '" + other.getName() +
+                             "' is not; make the file again");
+  }
+
   const WantedGrids& wanted_;
   Sender& out_;
+  const PassingGrid* first_ = nullptr;
   bool found_ = false;
   std::vector<std::shared_ptr<void>>& kept_;
 };
