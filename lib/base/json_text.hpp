@@ -11,7 +11,9 @@ namespace vam {
 
 /// The value of a text; discarded (is_discarded()) where the text is no JSON, or nested deeper than 64 levels: what
 /// walks a value calls itself once a level, and a file of 100 kB could end it.
-[[nodiscard]] Json parse_json(std::string_view text);
+enum class Keys { any, distinct };
+/// distinct: discarded, too, where an object has a key twice, of which one would be believed.
+[[nodiscard]] Json parse_json(std::string_view text, Keys keys = Keys::any);
 
 /// What stands at a key, or `otherwise` where there is none or something of another type.
 [[nodiscard]] double number_at(const Json& object, const char* key, double otherwise = 0);

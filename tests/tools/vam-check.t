@@ -31,6 +31,24 @@ flip plain.exr -500 changed.exr
 fails 65 'changed.exr: image [0-9]* changed after it was written \(sealed [0-9a-f]{8}, read [0-9a-f]{8}\); create it again' vam-check changed.exr
 fails 65 'changed.exr: image [0-9]* changed' vam-resample changed.exr -o frames.exr
 ok '--fast checks headers only' vam-check --fast bad.exr
+for file in sino.exr plain.exr pipe.exr own.exr; do
+  case $file in pipe.exr) vam-sinogram part.vdb >pipe.exr;; own.exr) python3 "$VAM_SOURCE/tests/tools/exr.py" make own.exr;; esac
+  ok "--fast of $file" vam-check --fast $file
+  head -c -1 $file >cut.exr
+  fails 65 'cut.exr: is cut off after [0-9]* bytes, before the last of its [0-9]* images ends' vam-check --fast cut.exr
+  { cat $file; printf junk; } >long.exr
+  fails 65 'long.exr: trailing data after the last image, from byte [0-9]* on' vam-check --fast long.exr
+done
+cat sino.exr sino.exr >two.exr
+fails 65 'another stack follows the last image' vam-resample two.exr -o x.exr
+vam-check two.exr >out 2>err
+is 'two stacks in a file are said' "$? $(cat err)" \
+  '0 vam-check: warning: two.exr: holds 2 stacks, one behind the other, as a live capture does; tools that read one refuse it'
+
+# What follows the last image of an unsealed stack, through a pipe whose writer takes its time.
+for rest in 'printf junk' 'cat own.exr'; do
+  fails 65 'stdin: (trailing data after|another stack follows) the last image' sh -c "{ cat own.exr; sleep 0.2; $rest; } | vam-resample -o x.exr"
+done
 python3 - <<'PY'
 data = open('sino.exr', 'rb').read()
 at = data.find(b'vam:pixel_mm\0double\0') + 24
@@ -56,6 +74,18 @@ is 'a file of another program is reported as unsealed' "$(vam-check foreign.exr 
   'foreign.exr: stack of 3 images, unsealed 0'
 ok 'other tools read an unsealed file' vam-resample foreign.exr -o r.exr
 is 'a mesh is unsealed' "$(vam-check a.off)" 'a.off: file of another kind, unsealed'
+
+# A volume that states an impossible stretch.
+for stretch in 1e300 nan 2x -1; do
+  python3 - "$stretch" <<'PY'
+import struct, sys
+data = open('part.vdb', 'rb').read().replace(b'vam:seal', b'was:seal').replace(b'vam:facts_seal', b'was:facts_seal')
+at = data.index(b'string', data.index(b'vam:stretch_z')) + 6
+size, = struct.unpack_from('<I', data, at)
+open('stretched.vdb', 'wb').write(data[:at + 4] + sys.argv[1].encode().rjust(size) + data[at + 4 + size:])
+PY
+  fails 65 "the volume states vam:stretch_z ' *$stretch', which is not a factor of 0.1 to 10" vam-sdf stretched.vdb part.vdb --isovalue 0.5
+done
 
 # ---- records, reports, printer files -------------------------------------------------------------------------------
 vam-slice --print-printer --set vial.radius_mm=11.5 -o printer.toml

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "base/text.hpp"
 #include "io/stream/seal.hpp"
@@ -66,6 +67,13 @@ std::vector<std::string> split(const std::string& all) {
   std::istringstream stream(all);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
+}
+
+// A copy is in the header of every image.
+std::string checked_history(const std::string& text) {
+  constexpr std::size_t most_bytes = 1 << 20;
+  if (text.size() <= most_bytes) return text;
+  throw std::runtime_error("vam:history has " + std::to_string(text.size()) + " bytes, more than 1 MiB");
 }
 
 model::Piece checked_piece(const std::string& text) {
@@ -176,7 +184,7 @@ StackInfo stack_info(const Imf::Header& header) {
   info.angle_step_deg = number(header, "vam:angle_step_deg").value_or(0);
   if (const std::string why = implausible(info); !why.empty()) throw std::runtime_error(why);
   info.units = text(header, "vam:units").value_or(info.units);
-  info.history = split(text(header, "vam:history").value_or(""));
+  info.history = split(checked_history(text(header, "vam:history").value_or("")));
   if (const auto poses = text(header, poses_name)) info.poses = model::parse_poses(*poses);
   if (const auto piece = text(header, piece_name)) info.piece = checked_piece(*piece);
   for (auto it = header.begin(); it != header.end(); ++it) {
@@ -187,6 +195,38 @@ StackInfo stack_info(const Imf::Header& header) {
     if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
   }
   return info;
+}
+
+void require_alike(const Imf::Header& header, const StackInfo& first, const StackInfo& own, int index) {
+  const std::string image = "image " + std::to_string(index);
+  const auto compare = [&](const char* name, const std::string& is, const std::string& was) {
+    if (is == was) return;
+    throw std::runtime_error(image + " has " + name + " " + is + ", but image 0 has " + was +
+                             "; all of a stack have the same");
+  };
+  compare("vam:space", space_name(own.space), space_name(first.space));
+  compare("vam:units", "'" + own.units + "'", "'" + first.units + "'");
+  for (const auto& [name, member] : {std::pair{"vam:pixel_mm", &StackInfo::pixel_mm},
+                                     {"vam:row_mm", &StackInfo::row_mm},
+                                     {"vam:angle_start_deg", &StackInfo::angle_start_deg},
+                                     {"vam:angle_step_deg", &StackInfo::angle_step_deg}}) {
+    if (own.*member != first.*member) compare(name, format_number(own.*member, 9), format_number(first.*member, 9));
+  }
+  if (first.kind != Kind::sinogram) return;
+  const auto stated = number(header, "vam:z_mm");
+  const double z_mm = implied(first, index).z_mm;
+  constexpr double within = 0.01;  // of a slice: a float of another program, and sums of a pitch
+  if (stated && std::abs(*stated - z_mm) <= within * std::abs(first.row_mm)) return;
+  if (!stated && index == 0) return;  // a stack of one, or the next will be missed
+  throw std::runtime_error(image + (stated ? " has vam:z_mm " + format_number(*stated, 9) : " has no vam:z_mm") +
+                           ", but its place is " + format_number(z_mm, 9) + ", " + std::to_string(index) +
+                           " x vam:row_mm " + format_number(first.row_mm, 9) + " above image 0");
+}
+
+void require_pitch(const StackInfo& info) {
+  if (info.kind != Kind::sinogram || info.count < 2 || info.row_mm > 0) return;
+  throw std::runtime_error("its slice pitch, vam:row_mm, is " + format_number(info.row_mm) +
+                           " mm or missing; it must be above 0");
 }
 
 ImageInfo image_info(const Imf::Header& header, const StackInfo& info, int index) {

@@ -15,7 +15,7 @@ using model::ImageInfo;
 using model::StackInfo;
 
 struct StackReader::State {
-  State(const std::string& path, bool several) : parser(path, several) { read_head(); }
+  State(const std::string& path, bool several, bool to_end) : parser(path, several, to_end) { read_head(); }
 
   void read_head() {
     if (parser.has_seals()) {
@@ -29,7 +29,8 @@ struct StackReader::State {
   std::optional<exr::ForeignStacks> foreign;  // from this stack on
 };
 
-StackReader::StackReader(const std::string& path, bool several) : state_(std::make_unique<State>(path, several)) {}
+StackReader::StackReader(const std::string& path, bool several, bool to_end)
+    : state_(std::make_unique<State>(path, several, to_end)) {}
 StackReader::~StackReader() = default;
 
 std::string StackReader::seal() const { return state_->foreign ? "" : chained_seal(state_->parser.seals().chained()); }

@@ -22,7 +22,8 @@ struct StackOptions {
 class StackReader {
  public:
   /// several: stacks may follow each other on the stream; else what follows the last image is refused with it.
-  explicit StackReader(const std::string& path, bool several = false);
+  /// to_end: the place of the last image shows whether a file is cut, before any image is read.
+  explicit StackReader(const std::string& path, bool several = false, bool to_end = false);
   ~StackReader();
   [[nodiscard]] const model::StackInfo& info() const;
   /// The facts of every image, known before the first is read.

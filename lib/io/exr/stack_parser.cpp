@@ -2,6 +2,7 @@
 #include "io/exr/private/stack_parser.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -181,11 +182,18 @@ void StackParser::parse_head() {
     throw std::runtime_error("holds " + std::to_string(parts) + " images, but vam:piece is '" +
                              model::piece_text(info_.piece) + "'");
   }
+  require_pitch(info_);
 
   // The offset tables serve those who seek; here the chunks say themselves what they are.
+  std::uint64_t last = 0;
   for (const std::size_t layout : layout_of_) {
-    for (int i = 0; i < layouts_[layout].chunks; ++i) seals_->note_offset(take_number<std::uint64_t>());
+    for (int i = 0; i < layouts_[layout].chunks; ++i) {
+      const auto offset = take_number<std::uint64_t>();
+      seals_->note_offset(offset);
+      last = std::max(last, offset);
+    }
   }
+  if (to_end_ && in_.size() > 0) require_end(last);
   const std::string line = seals_->chained();
   const bool named = !info_.history.empty() && !chained_seal(info_.history.back()).empty();
   if (!line.empty() && !named) info_.history.push_back(line);
@@ -209,6 +217,7 @@ void StackParser::add_part(const Imf::Header& header) {
   own.width = layout.width;
   own.height = layout.height;
   seals_->begin_part(header, multi_part(), own, about_.back());
+  require_alike(header, info_, own, count_of(about_) - 1);
   const auto known =
       std::find_if(layouts_.begin(), layouts_.end(), [&](const Layout& l) { return l.key == layout.key; });
   layout_of_.push_back(static_cast<std::size_t>(known - layouts_.begin()));
@@ -297,10 +306,38 @@ void StackParser::refill(bool alone) {
   require_clean_end();
 }
 
-// A pipe is not waited for: its writer may take its time for the next stack, or just be slow to close it.
+// By the offset of the last chunk, of whose image nothing else is read.
+void StackParser::require_end(std::uint64_t last) {
+  const off_t here = lseek(in_.descriptor(), 0, SEEK_CUR);
+  const std::uint64_t start = static_cast<std::uint64_t>(here) - in_.buffered() - in_.position() + begin_;
+  const auto read_at = [&](std::uint64_t from, void* to, std::size_t size) {
+    const bool done = from < in_.size() && lseek(in_.descriptor(), static_cast<off_t>(from), SEEK_SET) >= 0 &&
+                      ::read(in_.descriptor(), to, size) == static_cast<ssize_t>(size);
+    (void)lseek(in_.descriptor(), here, SEEK_SET);
+    return done;
+  };
+  struct {
+    std::int32_t row, size;
+  } chunk{};
+  const std::uint64_t head = start + last + (multi_part() ? sizeof(std::int32_t) : 0);
+  const bool there = last < in_.size() && read_at(head, &chunk, sizeof chunk) && chunk.size >= 0;
+  std::uint64_t end = head + sizeof chunk + static_cast<std::uint64_t>(there ? chunk.size : 0);
+  if (seals_->follow()) end += seal_mark.size() + trailer_bytes(about_.size());
+  if (!there || end > in_.size()) {
+    throw std::runtime_error("is cut off after " + std::to_string(in_.size()) + " bytes, before the last of its " +
+                             std::to_string(info_.count) + " images ends; the program that wrote it did not finish");
+  }
+  std::int32_t next = 0;
+  if (end < in_.size() && !(read_at(end, &next, sizeof next) && next == magic)) refuse_rest(end);
+}
+
+// Of several, a pipe is not waited for: its writer may take its time for the next stack. One that is to be the last has
+// a second, lest a writer that never closes its end holds up the reader.
 void StackParser::require_clean_end() {
+  constexpr int patience_ms = 1000;
   pollfd more{in_.descriptor(), POLLIN, 0};
-  if ((in_.size() == 0 && poll(&more, 1, 0) <= 0) || in_.at_end()) return;
+  if (in_.size() == 0 && in_.buffered() == 0 && poll(&more, 1, several_ ? 0 : patience_ms) <= 0) return;
+  if (in_.at_end()) return;
   const auto next = in_.peek();
   const std::size_t size = std::min(next.size(), sizeof magic);
   const bool stack = std::memcmp(next.data(), &magic, size) == 0;
@@ -309,7 +346,11 @@ void StackParser::require_clean_end() {
     throw std::runtime_error("another stack follows the last image, from byte " + std::to_string(in_.position()) +
                              " on, and one is read; write each to a file of its own");
   }
-  throw std::runtime_error("trailing data after the last image, from byte " + std::to_string(in_.position()) +
+  refuse_rest(in_.position());
+}
+
+void StackParser::refuse_rest(std::uint64_t from) {
+  throw std::runtime_error("trailing data after the last image, from byte " + std::to_string(from) +
                            " on, is not a stack; write the file again, or truncate it there");
 }
 

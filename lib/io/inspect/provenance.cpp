@@ -24,7 +24,7 @@ namespace {
 
 std::vector<ProvenanceEntry> inspect_stacks(const std::string& path, bool fast) {
   std::vector<ProvenanceEntry> findings;
-  StackReader reader(path, true);
+  StackReader reader(path, true, fast);
   do {
     Image image;
     model::ImageInfo about;
@@ -32,6 +32,10 @@ std::vector<ProvenanceEntry> inspect_stacks(const std::string& path, bool fast) 
     findings.push_back({"stack of " + std::to_string(reader.info().count) + " images", reader.is_sealed(),
                         reader.seal(), reader.info().history});
   } while (!fast && reader.next_stack());
+  if (findings.size() > 1 && std::filesystem::is_regular_file(path)) {
+    warn(path + ": holds " + std::to_string(findings.size()) +
+         " stacks, one behind the other, as a live capture does; tools that read one refuse it");
+  }
   return findings;
 }
 
@@ -56,7 +60,7 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
   const std::string name = input_name(path);
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
-  if (const Json json = parse_json(text); json.is_object()) {
+  if (const Json json = parse_json(text, Keys::distinct); json.is_object()) {
     ProvenanceEntry finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};

@@ -69,14 +69,16 @@ void close_others(std::initializer_list<int> kept) {
 void filter_calls() {
   const scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
   if (filter == nullptr) return;
-  for (const int call :
-       {SCMP_SYS(read),         SCMP_SYS(write),        SCMP_SYS(readv),          SCMP_SYS(writev),
-        SCMP_SYS(lseek),        SCMP_SYS(fstat),        SCMP_SYS(newfstatat),     SCMP_SYS(brk),
-        SCMP_SYS(mmap),         SCMP_SYS(munmap),       SCMP_SYS(mremap),         SCMP_SYS(mprotect),
-        SCMP_SYS(madvise),      SCMP_SYS(futex),        SCMP_SYS(exit),           SCMP_SYS(exit_group),
-        SCMP_SYS(rt_sigreturn), SCMP_SYS(rt_sigaction), SCMP_SYS(rt_sigprocmask), SCMP_SYS(sigaltstack),
-        SCMP_SYS(getpid),       SCMP_SYS(gettid),       SCMP_SYS(sched_yield),    SCMP_SYS(clock_gettime),
-        SCMP_SYS(getrandom),    SCMP_SYS(getrusage),    SCMP_SYS(restart_syscall)}) {
+  for (const int call : {SCMP_SYS(read),           SCMP_SYS(write),        SCMP_SYS(readv),
+                         SCMP_SYS(writev),         SCMP_SYS(lseek),        SCMP_SYS(fstat),
+                         SCMP_SYS(newfstatat),     SCMP_SYS(brk),          SCMP_SYS(mmap),
+                         SCMP_SYS(munmap),         SCMP_SYS(mremap),       SCMP_SYS(mprotect),
+                         SCMP_SYS(madvise),        SCMP_SYS(futex),        SCMP_SYS(exit),
+                         SCMP_SYS(exit_group),     SCMP_SYS(rt_sigreturn), SCMP_SYS(rt_sigaction),
+                         SCMP_SYS(rt_sigprocmask), SCMP_SYS(sigaltstack),  SCMP_SYS(getpid),
+                         SCMP_SYS(gettid),         SCMP_SYS(sched_yield),  SCMP_SYS(clock_gettime),
+                         SCMP_SYS(getrandom),      SCMP_SYS(getrusage),    SCMP_SYS(restart_syscall),
+                         SCMP_SYS(poll),           SCMP_SYS(ppoll)}) {
     (void)seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0);
   }
   // abort() sends itself a signal.

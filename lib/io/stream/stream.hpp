@@ -35,6 +35,8 @@ class InputFile {
   void skip(std::size_t size);
   /// Throws Error: io.
   bool at_end() { return peek().empty(); }
+  /// Bytes that peek() shows without waiting for more.
+  [[nodiscard]] std::size_t buffered() const { return end_ - begin_; }
   [[nodiscard]] int descriptor() const { return descriptor_; }
   /// Bytes of a regular file; 0 of a pipe or a device.
   [[nodiscard]] std::uint64_t size() const { return size_; }

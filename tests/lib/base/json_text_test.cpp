@@ -23,6 +23,15 @@ TEST_CASE("a text that is no JSON, or nested beyond 64 levels, is discarded") {
   }
 }
 
+TEST_CASE("a key that an object has twice is refused on request") {
+  const char* twice = R"({"a": [{"b": 1, "c": {"b": 2}}, {"b": 3, "d": 4, "b": 5}]})";
+  CHECK_FALSE(parse_json(twice).is_discarded());
+  CHECK(parse_json(twice, Keys::distinct).is_discarded());
+  CHECK_FALSE(
+      parse_json(R"({"a": [{"b": 1, "c": {"b": 2}}, {"b": 3, "d": 4}], "b": 6})", Keys::distinct).is_discarded());
+  CHECK(parse_json(R"({"b": {"b": 1, "c": {}}, "b": 2})", Keys::distinct).is_discarded());
+}
+
 TEST_CASE("a number or a text at a key, whatever else may stand there") {
   const Json object = parse_json("{\"a\": 1.5, \"b\": \"x\", \"c\": [2]}");
   CHECK(number_at(object, "a") == 1.5);

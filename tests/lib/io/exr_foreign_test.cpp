@@ -8,7 +8,9 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/io/exr_stacks.hpp"
@@ -75,6 +77,69 @@ TEST_CASE("stacks of OpenEXR's own writer: other channels, types, compressions, 
       }
     }
   }
+}
+
+TEST_CASE("images of a stack that contradict each other are refused with both values") {
+  const scratch::Folder folder;
+  using Change = std::function<void(Imf::Header&, int)>;
+  const auto refusal = [&](const Change& change) {
+    std::vector<Imf::Header> headers;
+    for (int i = 0; i < 4; ++i) {
+      Imf::Header& header = headers.emplace_back(4, 4);
+      header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+      header.setName("z" + std::to_string(i));
+      header.setType(Imf::SCANLINEIMAGE);
+      for (const auto& [name, text] : {std::pair{"kind", "sinogram"}, {"space", "virtual"}, {"units", "mm"}}) {
+        header.insert("vam:" + std::string(name), Imf::StringAttribute(text));
+      }
+      for (const auto& [name, number] : {std::pair{"pixel_mm", 0.5},
+                                         {"row_mm", 0.5},
+                                         {"z_mm", 0.5 * i - 3},
+                                         {"angle_start_deg", 0.0},
+                                         {"angle_step_deg", 90.0}}) {
+        header.insert("vam:" + std::string(name), Imf::DoubleAttribute(number));
+      }
+      change(header, i);
+    }
+    { Imf::MultiPartOutputFile file((folder / "s.exr").c_str(), headers.data(), 4); }
+    std::string line;
+    const int ended = status([&] { StackReader reader(folder / "s.exr"); }, &line);
+    CHECK(ended == (line.empty() ? 0 : 65));
+    return line;
+  };
+  const auto number = [](const char* name, double value, int from = 2) {
+    return [=](Imf::Header& header, int i) {
+      if (i >= from) header.insert(name, Imf::DoubleAttribute(value));
+    };
+  };
+  const auto text = [](const char* name, const char* value) {
+    return [=](Imf::Header& header, int i) {
+      if (i >= 2) header.insert(name, Imf::StringAttribute(value));
+    };
+  };
+  const auto has = [](const std::string& line, const std::string& words) { return line.find(words) != line.npos; };
+  CHECK(refusal([](Imf::Header&, int) {}).empty());
+  CHECK(refusal(number("vam:z_mm", -2.001)).find("image 3 has vam:z_mm -2.001") != std::string::npos);
+  CHECK(has(refusal(number("vam:pixel_mm", 0.25)), "image 2 has vam:pixel_mm 0.25, but image 0 has 0.5"));
+  CHECK(has(refusal(number("vam:row_mm", 0.4)), "image 2 has vam:row_mm 0.4, but image 0 has 0.5"));
+  CHECK(has(refusal(number("vam:angle_start_deg", 90)), "image 2 has vam:angle_start_deg 90, but image 0 has 0"));
+  CHECK(has(refusal(number("vam:angle_step_deg", -90)), "image 2 has vam:angle_step_deg -90, but image 0 has 90"));
+  CHECK(has(refusal(text("vam:space", "projector")), "image 2 has vam:space projector, but image 0 has virtual"));
+  CHECK(has(refusal(text("vam:units", "1/rad")), "image 2 has vam:units '1/rad', but image 0 has 'mm'"));
+  CHECK(
+      has(refusal(number("vam:z_mm", 0, 0)), "image 1 has vam:z_mm 0, but its place is 0.5, 1 x vam:row_mm 0.5 above"));
+  CHECK(has(refusal([](Imf::Header& header, int i) { header.insert("vam:z_mm", Imf::DoubleAttribute(-i)); }),
+            "image 1 has vam:z_mm -1, but its place is 0.5"));
+  CHECK(has(refusal([](Imf::Header& header, int) { header.erase("vam:z_mm"); }), "image 1 has no vam:z_mm"));
+  for (const double pitch_mm : {0.0, -0.5}) {
+    CHECK(has(refusal([=](Imf::Header& header, int i) {
+                header.insert("vam:row_mm", Imf::DoubleAttribute(pitch_mm));
+                header.insert("vam:z_mm", Imf::DoubleAttribute(i * pitch_mm));
+              }),
+              "its slice pitch, vam:row_mm, is"));
+  }
+  const std::string long_text((1 << 20) + 1, 'x');
+  CHECK(has(refusal(text("vam:history", long_text.c_str())), "vam:history has 1048577 bytes, more than 1 MiB"));
 }
 
 TEST_CASE("a file that is not a stack is status 65") {

@@ -30,6 +30,12 @@ void set_own(Imf::Header& header, const model::StackInfo& info, int index, const
 /// The facts of part `index`. Throws std::runtime_error when the part is marked as another, or of another stack.
 [[nodiscard]] model::ImageInfo image_info(const Imf::Header& header, const model::StackInfo& info, int index);
 
+/// Throws std::runtime_error where part `index` states another geometry or unit than part 0, and a slice another height
+/// than its place in the stack has.
+void require_alike(const Imf::Header& header, const model::StackInfo& first, const model::StackInfo& own, int index);
+/// Throws std::runtime_error for a sinogram of several slices that do not lie one above the other.
+void require_pitch(const model::StackInfo& info);
+
 [[nodiscard]] std::string kind_name(model::Kind kind);
 [[nodiscard]] std::string space_name(model::Space space);
 

@@ -43,6 +43,8 @@ class SealCheck {
   /// After the last image; take(to, size) gets the bytes that follow it. A reader need not ask for more than images.
   void finish(const std::function<void(char* to, std::size_t size)>& take);
 
+  /// Whether seals come after the last image.
+  [[nodiscard]] bool follow() const { return sealed() && !seals_.front().values; }
   [[nodiscard]] bool sealed() const { return !seals_.empty(); }
   /// What tells this stack from others; empty where it is not sealed, or its seals have not come yet.
   [[nodiscard]] std::string chained() const;

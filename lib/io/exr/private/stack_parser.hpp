@@ -24,7 +24,11 @@ namespace vam::io::exr {
 /// Of a stack after the other on one stream. All throw Fault::data, with one line, for what is no stack.
 class StackParser {
  public:
-  StackParser(const std::string& path, bool several) : in_(path), several_(several) { begin(); }
+  /// to_end: read_head() looks where the last image of a file ends, too, which next() would find.
+  StackParser(const std::string& path, bool several, bool to_end = false)
+      : in_(path), several_(several), to_end_(to_end) {
+    begin();
+  }
 
   /// Whether the stack bears seals, by its first header, of which OpenEXR has seen nothing yet.
   [[nodiscard]] bool has_seals() const;
@@ -53,7 +57,9 @@ class StackParser {
   void parse_head();
   void add_part(const Imf::Header& header);
   void refill(bool alone);
+  void require_end(std::uint64_t last);
   void require_clean_end();
+  [[noreturn]] static void refuse_rest(std::uint64_t from);
   Arriving complete_part();
   void take_chunk();
   void take(void* to, std::size_t size);
@@ -68,6 +74,7 @@ class StackParser {
 
   InputFile in_;
   bool several_;
+  bool to_end_;
   model::StackInfo info_;
   std::vector<model::ImageInfo> about_;
   std::int32_t flags_ = 0;
