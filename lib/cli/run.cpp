@@ -23,7 +23,6 @@
 #include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/private/app_state.hpp"
-#include "cli/private/start.hpp"
 #include "cli/private/values.hpp"
 #include "cli/private/words.hpp"
 
@@ -215,7 +214,6 @@ bool App::print_about(int argc, char** argv) const {
 }
 
 int App::run(int argc, char** argv, const std::function<void()>& body) {
-  start_ends();
   set_program_name(state_->tool.manual.name);
   (void)std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of file sizes a write fails, and is reported
   const auto start = std::chrono::steady_clock::now();

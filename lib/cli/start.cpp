@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "base/error.hpp"
@@ -38,8 +40,7 @@ void leave(int status, void* /*unused*/) {
 }
 
 [[noreturn]] void end_for_lack() {
-  std::fprintf(stderr,
-               "%s: needs more threads or memory to start than the system gives; raise its limits (ulimit -u, -v)\n",
+  std::fprintf(stderr, "%s: needs more threads or memory than the system gives; raise its limits (ulimit -u, -v)\n",
                program_invocation_short_name);
   _exit(static_cast<int>(Fault::memory));
 }
@@ -51,6 +52,8 @@ void leave(int status, void* /*unused*/) {
     end_for_lack();
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::resource_unavailable_try_again) end_for_lack();
+  } catch (const std::runtime_error& error) {  // in the words of oneTBB
+    if (std::string_view(error.what()).starts_with("pthread_create has failed")) end_for_lack();
   } catch (...) {  // the usual one shows it
   }
   usual();
@@ -65,10 +68,6 @@ void leave(int status, void* /*unused*/) {
 void start_begins() noexcept {
   usual = std::set_terminate(on_terminate);
   starting = true;
-}
-
-void start_ends() noexcept {
-  if (usual != nullptr) std::set_terminate(usual);
 }
 
 }  // namespace vam::cli
