@@ -148,8 +148,8 @@ $exr make dark.exr space=projector width=64 height=36 value=0
 fails 65 'all dark' vam-project dark.exr -o x.mkv
 $exr make negative.exr space=projector width=64 height=36 value=-1
 fails 65 'negative' vam-project negative.exr -o x.mkv
-printf '0,0\n9,2\n10,1\n' >falls.csv
-fails 65 'falls.csv:3: intensity 1 at grey 10 is below 2' vam-project part.exr --set projector.response=falls.csv -o x/
+printf 'grey,intensity\n0,0\n9,2\n10,1\n' >falls.csv
+fails 65 'falls.csv:4: intensity 1 at grey 10 is below 2' vam-project part.exr --set projector.response=falls.csv -o x/
 fails 66 'none.exr' vam-project none.exr -o x/
 fails 64 'not to .avi' vam-project part.exr -o x.avi
 fails 64 'not one of 1, 2, 4, 8, 10, 16' vam-project part.exr --bits 3 -o x/

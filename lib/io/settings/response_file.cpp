@@ -17,6 +17,13 @@ std::optional<double> cell(const std::string& text) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
+// The columns are known by it.
+void require_header(const std::vector<std::string>& cells, const std::string& line, const std::string& place) {
+  constexpr std::string_view around = " \t\"";
+  if (cells.size() == 2 && trimmed(cells[0], around) == "grey" && trimmed(cells[1], around) == "intensity") return;
+  throw Error{Fault::data, place + ": '" + line.substr(0, 80) + "' is not the header 'grey,intensity' of a response"};
+}
+
 void append(model::ResponseTable& table, double grey, double intensity, const std::string& place) {
   if (table.grey.empty() && grey != 0) {
     throw Error{Fault::data, place + ": the first grey is " + format_number(grey) + "; the table must begin at grey 0"};
@@ -40,7 +47,7 @@ model::ResponseTable read_response(const std::string& file) {
   constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
   model::ResponseTable table;
   table.source = file;
-  bool header_allowed = true;
+  bool begun = false;
   int number = 0;
   for (const std::string& raw : split(read_all(file, Content::text, most_bytes), '\n')) {
     ++number;
@@ -48,14 +55,17 @@ model::ResponseTable read_response(const std::string& file) {
     if (line.empty() || line[0] == '#') continue;
     const std::string place = file + ":" + std::to_string(number);
     const auto cells = split(line, ',');
+    if (!begun) {
+      require_header(cells, line, place);
+      begun = true;
+      continue;
+    }
     const auto grey = cell(cells[0]);
     const auto intensity = cells.size() == 2 ? cell(cells[1]) : std::nullopt;
-    if (grey && intensity) {
-      append(table, *grey, *intensity, place);
-    } else if (!header_allowed || grey) {
+    if (!grey || !intensity) {
       throw Error{Fault::data, place + ": '" + line.substr(0, 80) + "' is not two numbers 'grey,intensity'"};
     }
-    header_allowed = false;
+    append(table, *grey, *intensity, place);
   }
   if (table.grey.size() < 2 || table.intensity.back() <= 0) {
     throw Error{Fault::data,

@@ -231,7 +231,7 @@ TEST_CASE("files that would fill the memory or the stack are refused in one line
             "unknown key 'a' in [vial]"));
 }
 
-TEST_CASE("a response table is read with or without a header and refused with its line") {
+TEST_CASE("a response table is read by its header and refused with its line") {
   const scratch::Folder folder;
   const auto table =
       vam::io::read_response(folder.write("r.csv", "# lamp 3\ngrey,intensity\n0,0.1\n128, 1.5\r\n255,4\n"));
@@ -241,10 +241,14 @@ TEST_CASE("a response table is read with or without a header and refused with it
     const std::string file = folder.write("bad.csv", csv);
     return error_of([&] { (void)vam::io::read_response(file); }, Fault::data);
   };
-  CHECK(has(refused("0,0\n10,2\n20,1\n"), "bad.csv:3: intensity 1 at grey 20 is below 2"));
-  CHECK(has(refused("0,0\n10,2\n10,3\n"), "bad.csv:3: grey 10 does not rise"));
-  CHECK(has(refused("5,0\n10,2\n"), "must begin at grey 0"));
-  CHECK(has(refused("0,0\n10\n"), "bad.csv:2: '10' is not two numbers"));
-  CHECK(has(refused("0,0\n10,nan\n"), "is not two numbers"));
+  CHECK(has(refused("grey,intensity\n0,0\n10,2\n20,1\n"), "bad.csv:4: intensity 1 at grey 20 is below 2"));
+  CHECK(has(refused("grey,intensity\n0,0\n10,2\n10,3\n"), "bad.csv:4: grey 10 does not rise"));
+  CHECK(has(refused("grey,intensity\n5,0\n10,2\n"), "must begin at grey 0"));
+  CHECK(has(refused("grey,intensity\n0,0\n10\n"), "bad.csv:3: '10' is not two numbers"));
+  CHECK(has(refused("grey,intensity\n0,0\n10,nan\n"), "is not two numbers"));
+  for (const std::string head : {"intensity,grey", "grey,intensity,grey", "grey;intensity", "0,0"}) {
+    CHECK(has(refused(head + "\n0,0\n255,1\n"), "bad.csv:1: '" + head + "' is not the header 'grey,intensity'"));
+  }
+  CHECK(vam::io::read_response(folder.write("r.csv", "\"grey\", \"intensity\"\r\n0,0\n255,1\n")).grey.size() == 2);
   CHECK(has(refused("grey,intensity\n"), "at least two lines"));
 }
