@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -63,10 +64,37 @@ bool check_ply_header(const std::string& bytes) {
     }
     if (keyword != "element") continue;
     element = first;
+    if (second.starts_with('-')) throw MeshProblem{"the PLY header promises " + second + " " + element + " elements"};
     std::uint64_t count = 0;
     if (std::istringstream(second) >> count) require_count(count, element.c_str(), bytes);
   }
   throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
+}
+
+// Of what follows the last element: lines, or bytes of the smallest face, a triangle of bytes.
+std::uint64_t faces_left(std::istream& stream, bool text) {
+  stream.exceptions(std::ios::goodbit);
+  const std::string rest(std::istreambuf_iterator<char>(stream), {});
+  constexpr std::size_t triangle_bytes = 13;
+  if (!text) return rest.size() / triangle_bytes;
+  std::istringstream lines(rest);
+  std::uint64_t left = 0;
+  for (std::string line; std::getline(lines, line);) left += line.find_first_not_of(" \t\r") == line.npos ? 0 : 1;
+  return left;
+}
+
+// CGAL takes 2.7 for 2.
+void require_whole_indices(const std::string& bytes) {
+  std::size_t number = 1;
+  for (auto line = bytes.begin(); line != bytes.end(); ++number) {
+    const auto end = std::find(line, bytes.end(), '\n');
+    const bool face = end - line > 2 && line[0] == 'f' && line[1] == ' ';
+    const auto comment = face ? std::find(line, end, '#') : line;
+    if (std::find(line, comment, '.') != comment) {
+      throw MeshProblem{"line " + std::to_string(number) + ": a face has an index that is no whole number"};
+    }
+    line = end == bytes.end() ? end : end + 1;
+  }
 }
 
 }  // namespace
@@ -86,6 +114,7 @@ PolygonSoup parse_ascii_stl(const std::string& bytes) {
 }
 
 PolygonSoup parse_obj(const std::string& bytes) {
+  require_whole_indices(bytes);
   std::istringstream stream(bytes);
   CgalSoup soup;
   // False also for a file without faces, which the caller names for what it is.
@@ -109,6 +138,7 @@ PolygonSoup parse_ply(const std::string& bytes) {
   } catch (const std::length_error&) {  // a list of fewer than 0 values
     give_up("PLY", converted(std::move(soup)));
   }
+  require_all_read(soup.faces.size(), soup.faces.size() + faces_left(stream, text));
   PolygonSoup result = converted(std::move(soup));
   result.uncertainty = ply_numbers(bytes, "scalar_uncertainty", result.points.size());
   if (of_points.size() != result.points.size()) return result;

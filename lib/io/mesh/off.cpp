@@ -92,6 +92,9 @@ PolygonSoup parse_off(const std::string& bytes) {
   for (std::vector<int> face; soup.faces.size() < faces; soup.faces.push_back(face)) {
     if (!take_face(lines.next(), face)) give_up("OFF", soup);
   }
+  std::uint64_t found = faces;
+  for (std::vector<int> face; take_face(lines.next(), face);) ++found;
+  require_all_read(faces, found);
   return soup;
 }
 

@@ -64,6 +64,11 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
                       std::to_string(binary_stl_bytes(bytes)) + " bytes) but the file has " +
                       std::to_string(bytes.size()) + " bytes; it is truncated or no STL"};
   }
+  // Some programs append a few bytes.
+  if (const std::uint64_t more = (bytes.size() - binary_stl_bytes(bytes)) / triangle_bytes; more > 0 && count > 0) {
+    throw MeshProblem{"the header promises " + std::to_string(count) + " triangles but the file has " +
+                      std::to_string(count + more) + "; its count is damaged, or it holds several meshes"};
+  }
   PolygonSoup soup;
   soup.points.reserve(3 * count);
   soup.faces.reserve(count);
