@@ -76,7 +76,7 @@ ok "the doses without --like reach as high as the helix lifts" vam-dose helix.ex
 
 # Records of wobble: the projector's columns see it, or a camera at an azimuth
 times='"utc":"2026-01-01T00:00:00.000Z","valid_until":"2126-01-01T00:00:00.000Z"'
-record() { printf '{"schema":"vam-calibration/1",'"$times"',"scan":"%s","values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":%s}}}' "$1" "$2" >"$3"; }
+record() { printf '{"schema":"vam-calibration/1",'"$times"',"scan":"%s","status":"pass","values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":%s}}}' "$1" "$2" >"$3"; }
 record edges 28.6478898 edges.json
 record axis -61.3521102 axis.json
 for scan in edges axis; do
@@ -88,7 +88,7 @@ for scan in edges axis; do
   is "the same light from the record of $scan and the table" "$(vam-dose $scan.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)" \
     "$(vam-dose table.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)"
 done
-mkdir -p folder && printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","values":{"axis_column":{"value":511.5},"radius":{"value":12.5},"wobble_mm":{"value":0.3,"sigma":0.01}}}' >folder/current-edges.json
+mkdir -p folder && printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","status":"pass","values":{"axis_column":{"value":511.5},"radius":{"value":12.5},"wobble_mm":{"value":0.3,"sigma":0.01}}}' >folder/current-edges.json
 vam-optimize --method fbp --angles 60 --set calibration.folder=folder part.vdb -o o.exr 2>errors
 is "a wobble that is known and left out is a warning" "$? $(grep -c 'warning: the vial wobbles by 0.3 mm .*compensate for it by --wobble-record' errors)" '0 1'
 sed 's/2126/2026/' axis.json >old.json
@@ -96,12 +96,12 @@ vam-optimize --method fbp --angles 60 --wobble-record old.json part.vdb -o old.e
 is "a record past its validity is used with a warning" "$? $(grep -c 'warning: old.json: is .* h old and was valid for' errors)" '0 1'
 vam-optimize --method fbp --angles 60 --wobble-record axis.json --set 'calibration.vial=vial 9' part.vdb -o other.exr 2>errors
 is "one of another vial, too" "$? $(grep -c "warning: axis.json: belongs to vial '', but calibration.vial is 'vial 9'" errors)" '0 1'
-printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","values":{}}' >still.json
+printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","status":"pass","values":{}}' >still.json
 fails 65 'lacks wobble_mm' vam-optimize --wobble-record still.json part.vdb -o none.exr
 wrong() { printf '%s' "$2" >wrong.json; fails 65 "$1" vam-optimize --wobble-record wrong.json part.vdb -o none.exr; }
-head='{"schema":"vam-calibration/1",'"$times"',"scan":"axis"' values='"values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":20}}'
+head='{"schema":"vam-calibration/1",'"$times"',"scan":"axis","status":"pass"' values='"values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":20}}'
 wrong 'changed after it was written' "$head,$values,\"seal\":\"xxh3:00000000000000000000000000000000\"}"
-wrong 'the record of a failed scan' "$head,$values,\"status\":\"fail\"}"
+wrong 'the record of a failed scan' "$(echo "$head" | sed s/pass/fail/),$values}"
 wrong 'a wobble of -0.3 mm' "$head,\"values\":{\"wobble_mm\":{\"value\":-0.3},\"wobble_phase\":{\"value\":20}}}"
 wrong 'lacks wobble_mm' "$head,\"values\":{\"wobble_mm\":{\"value\":\"x\"},\"wobble_phase\":{\"value\":20}}}"
 for other in '' '[]' '{"schema":5}' "$head" "$head,\"values\":4}" '{"schema":"vam-calibration/1","scan":3,"values":{}}'; do

@@ -164,6 +164,7 @@ folder = "cal"
 instrument = "simulated"
 valid_hours = 1
 TOML
+  mkdir -p cal
 }
 done_testing() {
   echo "1..$number"

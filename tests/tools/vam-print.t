@@ -32,6 +32,7 @@ folder = "cal"
 instrument = "simulated"
 valid_hours = 1
 TOML
+mkdir cal
 
 # Without devices: what is refused before any motion.
 fails 64 'no sinogram' vam-print

@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <iterator>
+#include <system_error>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -54,6 +56,13 @@ void make_current(const model::Calibration& calibration, const std::string& scan
 
 std::string hours(double seconds) { return format_number(seconds / 3600, 3) + " h"; }
 
+// A pipe would be waited for.
+void require_file(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored) || fs::is_regular_file(path, ignored)) return;
+  throw Error{Fault::data, path + ": is no regular file; run vam-calibrate"};
+}
+
 // A file that a record names lies beside it, and is what was written then: its hash stands in the record.
 std::string beside(const CalibrationRecord& record, const char* file) {
   const std::string name = record.json->at("files").at(file);
@@ -61,6 +70,7 @@ std::string beside(const CalibrationRecord& record, const char* file) {
     throw Error{Fault::data, record.path + ": its file '" + name + "' is not beside it; run vam-calibrate"};
   }
   std::string path = (fs::path(record.path).parent_path() / name).string();
+  require_file(path);
   const Json hashes = record.json->value("sha256", Json::object());
   const std::string recorded = hashes.value(name, "");
   if (const std::string read = recorded.empty() ? recorded : sha256_of(path); read != recorded) {
@@ -68,6 +78,20 @@ std::string beside(const CalibrationRecord& record, const char* file) {
                                  ", read " + read.substr(0, 8) + "); run vam-calibrate"};
   }
   return path;
+}
+
+// Scans state their units; a record that was written by hand may have others.
+double in_unit(const CalibrationRecord& record, const char* name, const char* unit) {
+  const double value = record.value(name);
+  const Json& entry = record.json->at("values").at(name);
+  const auto refuse = [&](const std::string& why) {
+    throw Error{Fault::data, record.path + ": " + name + " " + why + "; run vam-calibrate"};
+  };
+  if (entry.contains("unit") && entry["unit"] != unit) {
+    refuse("is in " + entry["unit"].dump().substr(0, 80) + ", not in " + unit);
+  }
+  if (const double sigma = number_at(entry, "sigma"); sigma < 0) refuse("has a sigma of " + format_number(sigma));
+  return value;
 }
 
 // A lag counts from the moment that the time stamps named when it was measured.
@@ -80,7 +104,7 @@ void take_over_lag(model::Printer& printer, const CalibrationRecord& record) {
                                  " of the exposure, but camera.stamp is " + now + "; run vam-calibrate lag"};
   }
   const bool former = record.json->at("values").contains("camera_latency");  // of a record from before the name
-  printer.camera.lag_ms = record.value(former ? "camera_latency" : "camera_lag");
+  printer.camera.lag_ms = in_unit(record, former ? "camera_latency" : "camera_lag", "ms");
 }
 
 /// A scan of vam-calibrate: what its record sets in the printer, and whether that is of one vial only.
@@ -94,8 +118,8 @@ struct ScanKind {
 constexpr ScanKind scans[] = {
     {"edges", true,
      [](model::Printer& printer, const CalibrationRecord& record) {
-       printer.projector.axis_column = record.value("axis_column");
-       printer.vial.radius_mm = record.value("radius");
+       printer.projector.axis_column = in_unit(record, "axis_column", "px");
+       printer.vial.radius_mm = in_unit(record, "radius", "mm");
      }},
     {"response", false,
      [](model::Printer& printer, const CalibrationRecord& record) {
@@ -106,12 +130,12 @@ constexpr ScanKind scans[] = {
     {"beam", false, [](model::Printer&, const CalibrationRecord&) {}},  // for people
     {"axis", true,
      [](model::Printer& printer, const CalibrationRecord& record) {
-       printer.camera.axis_column = record.value("axis_column");
-       if (record.json->at("values").contains("tilt")) printer.camera.tilt_deg = record.value("tilt");
+       printer.camera.axis_column = in_unit(record, "axis_column", "px");
+       if (record.json->at("values").contains("tilt")) printer.camera.tilt_deg = in_unit(record, "tilt", "deg");
      }},
     {"latency", false,
      [](model::Printer& printer, const CalibrationRecord& record) {
-       printer.projector.latency_ms = record.value("latency");
+       printer.projector.latency_ms = in_unit(record, "latency", "ms");
      }},
     {"lag", false, take_over_lag},
     {"registration", false, [](model::Printer& printer, const CalibrationRecord& record) {
@@ -130,6 +154,10 @@ void require_possible(model::Printer printer, const CalibrationRecord& record) {
     if (const std::string why = objection(field, field.slot(printer)); !why.empty()) {
       refuse(dotted_name(field) + ": " + why);
     }
+  }
+  constexpr double least_radius_mm = 0.1;
+  if (record.json->at("scan") == "edges" && printer.vial.radius_mm < least_radius_mm) {
+    refuse("vial.radius_mm: " + format_number(printer.vial.radius_mm) + " is no radius of a vial");
   }
   const double column = printer.projector.axis_column;
   if (record.json->at("scan") == "edges" && !(column >= 0 && column <= printer.projector.columns - 1)) {
@@ -204,7 +232,8 @@ double CalibrationRecord::sigma(const std::string& name) const { return number_o
 
 CalibrationRecord read_record(const std::string& path) {
   constexpr std::uint64_t limit = 1U << 20U;
-  CalibrationRecord record{path, std::make_shared<const Json>(parse_json(read_all(path, Content::text, limit)))};
+  CalibrationRecord record{
+      path, std::make_shared<const Json>(parse_json(read_all(path, Content::text, limit), Keys::distinct))};
   const Json& json = *record.json;
   const auto is_text = [&](const char* key) { return !json.contains(key) || json[key].is_string(); };
   const bool whole = json.is_object() && json.contains("scan") && json.contains("values") &&
@@ -221,6 +250,7 @@ std::optional<CalibrationRecord> current_record(const model::Calibration& calibr
   const std::string path = current_path(calibration, scan);
   std::error_code ignored;
   if (calibration.folder.empty() || !fs::exists(path, ignored)) return std::nullopt;
+  require_file(path);
   CalibrationRecord record = read_record(path);
   if (const std::string made = (*record.json)["scan"]; made != scan) {
     throw Error{Fault::data, path + ": is a record of " + made + ", not of " + scan + "; run vam-calibrate"};
@@ -242,7 +272,11 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
   if (of_vial && vial != calibration.vial) {
     return "belongs to vial '" + vial + "', but calibration.vial is '" + calibration.vial + "'; run vam-calibrate";
   }
-  if (json.value("status", "") == "fail") return "is the record of a failed scan; run vam-calibrate";
+  const std::string status = json.value("status", "");
+  if (status != "pass" && status != "warn" && status != "fail") {
+    return "has the status '" + status + "', not pass, warn or fail; run vam-calibrate";
+  }
+  if (status == "fail") return "is the record of a failed scan; run vam-calibrate";
   const double made_s = parse_utc(json.value("utc", ""), record.path);
   const double end_s = parse_utc(json.value("valid_until", ""), record.path);
   if (utc_s > end_s) {
@@ -264,8 +298,36 @@ void apply_record(model::Printer& printer, const CalibrationRecord& record) {
   require_possible(printer, record);
 }
 
+namespace {
+
+// The settings of a record that is gone must not fall back to those of the file in silence.
+void require_reachable(const model::Calibration& calibration, const std::string& scan) {
+  const std::string path = current_path(calibration, scan);
+  struct stat about = {};
+  if (stat(path.c_str(), &about) == 0) return;
+  const int problem = errno;
+  if (problem == ENOENT && lstat(path.c_str(), &about) != 0) return;
+  throw Error{Fault::no_input, path + ": " +
+                                   (problem == ENOENT ? "links to a record that is gone"
+                                                      : "cannot open: " + std::generic_category().message(problem)) +
+                                   "; restore it, or run vam-calibrate " + scan};
+}
+
+void require_folder(const model::Calibration& calibration) {
+  std::error_code ignored;
+  if (calibration.folder.empty() || fs::exists(calibration.folder, ignored)) return;
+  throw Error{Fault::no_input, calibration.folder +
+                                   ": no such folder of calibration records; make it, run vam-calibrate, or disable "
+                                   "records with an empty calibration.folder"};
+}
+
+}  // namespace
+
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s) {
+  require_folder(calibration);
   for (const std::string& scan : calibration_scans()) {
+    if (calibration.folder.empty()) break;
+    require_reachable(calibration, scan);
     const auto record = current_record(calibration, scan);
     if (!record) continue;
     if (const std::string why = objection(*record, calibration, utc_s); !why.empty()) {

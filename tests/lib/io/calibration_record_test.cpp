@@ -69,7 +69,8 @@ TEST_CASE("a lag counts from the moment that the time stamps named then, and fro
   const scratch::Folder folder;
   const auto calibration = here(folder);
   const Json of_start{{"camera", {{"serial", "1"}, {"stamp", "start"}}}};
-  write_record(calibration, "lag", {{"devices", of_start}, {"values", {{"camera_lag", {{"value", 3.5}}}}}}, now_s);
+  write_record(calibration, "lag",
+               {{"status", "pass"}, {"devices", of_start}, {"values", {{"camera_lag", {{"value", 3.5}}}}}}, now_s);
   for (const char* stamp : {"auto", "start", "end"}) {
     model::Printer printer;
     printer.camera.stamp = stamp;
@@ -140,6 +141,55 @@ TEST_CASE("a record with an impossible value is refused, with the record, the nu
   CHECK(has(refused(511, -12.7), "vial.radius_mm: -12.7 is not between 0 (excluded)"));
 }
 
+TEST_CASE("a record by hand is held to units, status and single keys") {
+  const auto refused = [](const std::string& from, const std::string& to) {
+    const scratch::Folder folder;
+    const auto calibration = here(folder);
+    const std::string path = write_record(calibration, "edges", edges(511.3, 12), utc_seconds());
+    Json record = Json::parse(scratch::slurp(path));
+    record.erase("seal");
+    record["values"]["axis_column"]["unit"] = "px";
+    record["values"]["radius"]["unit"] = "mm";
+    std::string text = record.dump();
+    if (!from.empty()) text.replace(text.find(from), from.size(), to);
+    std::filesystem::remove(path);
+    scratch::spill(path, text);
+    model::Printer printer;
+    return message_of([&] { apply_records(printer, calibration, utc_seconds()); });
+  };
+  CHECK(refused("", "").empty());
+  CHECK(has(refused("\"px\"", "\"mm\""), "axis_column is in \"mm\", not in px; run vam-calibrate"));
+  CHECK(has(refused("\"mm\"", "\"in\""), "radius is in \"in\", not in mm"));
+  CHECK(has(refused("\"sigma\":0.01", "\"sigma\":-1"), "axis_column has a sigma of -1"));
+  CHECK(has(refused("\"value\":12.0", "\"value\":1e-9"), "vial.radius_mm: 1e-09 is no radius of a vial"));
+  CHECK(has(refused("\"pass\"", "\"PASS\""), "has the status 'PASS', not pass, warn or fail"));
+  CHECK(has(refused("\"status\"", "\"state\""), "has the status ''"));
+  CHECK(has(refused("\"value\":511.3", "\"value\":511.3,\"value\":591.3"), "is not a vam-calibration/1 record"));
+}
+
+TEST_CASE("a record, or a folder of them, that is gone is an error and no default") {
+  const scratch::Folder folder;
+  const auto calibration = here(folder);
+  const auto refused = [&] {
+    model::Printer printer;
+    return error_of([&] { apply_records(printer, calibration, now_s); }, Fault::no_input);
+  };
+  CHECK(has(refused(), "records: no such folder of calibration records; make it"));
+  std::filesystem::create_directory(calibration.folder);
+  model::Printer printer;
+  apply_records(printer, calibration, now_s);  // none was made yet
+  const std::string path = write_record(calibration, "edges", edges(511.3, 12), now_s);
+  std::filesystem::remove(path);
+  CHECK(has(refused(), "current-edges.json: links to a record that is gone; restore it, or run vam-calibrate edges"));
+  const auto link = std::filesystem::path(calibration.folder) / "current-edges.json";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink("current-edges.json", link);
+  CHECK(has(refused(), "current-edges.json: cannot open: Too many levels of symbolic links"));
+  std::filesystem::remove(link);
+  REQUIRE(mkfifo(link.c_str(), 0600) == 0);
+  CHECK(has(message_of([&] { apply_records(printer, calibration, now_s); }), "current-edges.json: is no regular file"));
+}
+
 TEST_CASE("records override the printer file and --set overrides records") {
   const scratch::Folder folder;
   std::ofstream(folder / "printer.toml") << "[projector]\naxis_column = 400\nlatency_ms = 3\n[vial]\nradius_mm = 11\n"
@@ -147,7 +197,7 @@ TEST_CASE("records override the printer file and --set overrides records") {
                                             "vial = \"vial 7\"\n";
   const std::string file = folder / "printer.toml";
   const auto calibration = here(folder);
-  CHECK(load_printer(file, {}).projector.axis_column == 400);
+  CHECK(load_printer(file, {}, Records::ignore).projector.axis_column == 400);
   write_record(calibration, "edges", edges(501.25, 12.5), utc_seconds());
   const std::string table = record_path(calibration, "response", utc_seconds(), ".csv");
   write_record(calibration, "response",
