@@ -162,6 +162,27 @@ holds "within the 8 bits: $worst of the largest dose" "$worst < 0.004 && $worst 
 python3 compare.py turned.npy back.npy >difference; read -r sizes worst <difference
 holds "turns are averaged: $worst" "$worst < 1e-5"
 
+# H.264 has black at 16 and white at 235 of 255, unless it states a full range; of colours the luma counts.
+python3 -c 'import sys; sys.stdout.buffer.write(bytes([0] * 256 + [85] * 256 + [170] * 256 + [255] * 256) * 4)' >levels
+python3 -c 'import sys; sys.stdout.buffer.write((bytes([0, 0, 0] * 512) + bytes([0, 0, 255] * 512)) * 4)' >blue
+film() { name=$1 from=$2 what=$3; shift 3; ffmpeg -v error -f rawvideo -pix_fmt "$from" -s 32x32 -r 4 -i "$what" "$@" -y "$name"; }
+film tv.mp4 gray levels -c:v libx264 -qp 0 -pix_fmt yuv420p
+film pc.mp4 gray levels -c:v libx264 -qp 0 -pix_fmt yuvj420p
+film blue.mp4 rgb24 blue -c:v libx264 -qp 0 -pix_fmt yuv420p
+film rgb.mp4 rgb24 blue -c:v libx264rgb -qp 0
+film rgb.mkv rgb24 blue -c:v ffv1 -pix_fmt bgr0
+quarters() {  # quarters FILE: the mean of each 8 rows of the first frame, in thousandths
+  vam-convert "$1" --geometry parallel --pixel 0.5 --view-step 90 2>quarters.err | vam-convert >quarters.npy
+  python3 - <<'PY'
+import struct
+data = open("quarters.npy", "rb").read()[-32 * 4 * 32 * 4:]  # [slice][angle][column], slices upwards
+rows = [sum(struct.unpack_from("<32f", data, (31 - row) * 4 * 128)) / 32 for row in range(32)]
+print(*["%.0f" % (sum(rows[i:i + 8]) / 8 * 1000) for i in (0, 8, 16, 24)])
+PY
+}
+for name in tv pc; do is "levels of $name.mp4" "$(quarters $name.mp4)" '0 333 667 1000'; done
+for name in blue.mp4 rgb.mp4 rgb.mkv; do is "luma of $name" "$(quarters $name)" '0 0 114 114'; done
+
 # Rays climb: rows above and below the part light it, too.
 sizes() { vam-view "$1" --export /dev/stdout | grep -a '^sizes\|^axis mins' | tr '\n' ' '; }
 # shellcheck disable=SC2086

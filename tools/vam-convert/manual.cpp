@@ -41,11 +41,16 @@ cli::Manual manual() {
        "vam-dose "
        "follows their rays through bath, glass and resin.",
        "Grey values of images are fractions of full grey. They are used as intensity, or with --geometry vial "
-       "converted by projector.response. Colour images are read as luma: for a video in blue only, as OpenCAL plays "
-       "it, "
-       "full intensity is --full-scale 0.114 and about 30 levels remain; if that is too coarse, extract the blue "
+       "converted by projector.response. Colour images and videos are read as luma (0.299 red, 0.587 green, 0.114 "
+       "blue): "
+       "for a video in blue only, as OpenCAL plays it, full intensity is --full-scale 0.114. Of H.264 in yuv420p some "
+       "25 "
+       "levels of blue remain; if that is too coarse, write RGB (libx264rgb, or FFV1 in bgr0) or extract the blue "
        "channel "
-       "first. The stage angle between the frames of a video is 6 x turns per minute / frames per second."},
+       "first. Videos in YUV have a limited range (black at 16, white at 235 of 255) unless they state the full one, "
+       "as "
+       "yuvj420p does; grey and RGB have the full range. "
+       "The stage angle between the frames of a video is 6 x turns per minute / frames per second."},
       {{"A part to NumPy, and back:",
         "vam-slice --shape disc-grid --voxel 0.5 | vam-convert -o part.npy\n"
         "vam-convert part.npy --voxel 0.5 -o again.vdb"},

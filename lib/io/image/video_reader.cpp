@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -12,19 +13,48 @@ namespace vam::io {
 
 namespace {
 
-int bits_of(int pixel_format) {
+// How the brightness of a pixel is stored.
+struct Layout {
+  int bits = 0;          // of a frame as read; 0: not a format that is known
+  int stored_bits = 0;   // of a value in the file
+  bool limited = false;  // black is 16 and white 235 of 255, unless the video states otherwise
+  bool rgb = false;
+};
+
+Layout layout_of(int pixel_format) {
   switch (pixel_format) {
     case AV_PIX_FMT_GRAY8:
-    case AV_PIX_FMT_YUV420P:
     case AV_PIX_FMT_YUVJ420P:
-      return 8;  // of the luma plane
+    case AV_PIX_FMT_YUVJ422P:
+    case AV_PIX_FMT_YUVJ444P:
+      return {8, 8};
     case AV_PIX_FMT_GRAY10LE:
-      return 10;
+      return {10, 10};
     case AV_PIX_FMT_GRAY16LE:
-      return 16;
+      return {16, 16};
+    case AV_PIX_FMT_YUV420P:
+    case AV_PIX_FMT_YUV422P:
+    case AV_PIX_FMT_YUV444P:
+      return {8, 8, true};
+    case AV_PIX_FMT_YUV420P10LE:
+      return {10, 10, true};
+    case AV_PIX_FMT_GBRP:
+    case AV_PIX_FMT_BGR0:
+      return {16, 8, false, true};  // the luma of a blue pixel has more than 8 bits
     default:
-      return 0;
+      return {};
   }
+}
+
+// Levels of limited range in 16 bits, as 8 hold only some of what the range was widened to [ITU-R BT.709 section 4].
+std::uint16_t widened(int level, int stored_bits) {
+  const int black = 16 << (stored_bits - 8), white = 235 << (stored_bits - 8);
+  return static_cast<std::uint16_t>((std::clamp(level, black, white) - black) * 65535 / (white - black));
+}
+
+// [ITU-R BT.601 section 2.5.1], as image files are read.
+std::uint16_t luma(int red, int green, int blue) {
+  return static_cast<std::uint16_t>((299 * red + 587 * green + 114 * blue) * 257 / 1000);
 }
 
 // Of one frame: every slice ends in its size (3 bytes), where it has checksums a status and the CRC-32 by which the
@@ -51,6 +81,7 @@ SliceState judged_slices(const std::uint8_t* bytes, std::size_t size, bool check
 struct VideoReader::State {
   std::string path;
   VideoFormat format;
+  Layout layout;
   AVFormatContext* container = nullptr;
   int stream = -1;
   av::Codec codec;
@@ -76,9 +107,11 @@ struct VideoReader::State {
     check(av::api().avcodec_open2(codec.get(), decoder, nullptr), "video decoder");
     format.width = codec->width;
     format.height = codec->height;
-    format.bits = bits_of(codec->pix_fmt);
+    layout = layout_of(codec->pix_fmt);
+    format.bits = layout.bits;
     format.fps = av_q2d(found.avg_frame_rate);
-    if (format.bits == 0) throw Error{Fault::data, path + ": not a grey video of 8, 10 or 16 bits"};
+    if (format.bits == 0)
+      throw Error{Fault::data, path + ": its pixel format is not read; write gray, gray16le, yuv420p or bgr0"};
     const bool steady = container->nb_streams == 1 && av_cmp_q(found.avg_frame_rate, found.r_frame_rate) == 0;
     if (codec->codec_id == AV_CODEC_ID_FFV1 && steady && container->duration > 0) {
       announced = std::llround(static_cast<double>(container->duration) / AV_TIME_BASE * format.fps);
@@ -111,6 +144,24 @@ struct VideoReader::State {
     if (judged == SliceState::broken) judged = judged_slices(packet->data, size, false);
     if (judged == SliceState::right) return;
     throw Error{Fault::data, path + ": frame " + std::to_string(packets - 1) + " is damaged; write the video again"};
+  }
+
+  // What the video says counts, else what its pixel format is for.
+  [[nodiscard]] bool is_narrow() const {
+    if (frame->color_range == AVCOL_RANGE_UNSPECIFIED) return layout.limited;
+    return frame->color_range == AVCOL_RANGE_MPEG && !layout.rgb;
+  }
+
+  [[nodiscard]] int value(int plane, std::ptrdiff_t byte, int y) const {
+    return frame->data[plane][static_cast<std::ptrdiff_t>(y) * frame->linesize[plane] + byte];
+  }
+
+  [[nodiscard]] std::uint16_t level(int x, int y) const {
+    const std::ptrdiff_t i = x;
+    if (codec->pix_fmt == AV_PIX_FMT_GBRP) return luma(value(2, i, y), value(0, i, y), value(1, i, y));
+    if (layout.rgb) return luma(value(0, 4 * i + 2, y), value(0, 4 * i + 1, y), value(0, 4 * i, y));
+    if (layout.stored_bits == 8) return static_cast<std::uint16_t>(value(0, i, y));
+    return static_cast<std::uint16_t>(value(0, 2 * i, y) | value(0, 2 * i + 1, y) << 8);
   }
 
   // Feeds packets until the decoder has a frame; false at the end.
@@ -146,13 +197,12 @@ const VideoFormat& VideoReader::format() const { return state_->format; }
 bool VideoReader::next(GreyImage& image) {
   State& s = *state_;
   if (!s.decode()) return false;
-  image = GreyImage(s.frame->width, s.frame->height, s.format.bits);
+  const bool narrow = s.is_narrow();
+  image = GreyImage(s.frame->width, s.frame->height, narrow ? 16 : s.format.bits);
   for (int y = 0; y < image.height; ++y) {
-    const std::uint8_t* row = s.frame->data[0] + static_cast<std::ptrdiff_t>(y) * s.frame->linesize[0];
     for (int x = 0; x < image.width; ++x) {
-      std::uint16_t level = row[x];
-      if (image.bits > 8) std::memcpy(&level, row + static_cast<std::ptrdiff_t>(2) * x, sizeof level);
-      image(x, y) = level;
+      const std::uint16_t level = s.level(x, y);
+      image(x, y) = narrow ? widened(level, s.layout.stored_bits) : level;
     }
   }
   return true;

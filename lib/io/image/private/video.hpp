@@ -44,13 +44,14 @@ class VideoWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Reads grey frames of the first video stream, front to back. Throws Error: no_input, data (no video, truncated, not
-/// grey).
+/// Reads the first video stream, front to back, as grey: colour as luma, limited range (black 16, white 235 of 255, as
+/// of H.264 that states nothing else) widened to the full one, in 16 bits. Throws Error: no_input, data (no video,
+/// truncated, a pixel format that is not read).
 class VideoReader {
  public:
   explicit VideoReader(const std::string& path);
   ~VideoReader();
-  /// Size, depth (8, 10 or 16 bits) and rate.
+  /// Size, depth (8, 10 or 16 bits; frames of limited range have 16) and rate.
   [[nodiscard]] const VideoFormat& format() const;
   /// False after the last frame.
   bool next(GreyImage& frame);
