@@ -23,7 +23,7 @@ namespace vam::tool {
 /// The circle that is judged: void outside it is not.
 inline model::Circle judged_circle(const io::SparseVolume& target, const model::Printer& printer) {
   const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
-  return model::writable_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
+  return model::judged_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
 }
 
 /// The circle that is judged, the threshold that the light was made for, and for a dose in mJ/cm3 of a resin with a
@@ -31,6 +31,7 @@ inline model::Circle judged_circle(const io::SparseVolume& target, const model::
 inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
                             const model::Printer& printer) {
   how.circle = judged_circle(target, printer);
+  how.voxel_mm = target.grid().voxel_mm;
   how.aimed_at = threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;

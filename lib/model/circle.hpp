@@ -26,6 +26,13 @@ struct Circle {
   return std::sqrt(std::max(0.0, radius * radius - offset * offset));
 }
 
+/// The circle of that radius, also where it passes the sides of the grid: void in the grid's corners is resin. Throws
+/// as writable_circle.
+[[nodiscard]] Circle judged_circle(const Grid& grid, double radius_mm);
+
+/// The radius within which all resin is in the grid.
+[[nodiscard]] double inscribed_radius_mm(const Grid& grid);
+
 /// The circle of that radius (optics::writable_radius_mm), at most the circle inside the grid. Throws Fault::data when
 /// the rotation axis (x = y = 0) is not inside the grid.
 [[nodiscard]] Circle writable_circle(const Grid& grid, double radius_mm);

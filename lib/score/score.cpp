@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/score.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -64,6 +65,8 @@ bool is_of_exposure(const std::string& figure) {
 
 Score::Score(const ScoreOptions& options, int width, int height)
     : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold) {
+  const model::Circle& at = options.circle;
+  rim_px_ = 0.5 + std::min({at.axis_x, at.axis_y, width - 1 - at.axis_x, height - 1 - at.axis_y});
   inside_.reserve(width * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -177,6 +180,7 @@ Json Score::figures() const {
     if (std::isfinite(value)) json[name] = value;
   }
   add_to(json, verdict());
+  if (const auto radius_mm = judged_radius_mm()) json["judged_radius_mm"] = *radius_mm;
   json["trim"] = options_.trim;
   if (options_.threshold) json["critical_dose"] = *options_.threshold;
   if (options_.exposure && !options_.threshold) json["critical_dose_per_turn"] = print_threshold();
@@ -189,6 +193,12 @@ Verdict Score::verdict() const {
   return {whole_.metrics(), with_cut_.metrics(), std::isfinite(duration_s) ? std::optional(duration_s) : std::nullopt};
 }
 
+std::optional<double> Score::judged_radius_mm() const {
+  constexpr double least_px = 0.5;  // the writable circle's own voxels end within it
+  if (options_.voxel_mm <= 0 || rim_px_ >= options_.circle.radius - least_px) return std::nullopt;
+  return rim_px_ * options_.voxel_mm;
+}
+
 std::string Score::table() const {
   const Json values = figures();
   std::string text;
@@ -198,6 +208,11 @@ std::string Score::table() const {
     std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),
                   format_figure(values[name].get<double>()).c_str(), meaning.c_str());
     text += line;
+  }
+  if (const auto radius_mm = judged_radius_mm()) {
+    text += "judged       all void within " + format_number(*radius_mm, 3) +
+            " mm of the axis; the volume ends before " + "the writable radius of " +
+            format_number(options_.circle.radius * options_.voxel_mm, 3) + " mm\n";
   }
   return text + "verdict      " + words(verdict()) + "\n";
 }

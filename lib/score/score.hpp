@@ -24,6 +24,7 @@ struct Exposure {
 
 struct ScoreOptions {
   model::Circle circle;                 // the writable one; void outside it is not judged
+  double voxel_mm = 0;                  // 0: not known
   bool surface = false;                 // surface voxels count too: part when at least half covered, else void
   bool absolute = false;                // PW and IPDR in the dose's unit instead of fractions of the largest dose
   double trim = 0.02;                   // alpha: extremes are also given at the alpha/2 percentiles
@@ -70,9 +71,12 @@ class Score {
     return options_.part->contains(static_cast<int>(pixel % width), static_cast<int>(pixel / width), slice);
   }
   [[nodiscard]] double outside(const std::string& name) const;
+  /// That of the circle in which all void was judged, where the volume ends within the writable one.
+  [[nodiscard]] std::optional<double> judged_radius_mm() const;
 
   ScoreOptions options_;
   int width_;
+  double rim_px_ = 0;                       // of the largest circle in a slice
   std::vector<bool> inside_;                // of a slice, whether the circle has it
   model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;

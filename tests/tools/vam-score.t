@@ -15,7 +15,7 @@ ok "a report on stdout" sh -c 'vam-score --report - --grid target part.vdb >out.
 is "the former --json is a report on stdout" "$(vam-score --json --grid target part.vdb 2>warning)" "$(vam-score --report - --grid target part.vdb)"
 is "with a warning" "$(cat warning)" "vam-score: warning: --json is now --report -"
 is "the report on stdout has the figures of the file" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
-is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 17
+is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 18
 ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0 [(][0-9]+ voxels[)]; including the [0-9]+ voxels cut by the surface: process window [-+0-9.e]+, VER "'
 is "the verdict counts part and surface voxels" "$(json perfect.json with_surface.voxels)" \
   $(($(json perfect.json part_voxels) + $(json perfect.json void_voxels) + $(json perfect.json surface_voxels)))
@@ -87,4 +87,26 @@ fails 65 'part.vdb' vam-score --grid target part.vdb --sinogram part.vdb
 
 fails 64 'require: is empty' vam-score part.vdb --target part.vdb --require ''
 fails 64 "'print.stl' must end in .ply" vam-score part.vdb --target part.vdb --mesh print.stl
+
+# Void in the corners of the volume is judged too, up to the writable radius; where that ends is told.
+python3 - "$VAM_SOURCE/scripts" <<'PY'
+import array, sys
+sys.path.insert(0, sys.argv[1])
+import vam
+n = 60
+part = array.array("f", bytes(4 * 2 * n * n))
+dose = array.array("f", [0.5]) * len(part)
+for k in range(2):
+    for j in range(n):
+        for i in range(n):
+            at = (k * n + j) * n + i
+            if 25 <= i < 35 and 25 <= j < 35: part[at] = dose[at] = 1
+            if i < 4 and j < 4: dose[at] = 2
+vam.write_volume("ct.vdb", part, 0.13, shape=(2, n, n))
+vam.write_volume("cd.vdb", dose, 0.13, name="dose", shape=(2, n, n))
+PY
+vam-score cd.vdb --target ct.vdb --report corner.json >corner
+is "what cures in the corner of a volume counts" "$(json corner.json max_void)" 2.0
+is "and how far void is judged is told" "$(grep ^judged corner)" \
+  'judged       all void within 3.9 mm of the axis; the volume ends before the writable radius of 8.3 mm'
 done_testing

@@ -121,7 +121,7 @@ Exposed expose(Light& light, const model::StackInfo& info, const Options& option
   const light::Simulation simulation(printer, options.alignment, info, place.grid, climb);
   const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);
   std::optional<model::Circle> judged;
-  if (place.target != nullptr) judged = model::writable_circle(place.grid, place.judged_mm);
+  if (place.target != nullptr) judged = model::judged_circle(place.grid, place.judged_mm);
   Insert insert(place.insert, place.target, place.grid, info);
   Sink sink(volume, place, insert, first, judged);
 

@@ -25,7 +25,13 @@ std::vector<std::string> description() {
       "the "
       "dose of one turn, and of the dose as it is for one of vam-dose --exposure-plan or --shown.",
       "V ends at the writable radius, or at the edge of the resin for a part that extends beyond it (vam-slice "
-      "--extent resin). Resin beyond the writable radius is lit from some stage angles only; --lit-fraction writes "
+      "--extent resin). It comprises all voxels of the volume within that radius, those in its corners, too. Where the "
+      "volume "
+      "ends before it, as those of --geometry parallel do, whose dose is computed in the target's volume, a line "
+      "states "
+      "the radius within which all void is judged (judged_radius_mm of the report); vam-slice --extent writable makes "
+      "the "
+      "volume larger. Resin beyond the writable radius is lit from some stage angles only; --lit-fraction writes "
       "their fraction for every voxel.",
       "Voxels that the part's surface cuts (0 < coverage < 1) are scored only with --surface.",
       "With --grey-target, the option of vam-optimize, the target is a dose for every voxel, E = |x - f| the error of "
