@@ -162,6 +162,30 @@ holds "within the 8 bits: $worst of the largest dose" "$worst < 0.004 && $worst 
 python3 compare.py turned.npy back.npy >difference; read -r sizes worst <difference
 holds "turns are averaged: $worst" "$worst < 1e-5"
 
+# Slices as images: the top row at the largest y, as vam-slice has it.
+mkdir seen
+python3 - <<'PY'
+import struct, zlib
+rows = [[0] * 6, [0, 255, 0, 0, 0, 0], [0] * 6, [0, 0, 0, 255, 255, 0], [0] * 6, [0] * 6]
+def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 6, 6, 8, 0, 0, 0, 0))
+data += chunk(b"IDAT", zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))) + chunk(b"IEND", b"")
+for k in range(2): open("seen/%d.png" % k, "wb").write(data)
+PY
+vam-slice seen --voxel 0.5 --set projector.telecentric=true -o sliced.vdb
+vam-convert seen --voxel 0.5 -o converted.vdb
+seen() { python3 - "$VAM_SOURCE/scripts" "$1" <<'PY'
+import sys
+sys.path.insert(0, sys.argv[1])
+import vam
+values, facts = vam.read(sys.argv[2], "target")
+(_, ny, nx), (_, y, x), (step, _, _) = facts["shape"], facts["origin"], facts["spacing"]
+print(*sorted((x + i % nx * step, y + i // nx * step) for i, value in enumerate(values[:nx * ny]) if value == 1))
+PY
+}
+is 'images are slices as one sees them' "$(seen converted.vdb)" '(-0.75, 0.75) (0.25, -0.25) (0.75, -0.25)'
+is 'as vam-slice reads them' "$(seen sliced.vdb)" '(-0.75, 0.75) (0.25, -0.25) (0.75, -0.25)'
+
 # H.264 has black at 16 and white at 235 of 255, unless it states a full range; of colours the luma counts.
 python3 -c 'import sys; sys.stdout.buffer.write(bytes([0] * 256 + [85] * 256 + [170] * 256 + [255] * 256) * 4)' >levels
 python3 -c 'import sys; sys.stdout.buffer.write((bytes([0, 0, 0] * 512) + bytes([0, 0, 255] * 512)) * 4)' >blue

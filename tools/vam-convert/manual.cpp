@@ -13,14 +13,18 @@ cli::Manual manual() {
        "sinograms "
        "with --geometry, so that vam-dose computes the "
        "dose of projections made by any program. A folder of numbered images (PNG, TIFF) or a video (MKV, MP4) is read "
-       "as projections, one for each stage angle; with --voxel a folder is read as the slices of a volume.",
-       "Arrays have the order [z][y][x] for volumes, z upwards; [slice][angle][column] for sinograms, slices upwards; "
+       "as projections, one for each stage angle; with --voxel a folder is read as the slices of a volume, from the "
+       "lowest up, the top row "
+       "of an image at the largest y, as one sees it from above and as vam-slice reads it.",
+       "Arrays have the order [z][y][x] for volumes, z upwards and y from the lowest; [slice][angle][column] for "
+       "sinograms, slices upwards; "
        "and [frame][row][column] for frames, row 0 at the top. Output is in little-endian 4-byte floats in C order. "
        "Input may be integers of 1 to 8 bytes, floats of 2, 4 or 8 bytes, or booleans, in either byte order and in C "
        "or "
        "Fortran order. --axes gives another order of the axes: projections of VAMToolbox, [column][angle][z], have the "
        "order xaz. Values are unchanged unless --full-scale is given. Python objects (pickles) are refused. "
-       "Of NRRD, MRC and TIFF files the values are read (x the fastest axis, pages as z) and voxel size and place are "
+       "Of NRRD, MRC and TIFF files the values are read (x the fastest axis, pages as z, and as of every array the "
+       "rows of a page from the lowest y up) and voxel size and place are "
        "given by options; NRRD values must be in the same file, raw or gzip, TIFF pages grey and in strips.",
        "Of HDF5 files one dataset is read, of integers or floats of any size, packed by gzip, shuffle or szip, or not: "
        "the one that --array names, else /exchange/data (DXchange), else that of the NeXus groups, else the only one "

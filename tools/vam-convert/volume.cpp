@@ -24,6 +24,12 @@ model::Grid grid_of(const Options& options, const io::ArraySize& size) {
   return grid;
 }
 
+Image upside_down(const Image& image) {
+  Image turned(image.width, image.height);
+  for (int y = 0; y < image.height; ++y) std::copy_n(image.row(y), image.width, turned.row(image.height - 1 - y));
+  return turned;
+}
+
 void require_voxels(const std::string& name, const io::ArraySize& size) {
   constexpr int most = 65536;
   if (std::max({size.images, size.rows, size.columns}) <= most) return;
@@ -50,6 +56,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
         throw Error{Fault::data, options.input + ": ends after " + std::to_string(k + i) + " of " +
                                      std::to_string(grid.nz) + " slices; it is incomplete"};
       }
+      if (in->are_frames()) image = upside_down(image);  // row 0 is at the top, voxels begin at the least y
       slices.insert(slices.end(), image.values.begin(), image.values.end());
     }
     volume.write_slices(k, count, slices.data());

@@ -15,7 +15,8 @@ std::vector<std::string> description() {
       "an opaque object to print around.",
       "PART is a mesh (" + io::mesh_format_names() +
           ", identified by content), or a folder of numbered grey images (PNG or TIFF), one per slice from the lowest "
-          "upwards, white inside; each pixel is a voxel. --shape generates a test part without a file.",
+          "upwards, white inside, the top row at the largest y; each pixel is a voxel. --shape generates a test part "
+          "without a file.",
       "Meshes are repaired first: coincident points are welded, rounding cracks closed, degenerate and duplicate "
       "triangles removed, all others oriented outwards. Solids may overlap or share faces; nested shells represent a "
       "solid within a "
