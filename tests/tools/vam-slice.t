@@ -28,6 +28,7 @@ stl("sheet.stl", c[:2])
 stl("point.stl", [[[1, 1, 1]] * 3] * 4)
 stl("nan.stl", [[[0, 0, 0], [1, 0, 0], [0, float("nan"), 0]]])
 stl("empty.stl", [])
+stl("near.stl", [[[v[0] + 5.5, *v[1:]] for v in t] for t in c])
 stl("far.stl", [[[x + 100 for x in v] for v in t] for t in c])
 stl("fin.stl", c + [[[v[0] * 0.015, v[1], v[2] * 0.75 + 3] for v in t] for t in c])
 stl("high.stl", [[[v[0], v[1], v[2] + 100] for v in t] for t in c])
@@ -161,6 +162,9 @@ holds "the insert keeps its size" "($(json report.json insert.size_mm.0) - 2)^2 
 holds "the part has its own" "($(json report.json size_mm.2) - 8)^2 < 1e-9"
 fails 64 'requires --insert or --insert-shape' vam-slice cube.stl --cut-insert 0 -o x.vdb
 fails 64 'requires --insert' vam-slice cube.stl --insert-shape sphere --insert-unit cm -o x.vdb
+centred() { vam-slice cube.stl --insert near.stl "$@" --voxel 0.25 -o insert.vdb 2>&1 | grep -o 'centred at ([^)]*)'; }
+is "an insert is mirrored with its part" "$(centred --mirror x | tr -d -)" "$(centred)"
+ok "to the other side" test "$(centred --mirror x)" != "$(centred)"
 
 # Images: 6 x 4 pixels, 3 slices; the middle one half grey
 cat >images.py <<'PY'

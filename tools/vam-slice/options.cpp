@@ -17,7 +17,8 @@ namespace {
 void declare_placement(cli::App& app, Options& options) {
   app.group("Placement, applied in this order");
   app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.");
-  app.choice("--mirror", options.mirror, {"none", "x", "y", "z"}, "Mirror the part by negating this coordinate.");
+  app.choice("--mirror", options.mirror, {"none", "x", "y", "z"},
+             "Mirror the part, and the file of --insert with it, by negating this coordinate.");
   app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"},
              "Axis of the file that points upwards; y in the files of most animation programs.");
   app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");

@@ -63,7 +63,7 @@ solid::Placement insert_placement(const Options& options, const solid::Part& par
   placement.centre = options.insert.empty() || !options.insert_at_mm.empty();
   if (!options.insert.empty()) {
     placement.scale *= solid::mm_per(options.insert_unit);
-    placement.axes = solid::upright(options.up);
+    placement.axes = options.placement.axes;  // an assembly is turned and mirrored as a whole
     placement.rotate_deg = options.placement.rotate_deg;
     const solid::Point origin = part.map({});
     placement.at_mm = {origin[0], origin[1], origin[2] / stretch_z};
