@@ -85,6 +85,17 @@ is "no voxel of the handle is in shadow" "$(value handle.json dark_part_voxels)"
 
 vam-slice --shape boat --voxel 0.2 -o boat.vdb
 quiet "with chief rays in the vial" vam-optimize --angles 180 --method apg --iterations 10 --report vial.json boat.vdb -o vial.exr
+# A part in the corners of its volume, as of an array without a margin.
+python3 - "$VAM_SOURCE/scripts" <<'PY'
+import array, sys
+sys.path.insert(0, sys.argv[1])
+import vam
+n = 24
+part = array.array("f", [0 if 8 <= i < 16 and 8 <= j < 16 else 1 for k in range(2) for j in range(n) for i in range(n)])
+vam.write_volume("corners.vdb", part, 0.25, shape=(2, n, n))
+PY
+quiet "a part in the corners of its volume" vam-optimize --geometry parallel --angles 30 --method apg --iterations 3 corners.vdb -o corners.exr
+quiet "has a dose" vam-dose corners.exr --like corners.vdb -o corners-dose.vdb
 quiet "with a parallel beam" vam-optimize --geometry parallel --angles 180 --method apg --iterations 10 boat.vdb -o parallel.exr
 vam-resample parallel.exr -o resampled.exr
 for how in vial resampled; do
