@@ -246,7 +246,9 @@ void Canvas::paste(const RgbImage& image, Spot corner, Spot opposite) {
   state_->pixelated = state_->pixelated || enlarged;
   cairo().cairo_pattern_set_filter(cairo().cairo_get_source(context),
                                    enlarged ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
-  cairo().cairo_paint(context);
+  if (!enlarged) cairo().cairo_pattern_set_extend(cairo().cairo_get_source(context), CAIRO_EXTEND_PAD);
+  cairo().cairo_rectangle(context, 0, 0, image.width, image.height);  // what is smoothed ends with the image, too
+  cairo().cairo_fill(context);
   cairo().cairo_restore(context);
 }
 

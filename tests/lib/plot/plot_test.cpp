@@ -97,6 +97,18 @@ TEST_CASE("histograms count shares and draw bars") {
   CHECK(image(x, static_cast<int>(frame.spot_y(39))) == paint::white);
 }
 
+TEST_CASE("an image that is enlarged one way fills its box and nothing beyond") {
+  Canvas canvas(40, 40);
+  canvas.paste(RgbImage(1, 100, paint::blue), {10, 10}, {30, 30});
+  const RgbImage shown = canvas.image();
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const bool inside = x >= 10 && x < 30 && y >= 10 && y < 30;
+      CHECK(shown(x, y) == (inside ? paint::blue : paint::white));
+    }
+  }
+}
+
 TEST_CASE("text has the reported width, can be vertical, and stays on the canvas") {
   Canvas canvas(200, 200);
   canvas.text({10, 100}, "Hxg", 20);
