@@ -47,15 +47,19 @@ std::string grid_of(const Options& options) {
   return has_grid(options.input, "target") && has_grid(options.input, "insert") ? "target" : "";
 }
 
+/// On the grid of the volume, if the file of the target has one.
+std::optional<io::SparseVolume> insert_for(const Options& options, const io::SparseVolume& volume) {
+  const std::string& with = options.target.empty() ? options.input : options.target;
+  if (volume.name() == "insert" || !has_grid(with, "insert")) return std::nullopt;
+  io::SparseVolume insert = io::read_volume(with, "insert");
+  insert.extend_to(volume.grid(), with);
+  return insert;
+}
+
 plot::ImageFigure sections(const Options& options, const io::SparseVolume& volume) {
   std::optional<io::SparseVolume> target;
-  std::optional<io::SparseVolume> insert;
+  const std::optional<io::SparseVolume> insert = insert_for(options, volume);
   if (!options.target.empty()) target.emplace(target_for(options));
-  const std::string& with = options.target.empty() ? options.input : options.target;
-  if (volume.name() != "insert" && has_grid(with, "insert")) {
-    insert.emplace(io::read_volume(with, "insert"));
-    insert->extend_to(volume.grid(), with);
-  }
   return plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr);
 }
 
@@ -96,8 +100,9 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
   if (options.cure || (options.render && !options.target.empty())) {
     const Judged with = judged(options, volume);
     const double threshold = threshold_of(options, volume, with);
-    return options.cure ? plot::view_cure(volume, with.target, threshold, with.how.circle, options.view)
-                        : view_tool::print_figure(volume, with.target, threshold, options.view);
+    if (!options.cure) return view_tool::print_figure(volume, with.target, threshold, options.view);
+    const std::optional<io::SparseVolume> insert = insert_for(options, volume);
+    return plot::view_cure(volume, with.target, threshold, with.how.circle, options.view, insert ? &*insert : nullptr);
   }
   if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view);
   if (!options.compare.empty()) {
@@ -107,8 +112,9 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
   return sections(options, volume);
 }
 
-void show_volume(const Options& options, const std::string& history) {
+void show_volume(Options options, const std::string& history) {
   const io::SparseVolume volume = io::read_volume(options.input, grid_of(options));
+  options.view.stretch_z = tool::stretch_z(volume.metadata);
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
     const Judged with = judged(options, volume);

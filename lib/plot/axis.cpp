@@ -42,6 +42,7 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
   if (axis.logarithmic) return decades(low, high, wanted);
   double step = axis.step > 0 ? axis.step : round_step((high - low) / wanted);
   if (axis.step == 0 && (high - low) / step > 1.6 * wanted) step = round_step(2.5 * step);
+  if (axis.whole) step = std::max(1.0, step);
   std::vector<double> values;
   for (double n = std::ceil(low / step - 1e-6); n * step <= high + 1e-6 * step; ++n)
     values.push_back(n == 0 ? 0 : n * step);

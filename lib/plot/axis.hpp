@@ -15,7 +15,8 @@ struct Axis {
   double low = 0;
   double high = 0;
   bool logarithmic = false;
-  double step = 0;  // distance of the ticks; 0: whatever is round
+  double step = 0;     // distance of the ticks; 0: whatever is round
+  bool whole = false;  // ticks are at whole numbers only
 };
 
 /// Round numbers (1, 2, 5 x 10^n) between the ends, about `wanted` of them; for a logarithmic axis the powers of ten,

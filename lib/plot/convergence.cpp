@@ -9,6 +9,7 @@ Plot convergence(const std::vector<Trace>& traces) {
   constexpr std::array<std::array<Rgb, 2>, 2> colours{{{paint::blue, paint::vermilion}, {paint::green, paint::orange}}};
   Plot curves;
   curves.x.label = "iteration";
+  curves.x.whole = true;
   curves.y.label = "VER, process window / largest dose";
   for (std::size_t n = 0; n < traces.size(); ++n) {
     const Trace& trace = traces[n];

@@ -142,7 +142,8 @@ Layout layout_of(const ImageFigure& figure) {
   layout.top = margin + (figure.title.empty() ? 0 : title_room);
   const auto [bar_top, bar_bottom] = layout.bar();
   const double images = layout.left + sheet.cells_width() + bar_room(figure.scale, bar_bottom.y - bar_top.y);
-  layout.width = std::max(images + margin, Canvas::text_width(figure.title, title_size) + 2 * margin);
+  layout.width = std::max({images + margin, Canvas::text_width(figure.title, title_size) + 2 * margin,
+                           layout.left + std::ceil(legend_width(legend_of(figure))) + margin});
   layout.legend = layout.top + sheet.cells_height() + x_axis_room + 8;
   layout.height = layout.legend + legend_height(legend_of(figure), layout.width - layout.left - margin) + 0.5 * margin;
   return layout;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/legend.hpp"
 
+#include <algorithm>
+
 #include "plot/axis.hpp"
 
 namespace vam::plot {
@@ -58,6 +60,12 @@ void draw_mark(Canvas& canvas, const LegendEntry& entry, Spot left) {
 }
 
 }  // namespace
+
+double legend_width(const std::vector<LegendEntry>& entries) {
+  double widest = 0;
+  for (const LegendEntry& entry : entries) widest = std::max(widest, width_of(entry));
+  return widest;
+}
 
 double legend_height(const std::vector<LegendEntry>& entries, double width) {
   return entries.empty() ? 0 : places_of(entries, width).back().y + legend_row;

@@ -17,6 +17,8 @@ struct LegendEntry {
   std::string words;
 };
 
+/// That of the widest entry.
+[[nodiscard]] double legend_width(const std::vector<LegendEntry>& entries);
 /// As many rows as fit the width, each of `legend_row` pixels. No entries: 0.
 [[nodiscard]] double legend_height(const std::vector<LegendEntry>& entries, double width);
 /// From the upper left corner.

@@ -18,8 +18,10 @@ struct ViewOptions {
   std::string name;                       // of the file, for titles
   std::optional<std::string> title = {};  // of the figure, instead of one that says what is seen
   Plane plane = Plane::axial;
-  std::optional<double> at;   // mm across the plane; z of a slice in mm or stage angle of a frame in degrees
-  int sheet = 1;              // number of images, evenly spread
+  double stretch_z = 1;  // of the volume along z (vam:stretch_z): its z / stretch_z is mm in the print
+  std::optional<double>
+      at;         // mm in the print across the plane; z of a slice in mm or stage angle of a frame in degrees
+  int sheet = 1;  // number of images, evenly spread
   std::optional<double> low;  // values of the ends of the colours
   std::optional<double> high;
   std::string colours = "auto";  // auto, grey, viridis, diverging
@@ -37,10 +39,11 @@ struct ViewOptions {
 [[nodiscard]] ImageFigure view_images(io::ImageSource& images, const ViewOptions& options);
 
 /// What prints where the dose reaches the threshold: cured as wanted, missing, overcured. Voxels that the surface cuts
-/// are right either way; void outside the writable circle is shown, but does not count. Throws Fault::data when the
-/// grids differ.
+/// are right either way; void outside the writable circle is shown, but does not count. An insert is hatched. Throws
+/// Fault::data when the grids differ.
 [[nodiscard]] ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
-                                    const model::Circle& circle, const ViewOptions& options);
+                                    const model::Circle& circle, const ViewOptions& options,
+                                    const io::SparseVolume* insert = nullptr);
 
 /// Each section of both volumes, and by how much the second is more. Throws Fault::data when the grids differ.
 [[nodiscard]] ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a dose cures the part, where not, and where too much.
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
@@ -46,7 +48,7 @@ std::string with_share(const std::string& what, long count, long of, const std::
 }  // namespace
 
 ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
-                      const model::Circle& circle, const ViewOptions& options) {
+                      const model::Circle& circle, const ViewOptions& options, const io::SparseVolume* insert) {
   require_same_voxels(dose.grid(), target.grid(), options.name, "compute the dose on this target");
   const views::Sections sections = views::sections_of(dose.grid(), options);
   std::vector<Image> doses = planes(dose, options.plane, sections.indices);
@@ -69,6 +71,11 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
   }
   const auto lines = outlines(target, dose.grid(), options.plane, sections.places_mm);
   for (std::size_t n = 0; n < lines.size(); ++n) figure.panels[n].outline = lines[n];
+  if (insert != nullptr) {
+    std::vector<Image> hidden = planes(*insert, options.plane, sections.indices);
+    for (std::size_t n = 0; n < hidden.size(); ++n) figure.panels[n].hatched = std::move(hidden[n]);
+    figure.hatched_name = "insert";
+  }
   views::set_section_axes(figure, dose.grid(), options);
   figure.outline_name = "surface of the target";
   figure.legend = {

@@ -173,4 +173,16 @@ fails 64 'part.vdb' vam-view part.vdb -o part.vdb
 fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd
 fails 74 'full' vam-view part.vdb -o /dev/full
 fails 73 'missing/x.png' vam-view part.vdb -o missing/x.png
+
+# With the default printer: places in the print, and an insert
+unset VAM_PRINTER; rm -f printer.toml
+vam-slice --shape box:x=4,y=4,z=10 --voxel 0.5 -o box.vdb
+fails 65 'it reaches from -5.057 mm to 5.057 mm' vam-view box.vdb --at 90 -o x.png
+quiet "which --at takes, too" vam-view box.vdb --at 5.05 -o box.png
+vam-slice --shape box:x=6,y=6,z=4 --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --cut-insert -o held.vdb
+vam-sinogram held.vdb --filter ram-lak --negative clip -o held.exr
+vam-dose held.exr --like held.vdb -o held-dose.vdb
+vam-view held-dose.vdb --target held.vdb --cure-map -o held.png
+row() { for x in 420 422 424 426 428 430 432 434 436 438 440; do $png get held.png $x 400; done; }
+holds "the insert of a cure map is hatched" "$(row | sort -u | grep -Ec '^[0-9]{1,2} ') > 0"
 done_testing

@@ -26,6 +26,10 @@ cli::Manual manual() {
        "Of NRRD, MRC and TIFF files the values are read (x the fastest axis, pages as z, and as of every array the "
        "rows of a page from the lowest y up) and voxel size and place are "
        "given by options; NRRD values must be in the same file, raw or gzip, TIFF pages grey and in strips.",
+       "A volume is taken as it lies. The print of a target is lower than its volume by the vertical magnification of "
+       "the "
+       "projector, for which vam-slice stretches its parts: stretch an array along z by stretch_z, which vam-slice "
+       "--report states for the printer (1.04 for the default one), or the print is 4 % too short.",
        "Of HDF5 files one dataset is read, of integers or floats of any size, packed by gzip, shuffle or szip, or not: "
        "the one that --array names, else /exchange/data (DXchange), else that of the NeXus groups, else the only one "
        "of "

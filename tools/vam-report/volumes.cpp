@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "facts.hpp"
 #include "io/vdb/gate.hpp"
 #include "plot/page.hpp"
 #include "plot/view.hpp"
@@ -23,6 +24,7 @@ std::string sections(const io::SparseVolume& volume, const std::string& file, co
   options.plane = plane;
   options.sheet = std::min(count, plot::plane_count(volume.grid(), plane));
   options.size = shown_px;
+  options.stretch_z = tool::stretch_z(volume.metadata);
   const plot::PlaneAxes axes = plot::plane_axes(plane);
   const std::string title = volume.name() + ", sections across " + axes.across;
   return series(title, frames_of(plot::view_volume(volume, target, options)), file + ": grid '" + volume.name() + "'.");

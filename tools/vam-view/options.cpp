@@ -37,7 +37,8 @@ void declare(cli::App& app, Options& options) {
              "Name of the grid; required if the volume has several, except for a target with its insert.");
   app.choice("--plane", options.plane, {"axial", "coronal", "sagittal"}, "Orientation of the section of a volume.");
   app.option("--at", "PLACE", options.view.at, cli::any,
-             "Show the section or sinogram slice nearest to PLACE in mm, or the frame nearest to PLACE in degrees.");
+             "Show the section or sinogram slice nearest to PLACE in mm (of the print), or the frame nearest to PLACE "
+             "in degrees.");
   app.default_is("the middle one; the first frame");
   app.option("--sheet", "N", options.view.sheet, {1, 400},
              "Number of evenly spaced sections, slices or frames on one sheet.");

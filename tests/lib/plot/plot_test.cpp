@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "io/image/image_file.hpp"
+#include "plot/image_figure.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;
@@ -41,6 +42,11 @@ TEST_CASE("ticks are round numbers, inside the axis, about as many as requested"
   }
   CHECK(round_step(0.7) == doctest::Approx(0.5));
   CHECK(round_step(23) == doctest::Approx(20));
+}
+
+TEST_CASE("ticks of counts are whole numbers") {
+  CHECK(ticks({"", 0, 2, false, 0, true}, 8) == std::vector<double>{0, 1, 2});
+  CHECK(ticks({"", 0, 100, false, 0, true}, 5) == ticks({"", 0, 100}, 5));
 }
 
 TEST_CASE("a frame maps values to positions, y upwards, also on logarithmic axes") {
@@ -107,6 +113,14 @@ TEST_CASE("an image that is enlarged one way fills its box and nothing beyond") 
       CHECK(shown(x, y) == (inside ? paint::blue : paint::white));
     }
   }
+}
+
+TEST_CASE("a narrow figure is as wide as its legend") {
+  const std::string words = "0.1 % of the pixels are above what the colours of this narrow figure show";
+  ImageFigure figure;
+  figure.panels.push_back({vam::Image(4, 100), "", {}});
+  figure.legend = {{Mark::none, paint::black, words}};
+  CHECK(draw(figure).width() > Canvas::text_width(words, label_size) + 28);
 }
 
 TEST_CASE("text has the reported width, can be vertical, and stays on the canvas") {
