@@ -50,8 +50,9 @@ cli::Manual manual() {
        "(vam-dose), and the density of each class over the turns is fitted by a rise at the critical dose, the "
        "saturation and a delay (vam-physics(7), Working curve of scattering). One volume, of the time after the print, "
        "gives all but the delay. Its record is a --resin, too.",
-       "critical-dose determines the dose with which the resin gels at a print's surface: the dose (vam-dose, or "
-       "vam-dose --shown for what was really given) at points spread over the surface of a print that was measured. "
+       "critical-dose determines the dose with which the resin gels at a print's surface: the dose (vam-dose "
+       "--exposure-plan, or --shown for what was really given) at points spread over the surface of a print that was "
+       "measured. "
        "It differs from that of working-curve, which is of the inside of parts: inhibitor diffuses to a surface from "
        "the resin that is left dark. With --design the report has next_critical_dose_mj_cm3, too: "
        "resin.critical_dose_mj_cm3, and the difference between the doses at the surfaces of print and design added. "
@@ -234,9 +235,13 @@ void add_critical_dose(cli::App& app, std::string& command, CriticalDoseOptions&
           "PRINT", o.print,
           "Mesh of the print in the part's frame (vam-ost --mesh, vam-sdf -o), or a volume (VDB) with --isovalue.")
       .reads();
-  critical.option("--dose", "FILE.vdb", o.dose, "Dose that the print was given, in mJ/cm3 (vam-dose).")
+  critical
+      .option("--dose", "FILE.vdb", o.dose,
+              "Dose that the print was given, in mJ/cm3 (vam-dose --shown or --exposure-plan), or that of a turn.")
       .reads()
       .required();
+  critical.option("--turns", "N", o.turns, cli::positive, "Turns at full intensity, where the dose is that of one.")
+      .default_is("as the dose states");
   critical
       .option(
           "--design", "FILE", o.design,

@@ -9,10 +9,11 @@
 
 namespace vam {
 
-/// The value of a text; discarded (is_discarded()) where the text is no JSON, or nested deeper than 64 levels: what
-/// walks a value calls itself once a level, and a file of 100 kB could end it.
 enum class Keys { any, distinct };
-/// distinct: discarded, too, where an object has a key twice, of which one would be believed.
+
+/// The value of a text; discarded (is_discarded()) where the text is no JSON, or nested deeper than 64 levels: what
+/// walks a value calls itself once a level, and a file of 100 kB could end it. Keys::distinct: discarded, too, where an
+/// object has a key twice, of which one would be believed.
 [[nodiscard]] Json parse_json(std::string_view text, Keys keys = Keys::any);
 
 /// What stands at a key, or `otherwise` where there is none or something of another type.

@@ -50,8 +50,12 @@ ok 'it is among the records' sh -c 'vam-calibrate check | grep -q registration'
 vam-slice --shape cylinder:diameter=5,height=4 --voxel 0.1 --stretch-z 1 -o round.vdb
 vam-calibrate registration round.vdb --isovalue 0.5 --design round.vdb >out 2>err; status=$?
 is 'a round part is refused' "$status $(grep -c 'is round about its axis' err)" '1 1'
-sed /axis_row/d printer.toml >bare.toml
-fails 64 'set camera.axis_row' vam-calibrate registration --printer bare.toml --set calibration.folder=empty off.vdb --design design.vdb --isovalue 1
+vam-calibrate registration off.vdb --design design.vdb --isovalue "$isovalue"
+holds 'the volume states the camera that it was made with: again, and the result is the same' \
+  "($(value azimuth) - 90) ^ 2 < 0.1 ^ 2 && ($(value axis_row) - 31.5) ^ 2 < 0.15 ^ 2"
+vam-sdf off.vdb design.vdb --isovalue "$isovalue" --align none -o off.ply >/dev/null
+sed -e /axis_row/d -e /calibration/d -e /folder/d printer.toml >bare.toml
+fails 64 'set camera.axis_row' vam-calibrate registration --printer bare.toml off.ply --design design.vdb
 fails 64 'isovalue' vam-calibrate registration off.vdb --design design.vdb
 fails 64 'design' vam-calibrate registration off.vdb --isovalue 1
 fails 66 'absent' vam-calibrate registration off.vdb --design absent.vdb --isovalue "$isovalue"

@@ -45,6 +45,23 @@ vam-convert a.npy --voxel 0.5 --grid weight --origin 1,2,3 -o a.vdb
 is 'or where it is put' "$(vam-view a.vdb --export /dev/stdout | grep -a '^space origin')" 'space origin: (1,2,3)'
 ok 'whole' vam-check a.vdb
 
+# As high as its print is to be.
+python3 - <<'PY'
+import struct
+head = "{'descr': '<f4', 'fortran_order': False, 'shape': (10, 1, 1), }"
+head += " " * (-(len(head) + 11) % 64) + "\n"
+open("ramp.npy", "wb").write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + struct.pack("<10f", *range(10)))
+PY
+quiet 'stretched' vam-convert ramp.npy --voxel 0.5 --grid weight --stretch-z 1.5 -o tall.vdb
+vam-convert tall.vdb >b.npy
+is 'in more slices' "$(shown b.npy | cut -d' ' -f1-3)" '15 1 1'
+holds 'that rise evenly' "$(shown b.npy | awk '{ for (i = 6; i < 18; ++i) { d = $(i + 1) - $i - 2 / 3; worst = d * d > worst ? d * d : worst }; print worst + ($12 - 4.5) ^ 2 }') < 1e-9"
+is 'the factor is recorded' "$(vam-check --verbose tall.vdb 2>/dev/null | grep -c stretch; vam-view tall.vdb --export /dev/stdout | grep -a '^space origin')" "$(printf '0\nspace origin: (0,0,-3.5)')"
+vam-convert ramp.npy --voxel 0.5 --full-scale 9 -o short.vdb 2>err
+is 'a target that is not is told' "$(grep -c 'ramp.npy: the print will be 3.7 % too short.*--stretch-z 1.038[0-9]* corrects it' err)" 1
+quiet 'as it is, if so meant' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --stretch-z 1 -o short.vdb
+fails 64 'stretch-z' vam-convert ramp.npy --voxel 0.5 --stretch-z 0 -o x.vdb
+
 # What is refused.
 fails 64 'the kind of data is not given; use --voxel MM' vam-convert a.npy -o x.vdb
 fails 64 'stdin: the kind of data is not given; use --voxel MM' sh -c 'vam-convert <a.npy'

@@ -134,7 +134,8 @@ fails 66 nothing.exr vam-dose nothing.exr -o x.vdb
 fails 66 nothing.vdb vam-dose frames.exr --like nothing.vdb -o x.vdb
 fails 65 noise.vdb vam-dose frames.exr --like noise.vdb -o x.vdb
 fails 65 cut.exr vam-dose cut.exr -o x.vdb
-sed -e 's|target|others|g' -e 's|vam:\(facts_\)*seal|vom:\1seal|g' handle.vdb | cat - part.vdb >mixed.vdb  # an insert of other voxels
+unsealed() { sed 's|vam:\(facts_\)*seal|vom:\1seal|g' "$1"; }
+{ unsealed handle.vdb | sed 's|target|others|g'; unsealed part.vdb; } >mixed.vdb  # an insert of other voxels
 fails 65 "differs from that of 'target'" vam-dose frames.exr --like mixed.vdb -o x.vdb
 fails 65 camera vam-dose camera.exr -o x.vdb
 fails 65 frames vam-dose images.exr -o x.vdb

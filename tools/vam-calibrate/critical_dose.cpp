@@ -30,9 +30,19 @@ void measure_critical_dose(const CriticalDoseOptions& options) {
                 options.dose + ": its doses are " + sparse.units +
                     ", not mJ/cm3; set resin.absorption_per_mm and resin.critical_dose_mj_cm3 for vam-dose"};
   }
-  const model::Volume dose = io::dense_volume(sparse);
+  const bool total = tool::stated_number(sparse.metadata, "vam:full_intensity_turns").has_value();
+  if (!total && !options.turns) {
+    throw Error{Fault::data,
+                options.dose +
+                    ": does not state vam:full_intensity_turns, so that its dose is that of one turn; give "
+                    "that of the print, by vam-dose --shown or --exposure-plan, or --turns"};
+  }
+  if (total && options.turns) throw Error{Fault::usage, "--turns: " + options.dose + " states its turns; omit it"};
+  model::Volume dose = io::dense_volume(sparse);
+  for (float& value : dose.values) value *= static_cast<float>(options.turns.value_or(1));
   const double stretch_z = tool::stretch_z(sparse.metadata);
-  const auto at_print = metrology::surface_dose(tool::read_surface(options.print, options.isovalue), dose, stretch_z);
+  const auto at_print =
+      metrology::surface_dose(print_surface(options.print, options.isovalue), dose, stretch_z, options.print);
   Json figures = metrology::to_json(at_print);
   const double middle = at_print.critical_dose_mj_cm3.value;
   if (!options.design.empty()) {
@@ -40,7 +50,7 @@ void measure_critical_dose(const CriticalDoseOptions& options) {
       throw Error{Fault::usage, "--design: requires resin.critical_dose_mj_cm3, with which the print was planned"};
     }
     const auto at_design =
-        metrology::surface_dose(tool::read_surface(options.design, design_isovalue), dose, stretch_z);
+        metrology::surface_dose(tool::read_surface(options.design, design_isovalue), dose, stretch_z, options.design);
     const double designed = at_design.critical_dose_mj_cm3.value;
     figures["design_dose_mj_cm3"] = designed;
     figures["next_critical_dose_mj_cm3"] = *printer.resin.critical_dose_mj_cm3 + middle - designed;
@@ -48,7 +58,7 @@ void measure_critical_dose(const CriticalDoseOptions& options) {
         std::hypot(at_print.critical_dose_mj_cm3.sigma, at_design.critical_dose_mj_cm3.sigma);
   }
   io::write_report(options.record, "vam-critical-dose/1", figures);
-  if (at_print.spread_mj_cm3 > most_spread * middle) {
+  if (!(middle > 0 && at_print.spread_mj_cm3 <= most_spread * middle)) {
     throw Error{Fault::judged, "the dose at the print's surface varies by " + format_number(at_print.spread_mj_cm3, 3) +
                                    " of " + format_number(middle, 3) +
                                    " mJ/cm3, so that it is no surface of this dose; check how the print is aligned"};

@@ -15,6 +15,7 @@
 #include "io/settings/calibration_record.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
+#include "io/vdb/vdb.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -74,8 +75,9 @@ bool is_simulated(const std::string& frames, const Json& facts) {
     return head.value("camera", Json::object()).contains("simulated");
   }
   const auto type = io::known_file_type(frames);
-  if (!type || *type == io::FileType::volume) return false;  // the print of a registration
-  const auto history = io::ViewSource(frames, 1).history();
+  if (!type) return false;  // the mesh of a registration
+  const bool volume = *type == io::FileType::volume;
+  const auto history = volume ? io::read_volume(frames, "").history : io::ViewSource(frames, 1).history();
   return std::find(history.begin(), history.end(), "frames of a simulated camera") != history.end();
 }
 
@@ -175,6 +177,7 @@ void check_records(const ScanOptions& options, model::Printer printer) {
   std::string first;
   for (const auto& scan : scans) {
     const bool required = std::find(needed.begin(), needed.end(), scan) != needed.end();
+    io::require_reachable(calibration, scan);
     const auto record = io::current_record(calibration, scan);
     std::string why;
     if (record) {

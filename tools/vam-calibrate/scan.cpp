@@ -26,9 +26,7 @@ const std::map<std::string, Scan>& scans() {
 
 void run_scan(const cli::App& app, const ScanOptions& options) {
   const std::string& command = options.command;
-  // A print was reconstructed with the records in force.
-  const auto records = command == "registration" ? io::Records::apply : io::Records::ignore;
-  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, records);
+  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
   if (command == "check") return check_records(options, printer);
   // The axis in the camera's image, as measured before.
   const auto axis_record = io::current_record(printer.calibration, "axis");

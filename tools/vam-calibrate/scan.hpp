@@ -12,6 +12,7 @@
 #include "base/stats/measured.hpp"
 #include "cli/common.hpp"
 #include "metrology/calibrate/axis.hpp"
+#include "model/mesh.hpp"
 #include "model/printer.hpp"
 #include "optics/patterns.hpp"
 
@@ -64,6 +65,7 @@ struct CriticalDoseOptions {
   std::string print;
   std::string dose;
   std::string design;  // none: only the dose at the print's surface
+  std::optional<double> turns;
   std::string record = "-";
   std::optional<double> isovalue;
   cli::PrinterOptions printer;
@@ -121,6 +123,10 @@ struct BeadTurn {
 using ColumnsOfBands = std::vector<double> (*)(const Image& frame, int bands);
 /// Throws Error: no_input, data, usage (frames without angles).
 [[nodiscard]] BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer, ColumnsOfBands columns_of);
+
+/// The surface of a print, without crumbs where it is a volume. Throws Error: usage (a volume without an isovalue),
+/// no_input, data.
+[[nodiscard]] model::TriangleSoup print_surface(const std::string& path, std::optional<double> isovalue);
 
 /// Mean over the image: each frame is reduced to one number until the timing of the pattern is known.
 [[nodiscard]] double mean_level(const Image& image);

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/curing_curve.hpp"
@@ -20,11 +20,6 @@ namespace vam::calibrate_tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<double> fact(const io::SparseVolume& volume, const char* name) {
-  const auto found = volume.metadata.find(name);
-  return found == volume.metadata.end() ? std::nullopt : parse_number(found->second);
-}
 
 /// The dose of one turn, and where it is in the print.
 struct TurnDose {
@@ -40,8 +35,8 @@ TurnDose read_dose(const std::string& path) {
                 path + ": its doses are " + sparse.units +
                     ", not mJ/cm3; set resin.absorption_per_mm and resin.critical_dose_mj_cm3 for vam-dose"};
   }
-  TurnDose dose{io::dense_volume(sparse), fact(sparse, "vam:stretch_z").value_or(1),
-                fact(sparse, "vam:full_intensity_turns")};
+  TurnDose dose{io::dense_volume(sparse), tool::stretch_z(sparse.metadata),
+                tool::stated_number(sparse.metadata, "vam:full_intensity_turns")};
   if (!dose.turns) return dose;
   for (float& value : dose.volume.values) value /= static_cast<float>(*dose.turns);
   return dose;
@@ -72,9 +67,9 @@ void measure_working_curve(const WorkingCurveOptions& options) {
   std::vector<double> turn_s;
   for (const std::string& file : files) {
     const io::SparseVolume sparse = io::read_volume(file, "scatter");
-    const auto turns = fact(sparse, "vam:turns");
+    const auto turns = tool::stated_number(sparse.metadata, "vam:turns");
     if (!turns && !one) throw Error{Fault::data, file + ": does not state its turns; use volumes of vam-ost --live"};
-    turn_s.push_back(fact(sparse, "vam:turn_s").value_or(0));
+    turn_s.push_back(tool::stated_number(sparse.metadata, "vam:turn_s").value_or(0));
     const double last = turns ? *turns - options.lit_from_turn : for_ever;
     if (last <= 0) continue;
     const auto of_turn = metrology::curing_readings(io::dense_volume(sparse), dose.volume, dose.stretch_z,

@@ -27,9 +27,9 @@ cli::Manual manual() {
        "rows of a page from the lowest y up) and voxel size and place are "
        "given by options; NRRD values must be in the same file, raw or gzip, TIFF pages grey and in strips.",
        "A volume is taken as it lies. The print of a target is lower than its volume by the vertical magnification of "
-       "the "
-       "projector, for which vam-slice stretches its parts: stretch an array along z by stretch_z, which vam-slice "
-       "--report states for the printer (1.04 for the default one), or the print is 4 % too short.",
+       "the projector, for which vam-slice stretches its parts; for arrays --stretch-z does so, and without it a "
+       "warning states the factor (1.04 for the default printer). --stretch-z 1 is for arrays that are stretched "
+       "already.",
        "Of HDF5 files one dataset is read, of integers or floats of any size, packed by gzip, shuffle or szip, or not: "
        "the one that --array names, else /exchange/data (DXchange), else that of the NeXus groups, else the only one "
        "of "
@@ -61,7 +61,7 @@ cli::Manual manual() {
        "The stage angle between the frames of a video is 6 x turns per minute / frames per second."},
       {{"A part to NumPy, and back:",
         "vam-slice --shape disc-grid --voxel 0.5 | vam-convert -o part.npy\n"
-        "vam-convert part.npy --voxel 0.5 -o again.vdb"},
+        "vam-convert part.npy --voxel 0.5 --stretch-z 1 -o again.vdb"},
        {"Its projections as an array, and the dose of such an array:",
         "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb\n"
         "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-convert -o sino.npy\n"

@@ -23,6 +23,7 @@ struct Options {
   std::optional<double> full_scale;
   std::optional<double> voxel_mm;
   std::vector<double> origin_mm;
+  std::optional<double> stretch_z;
   std::string units = "relative";
   std::string geometry = "none";
   std::optional<double> pixel_mm;

@@ -2,25 +2,36 @@
 #include "vam-convert/volume.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
+#include "base/log.hpp"
 #include "base/progress.hpp"
+#include "base/text.hpp"
 #include "io/array/array_reader.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/magnification.hpp"
 #include "vam-convert/images.hpp"
 
 namespace vam::convert_tool {
 
 namespace {
 
-model::Grid grid_of(const Options& options, const io::ArraySize& size) {
+/// Without --origin the middle of the array is at z = 0.
+model::Grid grid_of(const Options& options, const io::ArraySize& size, double stretch_z) {
   const double voxel_mm = *options.voxel_mm;
-  model::Grid grid =
-      model::centred_grid(size.columns, size.rows, size.images, voxel_mm, -0.5 * (size.images - 1) * voxel_mm);
-  if (!options.origin_mm.empty()) std::copy_n(options.origin_mm.begin(), 3, grid.origin_mm.begin());
+  const int slices = static_cast<int>(std::lround(size.images * stretch_z));
+  model::Grid grid = model::centred_grid(size.columns, size.rows, slices, voxel_mm, -0.5 * (slices - 1) * voxel_mm);
+  if (!options.origin_mm.empty()) {
+    std::copy_n(options.origin_mm.begin(), 3, grid.origin_mm.begin());
+    grid.origin_mm[2] = grid.origin_mm[2] * stretch_z + 0.5 * (stretch_z * (size.images - 1) - (slices - 1)) * voxel_mm;
+  }
   return grid;
 }
 
@@ -37,35 +48,86 @@ void require_voxels(const std::string& name, const io::ArraySize& size) {
                                std::to_string(size.images) + " voxels; up to 65536 along an axis are read"};
 }
 
+/// The slices of an array, upwards; where it is stretched, linear between its own.
+class StretchedSlices {
+ public:
+  StretchedSlices(Images& images, const std::string& name, double stretch_z, int count)
+      : images_(images), name_(name), last_(images.size().images - 1), step_(1 / stretch_z) {
+    start_ = 0.5 * (last_ - (count - 1) * step_);
+  }
+
+  void next(Image& slice) {
+    const double place = std::clamp(start_ + done_++ * step_, 0.0, static_cast<double>(last_));
+    const int low = std::min(static_cast<int>(place), std::max(last_ - 1, 0));
+    const auto share = static_cast<float>(place - low);
+    while (taken_ <= std::min(low + 1, last_)) take();
+    slice = share == 1 || last_ == 0 ? high_ : low_;
+    if (share == 0 || share == 1) return;
+    for (std::size_t i = 0; i < slice.size(); ++i) slice.values[i] += share * (high_.values[i] - slice.values[i]);
+  }
+
+ private:
+  void take() {
+    std::swap(low_, high_);
+    if (!images_.next(high_)) {
+      throw Error{Fault::data, name_ + ": ends after " + std::to_string(taken_) + " of " + std::to_string(last_ + 1) +
+                                   " slices; it is incomplete"};
+    }
+    if (images_.are_frames()) high_ = upside_down(high_);  // row 0 is at the top, voxels begin at the least y
+    ++taken_;
+  }
+
+  Images& images_;
+  std::string name_;
+  int last_;
+  double step_;
+  double start_ = 0;
+  int done_ = 0;
+  int taken_ = 0;
+  Image low_, high_;  // the two that were taken last
+};
+
+// Prints are lower than their targets by the projector's vertical magnification, for which vam-slice has stretched
+// them.
+void doubt_height(const Options& options) {
+  constexpr double least = 0.005;
+  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  const double factor = 1 / model::vertical_magnification(printer);
+  if (std::abs(factor - 1) < least) return;
+  warn(io::input_name(options.input) + ": the print will be " + format_number(100 * std::abs(1 - 1 / factor), 2) +
+       " % too " + (factor > 1 ? "short" : "tall") + ", as the projector's rays climb; --stretch-z " +
+       format_number(factor, 5) + " corrects it, --stretch-z 1 takes the array as it is");
+}
+
 }  // namespace
 
 void make_volume(const cli::App& app, const Options& options, std::optional<io::FileType> type) {
   constexpr int slab = 8;
   const auto in = open_source(options, type, "zyx");
   require_voxels(options.input, in->size());
-  const model::Grid grid = grid_of(options, in->size());
+  const double stretch_z = options.stretch_z.value_or(1);
+  const model::Grid grid = grid_of(options, in->size(), stretch_z);
   io::SparseVolume volume(options.grid.empty() ? "target" : options.grid, grid);
-  std::vector<float> slices;
+  StretchedSlices slices(*in, options.input, stretch_z, grid.nz);
+  std::vector<float> values;
   Image image;
   Progress progress("converting", grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
-    slices.clear();
+    values.clear();
     const int count = std::min(slab, grid.nz - k);
     for (int i = 0; i < count; ++i) {
-      if (!in->next(image)) {
-        throw Error{Fault::data, options.input + ": ends after " + std::to_string(k + i) + " of " +
-                                     std::to_string(grid.nz) + " slices; it is incomplete"};
-      }
-      if (in->are_frames()) image = upside_down(image);  // row 0 is at the top, voxels begin at the least y
-      slices.insert(slices.end(), image.values.begin(), image.values.end());
+      slices.next(image);
+      values.insert(values.end(), image.values.begin(), image.values.end());
     }
-    volume.write_slices(k, count, slices.data());
+    volume.write_slices(k, count, values.data());
     progress.tick(count);
   }
   io::require_usable(options.input, volume, io::TargetKind::grey);
   volume.units = options.units;
   volume.history = {app.history()};
+  if (options.stretch_z) volume.metadata["vam:stretch_z"] = format_number(stretch_z, 9);
   io::write_volume(options.output, volume);
+  if (!options.stretch_z && volume.name() == "target") doubt_height(options);
 }
 
 }  // namespace vam::convert_tool

@@ -31,7 +31,7 @@ cli::Manual manual() {
        "--output); the --trace of vam-optimize, a file that ends in .csv, as curves over the iterations. Any other "
        "table "
        "that ends in .csv and begins with the names of its columns is drawn, too: up to four columns over the first "
-       "one; a last word that all of their names share, as in open_mm,closed_mm, is the unit.",
+       "one. A unit in which all of their names end, as in open_mm,closed_mm, is stated at the axis.",
        "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
        "orange, more saturated with the number of angles (for a horizontal parallel beam).",
        "Coverage and intensity are shown in grey; dose and other quantities in viridis, which is perceptually uniform; "

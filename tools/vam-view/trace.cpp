@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,17 +36,23 @@ plot::Plot convergence_plot(const Options& options) {
   return plot;
 }
 
-/// "closed_loop_mm" is the curve "closed loop" in mm: the last word of a column's name is its unit if others have it,
-/// too.
-std::string unit_of(const std::vector<std::string>& columns) {
-  const auto last = [](const std::string& name) {
-    const auto at = name.rfind('_');
-    return at == std::string::npos || at == 0 ? std::string() : name.substr(at + 1);
-  };
-  const std::string unit = last(columns[1]);
-  const bool shared = std::all_of(columns.begin() + 1, columns.end(),
-                                  [&](const std::string& name) { return !unit.empty() && last(name) == unit; });
-  return shared ? unit : std::string();
+/// A unit that the names of all columns but the first end in, as in open_loop_mm,closed_loop_mm.
+struct Unit {
+  std::string ending;
+  std::string shown;
+};
+
+std::optional<Unit> unit_of(const std::vector<std::string>& columns) {
+  static const std::vector<Unit> units{
+      {"_mj_cm3", "mJ/cm3"}, {"_mj_cm2", "mJ/cm2"}, {"_mw_cm2", "mW/cm2"}, {"_mm", "mm"}, {"_um", "um"},
+      {"_px", "px"},         {"_deg", "deg"},       {"_ms", "ms"},         {"_s", "s"},   {"_percent", "%"}};
+  for (const Unit& unit : units) {
+    const auto has = [&](const std::string& name) {
+      return name.size() > unit.ending.size() && name.ends_with(unit.ending);
+    };
+    if (std::all_of(columns.begin() + 1, columns.end(), has)) return unit;
+  }
+  return std::nullopt;
 }
 
 std::string words(std::string name) {
@@ -60,15 +67,15 @@ plot::Plot table_plot(const io::CsvTable& table, const Options& options) {
     throw Error{Fault::data, table.source + ": has " + std::to_string(table.columns.size()) +
                                  " columns; 1 to 4 are drawn as curves over the first one"};
   }
-  const std::string unit = unit_of(table.columns);
+  const std::optional<Unit> unit = unit_of(table.columns);
   plot::Plot plot;
   plot.title = options.view.title.value_or(options.view.name);
   plot.x.label = words(table.columns[0]);
-  plot.y.label = unit.empty() ? std::string() : unit;
+  plot.y.label = unit ? unit->shown : "";
   const std::vector<double> x = column_of(table, 0);
   for (std::size_t n = 1; n < table.columns.size(); ++n) {
     std::string name = table.columns[n];
-    if (!unit.empty()) name.resize(name.size() - unit.size() - 1);
+    if (unit) name.resize(name.size() - unit->ending.size());
     plot.series.push_back({words(std::move(name)), x, column_of(table, n), colours[n - 1], plot::SeriesStyle::line});
   }
   return plot;
@@ -78,7 +85,9 @@ plot::Plot table_plot(const io::CsvTable& table, const Options& options) {
 
 plot::Plot trace_plot(const Options& options) {
   const io::CsvTable table = io::read_csv(options.input, {});
-  if (table.columns.front() == "iteration") return convergence_plot(options);
+  const auto& names = table.columns;
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  if (has("iteration") && has("ver") && has("pw")) return convergence_plot(options);
   if (!options.compare.empty()) {
     throw Error{Fault::data, table.source + ": --compare does not apply to a table that is no trace"};
   }

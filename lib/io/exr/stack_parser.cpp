@@ -186,14 +186,17 @@ void StackParser::parse_head() {
 
   // The offset tables serve those who seek; here the chunks say themselves what they are.
   std::uint64_t last = 0;
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   for (const std::size_t layout : layout_of_) {
     for (int i = 0; i < layouts_[layout].chunks; ++i) {
       const auto offset = take_number<std::uint64_t>();
       seals_->note_offset(offset);
       last = std::max(last, offset);
+      least = std::min(least, offset);
     }
   }
-  if (to_end_ && in_.size() > 0) require_end(last);
+  // Other programs may have left out the table.
+  if (to_end_ && in_.size() > 0 && (least > 0 || seals_->sealed())) require_end(last);
   const std::string line = seals_->chained();
   const bool named = !info_.history.empty() && !chained_seal(info_.history.back()).empty();
   if (!line.empty() && !named) info_.history.push_back(line);

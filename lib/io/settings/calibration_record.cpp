@@ -139,9 +139,9 @@ constexpr ScanKind scans[] = {
      }},
     {"lag", false, take_over_lag},
     {"registration", false, [](model::Printer& printer, const CalibrationRecord& record) {
-       printer.camera.azimuth_deg = record.value("azimuth");
-       printer.camera.axis_row = record.value("axis_row");
-       if (record.json->at("values").contains("pixel")) printer.camera.pixel_mm = record.value("pixel");
+       printer.camera.azimuth_deg = in_unit(record, "azimuth", "deg");
+       printer.camera.axis_row = in_unit(record, "axis_row", "px");
+       if (record.json->at("values").contains("pixel")) printer.camera.pixel_mm = in_unit(record, "pixel", "mm");
      }}};
 
 // What a record sets is held to the ranges of the printer file, and the axis to the image.
@@ -211,7 +211,7 @@ std::string write_record(const model::Calibration& calibration, const std::strin
   file.write(record.dump(2) + "\n");
   file.commit();
   if (chmod(path.c_str(), 0444) != 0) throw Error{Fault::no_output, path + ": cannot be made read-only"};
-  if (record.value("status", "pass") != "fail") make_current(calibration, scan, path);
+  if (record.value("status", "fail") != "fail") make_current(calibration, scan, path);
   return path;
 }
 
@@ -298,9 +298,6 @@ void apply_record(model::Printer& printer, const CalibrationRecord& record) {
   require_possible(printer, record);
 }
 
-namespace {
-
-// The settings of a record that is gone must not fall back to those of the file in silence.
 void require_reachable(const model::Calibration& calibration, const std::string& scan) {
   const std::string path = current_path(calibration, scan);
   struct stat about = {};
@@ -312,6 +309,8 @@ void require_reachable(const model::Calibration& calibration, const std::string&
                                                       : "cannot open: " + std::generic_category().message(problem)) +
                                    "; restore it, or run vam-calibrate " + scan};
 }
+
+namespace {
 
 void require_folder(const model::Calibration& calibration) {
   std::error_code ignored;

@@ -44,6 +44,10 @@ struct CalibrationRecord {
 [[nodiscard]] std::optional<CalibrationRecord> current_record(const model::Calibration& calibration,
                                                               const std::string& scan);
 
+/// The settings of a record that is gone must not fall back to those of the file in silence. Throws Fault::no_input
+/// where the link of that scan leads nowhere.
+void require_reachable(const model::Calibration& calibration, const std::string& scan);
+
 /// Why the record must not be used now by this instrument: "is 31 h old, 7 h past its validity; run vam-calibrate";
 /// empty when it may be.
 [[nodiscard]] std::string objection(const CalibrationRecord& record, const model::Calibration& calibration,

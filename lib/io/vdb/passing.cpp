@@ -188,8 +188,9 @@ class PassingArchive : public openvdb::io::Archive {
     }
   }
 
-  // The tools seal every grid of an archive.
+  // The tools seal every grid of an archive. Weights and tolerances are also added by other programs.
   void require_seals(const PassingGrid& grid) {
+    if (grid.getName() == "weight" || grid.getName() == "tolerance") return;
     if (!first_) first_ = &grid;
     if (grid.sealed() == first_->sealed()) return;
     const PassingGrid& sealed = grid.sealed() ? grid : *first_;

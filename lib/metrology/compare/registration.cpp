@@ -128,9 +128,11 @@ Registration registration(const model::TriangleSoup& print, const solid::Surface
   const solid::Alignment found = solid::refine(print, design, {.with_scale = true, .samples = samples});
   const solid::Similarity& pose = found.transform;
   auto points = solid::sample_surface(print, samples);
+  std::vector<Vector3> sampled;
   std::vector<Vector3> places;
   Vector3 middle{};
   for (auto& one : points) {
+    sampled.push_back(one.point);
     one.point = pose(one.point);
     one.normal = {dot(pose.rotation[0], one.normal), dot(pose.rotation[1], one.normal),
                   dot(pose.rotation[2], one.normal)};
@@ -148,11 +150,19 @@ Registration registration(const model::TriangleSoup& print, const solid::Surface
   constexpr double surface_px = 0.2;  // by which faces of unlike directions lie unlike in a reconstruction
   const double growth_sigma = std::hypot(sigma(growth), surface_px * pixel_mm / reach_mm);
   result.scale = {pose.scale * (1 + motion[growth]), pose.scale * growth_sigma, n};
-  // The height of the origin, to which the growth about the middle adds.
-  result.z_mm = {pose.shift_mm[2] * (1 + motion[growth]) + motion[shift_z] - motion[growth] * middle[2],
-                 std::hypot(sigma(shift_z), middle[2] * growth_sigma), n};
-  result.aside_mm = std::hypot(pose.shift_mm[0] + motion[shift_x], pose.shift_mm[1] + motion[shift_y]);
-  result.tilt_deg = deg_per_rad * std::acos(std::clamp(pose.rotation[2][2], -1.0, 1.0));
+  Vector3 before{};
+  for (const Vector3& one : sampled) before = before + (1.0 / static_cast<double>(n)) * one;
+  const Vector3 after = middle + Vector3{motion[shift_x], motion[shift_y], motion[shift_z]};
+  result.middle_z_mm = before[2];
+  result.z_mm = {after[2] - before[2], sigma(shift_z), n};
+  // Turned and grown about the axis, the middle would be there.
+  const double turned = result.angle_deg.value / deg_per_rad;
+  const double x = result.scale.value * (before[0] * std::cos(turned) - before[1] * std::sin(turned));
+  const double y = result.scale.value * (before[0] * std::sin(turned) + before[1] * std::cos(turned));
+  result.aside_mm = std::hypot(after[0] - x, after[1] - y);
+  const Vector3 upright{pose.rotation[0][2], pose.rotation[1][2], pose.rotation[2][2]};
+  const Vector3 tilted = upright + cross({motion[turn_x], motion[turn_y], motion[turn_z]}, upright);
+  result.tilt_deg = deg_per_rad * std::atan2(std::hypot(tilted[0], tilted[1]), tilted[2]);
   result.outside_mm = motion[outside];
   result.rms_mm = found.rms_mm;
   constexpr double least_grip = 0.01;

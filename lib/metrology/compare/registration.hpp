@@ -10,10 +10,11 @@
 
 namespace vam::metrology {
 
-/// x -> scale * turn(angle) * x + (aside, z) takes the print onto the design.
+/// What takes the print onto the design.
 struct Registration {
   stats::Measured angle_deg;  // about the rotation axis, counter-clockwise seen from above
-  stats::Measured z_mm;
+  stats::Measured z_mm;       // of the middle of its surface
+  double middle_z_mm = 0;     // where that is in the print
   stats::Measured scale;
   double aside_mm = 0;    // across the axis, and
   double tilt_deg = 0;    // of the axis: what no setting of the camera explains

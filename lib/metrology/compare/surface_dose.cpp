@@ -44,9 +44,10 @@ std::size_t octant(const Vector3& point, const Box& box) {
 
 // A voxel's width from the edge, so that the slope is known, too.
 bool is_within(const model::Grid& g, const Vector3& at) {
-  const std::array<double, 3> last{g.x_mm(g.nx - 1), g.y_mm(g.ny - 1), g.z_mm(g.nz - 1)};
+  const std::array<double, 3> first{g.x_mm(1), g.y_mm(1), g.z_mm(1)};
+  const std::array<double, 3> last{g.x_mm(g.nx - 2), g.y_mm(g.ny - 2), g.z_mm(g.nz - 2)};
   for (std::size_t d = 0; d < 3; ++d) {
-    if (at[d] < g.origin_mm[d] || at[d] > last[d]) return false;
+    if (at[d] < first[d] || at[d] > last[d]) return false;
   }
   return true;
 }
@@ -62,9 +63,10 @@ double slope_at(const model::Volume& dose, const Vector3& at, const Vector3& nor
 
 }  // namespace
 
-SurfaceDose surface_dose(const model::TriangleSoup& print, const model::Volume& dose, double stretch_z) {
-  if (print.triangles.empty()) throw Error{Fault::data, "the print has no surface"};
-  const auto points = solid::sample_surface(print, samples);
+SurfaceDose surface_dose(const model::TriangleSoup& body, const model::Volume& dose, double stretch_z,
+                         const std::string& subject) {
+  if (body.triangles.empty()) throw Error{Fault::data, subject + ": has no surface"};
+  const auto points = solid::sample_surface(body, samples);
   const Box box = box_of(points);
   std::vector<double> all, slopes;
   std::array<std::vector<double>, octants> parts;
@@ -77,8 +79,8 @@ SurfaceDose surface_dose(const model::TriangleSoup& print, const model::Volume& 
   }
   const double beyond = 1 - static_cast<double>(all.size()) / static_cast<double>(points.size());
   if (beyond > most_beyond) {
-    throw Error{Fault::data, format_number(100 * beyond, 3) +
-                                 " % of the print's surface lies beyond the dose; align the print with the part "
+    throw Error{Fault::data, subject + ": " + format_number(100 * beyond, 3) +
+                                 " % of its surface lies beyond the dose; align the print with the part "
                                  "(vam-sdf -o), or compute the dose on a larger grid"};
   }
   SurfaceDose result;

@@ -2,6 +2,8 @@
 // The dose on the surface of a print: that with which the resin gelled there.
 #pragma once
 
+#include <string>
+
 #include "base/json_fwd.hpp"
 #include "base/stats/measured.hpp"
 #include "model/grid.hpp"
@@ -17,9 +19,11 @@ struct SurfaceDose {
   double gradient_mj_cm3_mm = 0;         // median slope of the dose there: by it a surface moves with the dose
 };
 
-/// `print` in the part's frame and mm; `dose` in mJ/cm3, total, its heights those of the part times stretch_z.
-/// Throws Fault::data where the print has no surface, or more than a tenth of it lies beyond the dose.
-[[nodiscard]] SurfaceDose surface_dose(const model::TriangleSoup& print, const model::Volume& dose, double stretch_z);
+/// `body` in the part's frame and mm; `dose` in mJ/cm3, total, its heights those of the part times stretch_z.
+/// Throws Fault::data, naming `subject`, where the body has no surface, or more than a tenth of it lies beyond the
+/// dose.
+[[nodiscard]] SurfaceDose surface_dose(const model::TriangleSoup& body, const model::Volume& dose, double stretch_z,
+                                       const std::string& subject);
 
 [[nodiscard]] Json to_json(const SurfaceDose& result);
 

@@ -40,7 +40,7 @@ double fall(double distance_mm) { return 100 - 20 * distance_mm; }
 
 TEST_CASE("Surface dose: it and its slope are those of the radius, also in a stretched dose") {
   for (const double stretch_z : {1.0, 1.1}) {
-    const auto found = surface_dose(ball(1.9), around(stretch_z, fall), stretch_z);
+    const auto found = surface_dose(ball(1.9), around(stretch_z, fall), stretch_z, "ball.ply");
     // The facets of the isosurface lie up to 0.1^2 / (8 x 1.9) mm inside the ball: 0.02 mJ/cm3.
     CHECK(found.critical_dose_mj_cm3.value == doctest::Approx(62).epsilon(0.0005));
     CHECK(found.critical_dose_mj_cm3.sigma < 0.02);
@@ -55,7 +55,7 @@ TEST_CASE("Surface dose: what differs between sides is in the standard deviation
   for (std::size_t n = 0; n < g.size(); ++n) {
     if (n / g.slice_size() > 30) dose.values[n] += 8;
   }
-  const auto found = surface_dose(ball(1.9), dose, 1);
+  const auto found = surface_dose(ball(1.9), dose, 1, "ball.ply");
   CHECK(found.critical_dose_mj_cm3.sigma > 1);
   CHECK(found.critical_dose_mj_cm3.sigma < 4);
 }
@@ -63,6 +63,6 @@ TEST_CASE("Surface dose: what differs between sides is in the standard deviation
 TEST_CASE("Surface dose: a print beyond the dose, or without a surface, is refused") {
   auto aside = ball(1.9);
   for (auto& point : aside.points) point[0] += 2;
-  CHECK(fault_of([&] { (void)surface_dose(aside, around(1, fall), 1); }) == Fault::data);
-  CHECK(fault_of([&] { (void)surface_dose({}, around(1, fall), 1); }) == Fault::data);
+  CHECK(fault_of([&] { (void)surface_dose(aside, around(1, fall), 1, "ball.ply"); }) == Fault::data);
+  CHECK(fault_of([&] { (void)surface_dose({}, around(1, fall), 1, "ball.ply"); }) == Fault::data);
 }
