@@ -200,9 +200,9 @@ done
 fails 65 'of another job' endless --until 'ver<=0' --checkpoint run.state part.vdb -o out.exr
 # Files count by what they hold.
 cp whole.exr start.exr
-interrupted init.state --angles 90 --init start.exr
-cp goal.exr start.exr
-fails 65 'init.state.*of another job' endless --angles 90 --init start.exr --checkpoint init.state part.vdb -o out.exr
+interrupted init.state --angles 60 --init start.exr
+vam-optimize --method fbp --angles 60 part.vdb -o start.exr
+fails 65 'init.state.*of another job' endless --angles 60 --init start.exr --checkpoint init.state part.vdb -o out.exr
 python3 - <<'EOF'
 bytes = bytearray(open("run.state", "rb").read())
 bytes[-400:-396] = b"\x00\x00\xc0\x7f"
@@ -265,7 +265,7 @@ fails 64 '--preview: does not apply to --output; omit it' vam-optimize --preview
 fails 64 '--preview: does not apply to --robust; omit it' vam-optimize --preview --robust lamp=3% boat.vdb
 
 # A budget of time.
-quiet "in six seconds" vam-optimize --angles 60 --budget 6 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json part.vdb -o out.exr
+quiet "in ten seconds" vam-optimize --angles 60 --budget 10 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json part.vdb -o out.exr
 is "time stops the run" "$(value budget.json stopped_by)" time
 holds "its light is of use" "$(value budget.json iou) > 0.95"
 vam-optimize --angles 60 --budget 0.01 --max-intensity 0.12 part.vdb -o out.exr 2>short.txt
@@ -302,6 +302,7 @@ fails 64 'requires --robust' vam-optimize --yield-printers 5 part.vdb -o out.exr
 python3 "$VAM_SOURCE/tests/tools/scans.py" beam beam
 records='--set calibration.folder=cal'
 fails 64 'no calibration.folder' vam-optimize --robust calibration part.vdb -o out.exr
+mkdir -p cal
 fails 65 'cal: has no record of edges, latency or beam' vam-optimize $records --robust calibration part.vdb -o out.exr
 fails 64 "'lamp=3': the unit must be %" vam-optimize $records --robust calibration,lamp=3 part.vdb -o out.exr
 vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 $records
