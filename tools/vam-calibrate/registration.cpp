@@ -40,7 +40,6 @@ Finding scan_registration(const ScanOptions& options, const model::Printer& prin
   // With the pixel the height of the middle changes, too.
   const double lift_mm = found.z_mm.value - (other_scale ? (found.scale.value - 1) * found.middle_z_mm : 0);
   const char* method = "least squares along the normals of the print's surface";
-  const double pixel_mm = camera.pixel_mm * found.scale.value;
   Finding finding;
   finding.value("azimuth", {camera.azimuth_deg + found.angle_deg.value, found.angle_deg.sigma, found.angle_deg.n},
                 "deg", method);
