@@ -64,7 +64,7 @@ bool check_ply_header(const std::string& bytes) {
     }
     if (keyword != "element") continue;
     element = first;
-    if (second.starts_with('-')) throw MeshProblem{"the PLY header promises " + second + " " + element + " elements"};
+    if (second.starts_with('-')) throw MeshProblem{"the PLY header states " + second + " " + element + " elements"};
     std::uint64_t count = 0;
     if (std::istringstream(second) >> count) require_count(count, element.c_str(), bytes);
   }

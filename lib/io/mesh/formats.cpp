@@ -67,13 +67,13 @@ void write_plain_stl(const std::string& path, const model::TriangleSoup& mesh, c
 
 void require_all_read(std::uint64_t promised, std::uint64_t found) {
   if (found <= promised) return;
-  throw MeshProblem{"the header promises " + std::to_string(promised) + " faces but the file has " +
+  throw MeshProblem{"the header states " + std::to_string(promised) + " faces but the file has " +
                     std::to_string(found) + "; its count is damaged, or it holds several meshes"};
 }
 
 void require_count(std::uint64_t count, const char* what, const std::string& bytes) {
   if (count <= bytes.size() / 2) return;
-  throw MeshProblem{"the header promises " + std::to_string(count) + " " + what + " but the file has " +
+  throw MeshProblem{"the header states " + std::to_string(count) + " " + what + " but the file has " +
                     std::to_string(bytes.size()) + " bytes; it is truncated or damaged"};
 }
 

@@ -60,13 +60,13 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
   }
   const std::uint64_t count = triangles_promised(bytes);
   if (bytes.size() < binary_stl_bytes(bytes)) {
-    throw MeshProblem{"the header promises " + std::to_string(count) + " triangles (" +
+    throw MeshProblem{"the header states " + std::to_string(count) + " triangles (" +
                       std::to_string(binary_stl_bytes(bytes)) + " bytes) but the file has " +
                       std::to_string(bytes.size()) + " bytes; it is truncated or no STL"};
   }
   // Some programs append a few bytes.
   if (const std::uint64_t more = (bytes.size() - binary_stl_bytes(bytes)) / triangle_bytes; more > 0 && count > 0) {
-    throw MeshProblem{"the header promises " + std::to_string(count) + " triangles but the file has " +
+    throw MeshProblem{"the header states " + std::to_string(count) + " triangles but the file has " +
                       std::to_string(count + more) + "; its count is damaged, or it holds several meshes"};
   }
   PolygonSoup soup;

@@ -221,8 +221,8 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   CHECK(has(refusal(folder,
                     "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
                     "property float y\nproperty float z\nend_header\n"),
-            "promises 4000000000 vertex"));
-  CHECK(has(refusal(folder, "OFF\n99999999999 1 0\n"), "promises 99999999999 vertices"));
+            "states 4000000000 vertex"));
+  CHECK(has(refusal(folder, "OFF\n99999999999 1 0\n"), "states 99999999999 vertices"));
   try {
     (void)read_mesh(folder / "none.stl");
     FAIL("a missing file was read");
@@ -301,17 +301,17 @@ TEST_CASE("faces beyond the count of a header are refused with both numbers") {
   vam::io::write_stl(folder / "a.stl", box());
   const std::string stl = slurp(folder / "a.stl");
   CHECK(read_mesh(folder.write("a", stl + std::string(49, 'x'))).triangles.size() == 12);
-  const std::string more = "the header promises 12 triangles but the file has 24; its count is damaged";
+  const std::string more = "the header states 12 triangles but the file has 24; its count is damaged";
   CHECK(has(refusal(folder, stl + stl.substr(84)), more));
-  CHECK(has(refusal(folder, box_off() + "3 0 1 2\n# end\n3 0 2 3\n"), "promises 6 faces but the file has 8"));
-  CHECK(has(refusal(folder, box_ply() + "3 0 1 2\n\n"), "promises 6 faces but the file has 7"));
+  CHECK(has(refusal(folder, box_off() + "3 0 1 2\n# end\n3 0 2 3\n"), "states 6 faces but the file has 8"));
+  CHECK(has(refusal(folder, box_ply() + "3 0 1 2\n\n"), "states 6 faces but the file has 7"));
   vam::io::write_ply(folder / "b.ply", box(), {}, {});
   const std::string ply = slurp(folder / "b.ply");
-  CHECK(has(refusal(folder, ply + ply.substr(ply.size() - 26)), "promises 12 faces but the file has 14"));
+  CHECK(has(refusal(folder, ply + ply.substr(ply.size() - 26)), "states 12 faces but the file has 14"));
   CHECK(read_mesh(folder.write("a", ply + "\n")).triangles.size() == 12);
   std::string minus = box_ply();
   minus.replace(minus.find("vertex 8"), 8, "vertex -1");
-  CHECK(has(refusal(folder, minus), "the PLY header promises -1 vertex elements"));
+  CHECK(has(refusal(folder, minus), "the PLY header states -1 vertex elements"));
   std::string obj = box_obj();
   obj.insert(obj.rfind("//1"), ".7");
   CHECK(has(refusal(folder, obj), "a face has an index that is no whole number"));

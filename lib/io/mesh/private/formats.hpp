@@ -26,10 +26,10 @@ struct MeshProblem {
   std::string text;
 };
 
-/// Throws MeshProblem where a header promises more than its file can hold: every vertex and face takes at least two
+/// Throws MeshProblem where a header states more than its file can hold: every vertex and face takes at least two
 /// bytes, so a larger count must not become an allocation.
 void require_count(std::uint64_t count, const char* what, const std::string& bytes);
-/// Throws MeshProblem where more faces follow than a header promises.
+/// Throws MeshProblem where more faces follow than a header states.
 void require_all_read(std::uint64_t promised, std::uint64_t found);
 /// Throws MeshProblem: the file ends, or is damaged, behind what was read.
 [[noreturn]] void give_up(const char* format, const PolygonSoup& soup);
