@@ -33,8 +33,8 @@ void SealCheck::note_chunk(std::uint64_t start, bool in_order) {
   if (in_order_) places_.add(start);
 }
 
-void SealCheck::note_image(std::size_t index, const Digest& values) {
-  if (sealed()) read_[index] = values;
+void SealCheck::note_image(std::size_t index, const Image& image) {
+  if (sealed()) read_[index] = values_digest(image);
 }
 
 void SealCheck::judge(std::size_t first, std::size_t end) const {
