@@ -60,6 +60,14 @@ is 'the factor is recorded' "$(vam-check --verbose tall.vdb 2>/dev/null | grep -
 vam-convert ramp.npy --voxel 0.5 --full-scale 9 -o short.vdb 2>err
 is 'a target that is not is told' "$(grep -c 'ramp.npy: the print will be 3.7 % too short.*--stretch-z 1.038[0-9]* corrects it' err)" 1
 quiet 'as it is, if so meant' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --stretch-z 1 -o short.vdb
+printf '[projector\n' >broken.toml
+fails 65 'broken.toml' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --printer broken.toml -o x.vdb
+npy make one.npy '<f4' 1,3,4
+quiet 'a plane stays one, however low' vam-convert one.npy --voxel 0.5 --grid weight --stretch-z 0.1 -o low.vdb
+vam-convert low.vdb >b.npy
+is 'with its values' "$(shown b.npy)" "1 3 4 <f4$(values 12)"
+head -c 160 ramp.npy >cut.npy
+fails 65 'cut' vam-convert cut.npy --voxel 0.5 --grid weight --stretch-z 0.3 -o x.vdb
 fails 64 'stretch-z' vam-convert ramp.npy --voxel 0.5 --stretch-z 0 -o x.vdb
 
 # What is refused.

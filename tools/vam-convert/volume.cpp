@@ -26,7 +26,7 @@ namespace {
 /// Without --origin the middle of the array is at z = 0.
 model::Grid grid_of(const Options& options, const io::ArraySize& size, double stretch_z) {
   const double voxel_mm = *options.voxel_mm;
-  const int slices = static_cast<int>(std::lround(size.images * stretch_z));
+  const int slices = static_cast<int>(std::max(std::lround(size.images * stretch_z), 1L));
   model::Grid grid = model::centred_grid(size.columns, size.rows, slices, voxel_mm, -0.5 * (slices - 1) * voxel_mm);
   if (!options.origin_mm.empty()) {
     std::copy_n(options.origin_mm.begin(), 3, grid.origin_mm.begin());
@@ -41,11 +41,11 @@ Image upside_down(const Image& image) {
   return turned;
 }
 
-void require_voxels(const std::string& name, const io::ArraySize& size) {
+void require_voxels(const std::string& name, const model::Grid& grid) {
   constexpr int most = 65536;
-  if (std::max({size.images, size.rows, size.columns}) <= most) return;
-  throw Error{Fault::data, name + ": has " + std::to_string(size.columns) + " x " + std::to_string(size.rows) + " x " +
-                               std::to_string(size.images) + " voxels; up to 65536 along an axis are read"};
+  if (std::max({grid.nx, grid.ny, grid.nz}) <= most) return;
+  throw Error{Fault::data, name + ": has " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " x " +
+                               std::to_string(grid.nz) + " voxels; up to 65536 along an axis are read"};
 }
 
 /// The slices of an array, upwards; where it is stretched, linear between its own.
@@ -64,6 +64,10 @@ class StretchedSlices {
     slice = share == 1 || last_ == 0 ? high_ : low_;
     if (share == 0 || share == 1) return;
     for (std::size_t i = 0; i < slice.size(); ++i) slice.values[i] += share * (high_.values[i] - slice.values[i]);
+  }
+  /// Those that no slice needed are read, too, and with them whether the array is whole.
+  void finish() {
+    while (taken_ <= last_) take();
   }
 
  private:
@@ -89,24 +93,26 @@ class StretchedSlices {
 
 // Prints are lower than their targets by the projector's vertical magnification, for which vam-slice has stretched
 // them.
-void doubt_height(const Options& options) {
+std::string height_doubt(const Options& options) {
   constexpr double least = 0.005;
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  if (options.stretch_z || !(options.grid.empty() || options.grid == "target")) return "";
+  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
   const double factor = 1 / model::vertical_magnification(printer);
-  if (std::abs(factor - 1) < least) return;
-  warn(io::input_name(options.input) + ": the print will be " + format_number(100 * std::abs(1 - 1 / factor), 2) +
-       " % too " + (factor > 1 ? "short" : "tall") + ", as the projector's rays climb; --stretch-z " +
-       format_number(factor, 5) + " corrects it, --stretch-z 1 takes the array as it is");
+  if (std::abs(factor - 1) < least) return "";
+  return io::input_name(options.input) + ": the print will be " + format_number(100 * std::abs(1 - 1 / factor), 2) +
+         " % too " + (factor > 1 ? "short" : "tall") + ", as the projector's rays climb; --stretch-z " +
+         format_number(factor, 5) + " corrects it, --stretch-z 1 takes the array as it is";
 }
 
 }  // namespace
 
 void make_volume(const cli::App& app, const Options& options, std::optional<io::FileType> type) {
   constexpr int slab = 8;
+  const std::string doubt = height_doubt(options);  // now, as the printer file may be refused
   const auto in = open_source(options, type, "zyx");
-  require_voxels(options.input, in->size());
   const double stretch_z = options.stretch_z.value_or(1);
   const model::Grid grid = grid_of(options, in->size(), stretch_z);
+  require_voxels(options.input, grid);
   io::SparseVolume volume(options.grid.empty() ? "target" : options.grid, grid);
   StretchedSlices slices(*in, options.input, stretch_z, grid.nz);
   std::vector<float> values;
@@ -122,12 +128,13 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
     volume.write_slices(k, count, values.data());
     progress.tick(count);
   }
+  slices.finish();
   io::require_usable(options.input, volume, io::TargetKind::grey);
   volume.units = options.units;
   volume.history = {app.history()};
   if (options.stretch_z) volume.metadata["vam:stretch_z"] = format_number(stretch_z, 9);
   io::write_volume(options.output, volume);
-  if (!options.stretch_z && volume.name() == "target") doubt_height(options);
+  if (!doubt.empty()) warn(doubt);
 }
 
 }  // namespace vam::convert_tool

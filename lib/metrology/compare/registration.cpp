@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "solid/mesh/align.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
@@ -19,19 +20,12 @@ namespace {
 
 constexpr int samples = 20000;
 constexpr std::size_t parts = 16;  // two by two by four
-constexpr double deg_per_rad = 180 / std::numbers::pi;
 
 std::vector<std::size_t> parts_of(const std::vector<solid::SurfaceSample>& points) {
-  Vector3 low = points.front().point;
-  Vector3 high = low;
-  for (const auto& one : points) {
-    for (std::size_t d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], one.point[d]);
-      high[d] = std::max(high[d], one.point[d]);
-    }
-  }
+  solid::Bounds box;
+  for (const auto& one : points) box.add(one.point);
   const auto cell = [&](const Vector3& at, std::size_t d, double count) {
-    const double place = count * (at[d] - low[d]) / std::max(high[d] - low[d], 1e-9);
+    const double place = count * (at[d] - box.low[d]) / std::max(box.size()[d], 1e-9);
     return static_cast<std::size_t>(std::clamp(place, 0.0, count - 1));
   };
   std::vector<std::size_t> part;

@@ -11,6 +11,7 @@
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "model/value_at.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
@@ -21,24 +22,9 @@ constexpr int samples = 40000;
 constexpr std::size_t octants = 8;  // of the bounding box: what is wrong with one side differs between them
 constexpr double most_beyond = 0.1;
 
-struct Box {
-  Vector3 low, high;
-};
-
-Box box_of(const std::vector<solid::SurfaceSample>& points) {
-  Box box{points.front().point, points.front().point};
-  for (const auto& one : points) {
-    for (std::size_t d = 0; d < 3; ++d) {
-      box.low[d] = std::min(box.low[d], one.point[d]);
-      box.high[d] = std::max(box.high[d], one.point[d]);
-    }
-  }
-  return box;
-}
-
-std::size_t octant(const Vector3& point, const Box& box) {
+std::size_t octant(const Vector3& point, const Vector3& centre) {
   std::size_t which = 0;
-  for (std::size_t d = 0; d < 3; ++d) which = 2 * which + (2 * point[d] > box.low[d] + box.high[d] ? 1 : 0);
+  for (std::size_t d = 0; d < 3; ++d) which = 2 * which + (point[d] > centre[d] ? 1 : 0);
   return which;
 }
 
@@ -67,7 +53,7 @@ SurfaceDose surface_dose(const model::TriangleSoup& body, const model::Volume& d
                          const std::string& subject) {
   if (body.triangles.empty()) throw Error{Fault::data, subject + ": has no surface"};
   const auto points = solid::sample_surface(body, samples);
-  const Box box = box_of(points);
+  const Vector3 centre = solid::bounding_box(body).centre();
   std::vector<double> all, slopes;
   std::array<std::vector<double>, octants> parts;
   for (const auto& [point, normal, triangle] : points) {
@@ -75,7 +61,7 @@ SurfaceDose surface_dose(const model::TriangleSoup& body, const model::Volume& d
     if (!is_within(dose.grid, at)) continue;
     all.push_back(static_cast<double>(model::value_at(dose, at[0], at[1], at[2])));
     slopes.push_back(slope_at(dose, at, normal, stretch_z));
-    parts[octant(point, box)].push_back(all.back());
+    parts[octant(point, centre)].push_back(all.back());
   }
   const double beyond = 1 - static_cast<double>(all.size()) / static_cast<double>(points.size());
   if (beyond > most_beyond) {
