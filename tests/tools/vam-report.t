@@ -17,6 +17,20 @@ for words in 'Part and print' 'target, sections across z' 'dose, sections across
   'Dose in part and void' 'Convergence' 'score.json, vam-score/1' 'vam-optimize 0' 'part.png'; do
   ok "it has: $words" grep -q -- "$words" report.html
 done
+# Merged facets would leave the surface by more than a voxel, and colours between their corners would be guessed.
+cat >edges.py <<'PY'
+import array, base64, json, math, re, sys
+box = re.search(r'class="body".*?<script[^>]*>(.*?)</script>', open(sys.argv[1]).read(), re.S).group(1)
+low, high, layers = json.loads(box)
+for places, _, corners in layers:
+    places, corners = array.array("H", base64.b64decode(places)), array.array("I", base64.b64decode(corners))
+    points = [[a + (b - a) * n / 65535 for a, b, n in zip(low, high, places[at:at + 3])] for at in range(0, len(places), 3)]
+    print(max(math.dist(points[corners[at]], points[corners[at + 1]]) for at in range(0, len(corners), 3)) < 3 * 0.25)
+PY
+is 'the surfaces have a corner in each voxel that they cut' "$(python3 edges.py report.html | tr '\n' ' ')" 'True True '
+is 'the page says what its size is of' \
+  "$(grep -o 'surface, where voxels of 0.25 mm are half covered, spans 5 x 3 x [^ ]* mm along x, y and z' report.html)" \
+  'surface, where voxels of 0.25 mm are half covered, spans 5 x 3 x 1.97 mm along x, y and z'
 ok 'the same page again' vam-report part.vdb light.exr dose.vdb light.json score.json trace.csv part.png -o again.html
 is 'the pages are identical except for the file name' "$(sed 's/again\.html/report.html/g' again.html | cmp - report.html && echo same)" same
 mkdir folder && cp part.vdb dose.vdb score.json part.off folder

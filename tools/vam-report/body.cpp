@@ -21,8 +21,7 @@ namespace vam::report_tool {
 namespace {
 
 constexpr std::size_t most_voxels = 2'000'000;
-constexpr std::size_t most_vertices = 60'000;
-constexpr double flat = 0.02;  // adaptivity of the surfaces: large faces take few triangles
+constexpr std::size_t most_vertices = 100'000;  // of a surface, some 4.5 MB of the page
 
 /// Means of by x by x by voxels; beyond the volume is nothing.
 model::Volume averaged(const io::SparseVolume& volume, int by) {
@@ -87,7 +86,7 @@ double colour_limit(std::vector<double> values, double least) {
 std::vector<Layer> layers_of(const io::SparseVolume& target, const std::optional<PrintedDose>& print, int by) {
   std::vector<Layer> layers(1);
   layers[0].name = "design";
-  layers[0].mesh = solid::isosurface(averaged(target, by), 0.5, flat);
+  layers[0].mesh = solid::isosurface(averaged(target, by), 0.5);
   if (!print || layers[0].mesh.triangles.empty()) return layers;
   const model::Volume dose = averaged(*print->dose, by);
   Layer& design = layers[0];
@@ -96,7 +95,7 @@ std::vector<Layer> layers_of(const io::SparseVolume& target, const std::optional
   design.limit = colour_limit(design.values, 1);
   design.unit = "%";
   design.meaning = "dose on the design's surface relative to the threshold; blue: too low";
-  Layer printed{"print", solid::isosurface(dose, print->threshold, flat), {}, 1, "mm", ""};
+  Layer printed{"print", solid::isosurface(dose, print->threshold), {}, 1, "mm", ""};
   if (printed.mesh.triangles.empty()) return layers;
   const std::vector<float> away = solid::Surface(design.mesh).signed_distances(printed.mesh.points);
   printed.values.assign(away.begin(), away.end());
@@ -125,10 +124,14 @@ std::string body_view(const io::SparseVolume& target, const std::optional<Printe
   const Vector3 size = design.high - design.low;
   const std::string mm =
       format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2], 3) + " mm";
-  return plot::page_figure("Part and print", layers_view(layers, "layer"),
-                           "Drag to rotate, scroll to zoom; the rotation axis z points upwards. The design measures " +
-                               mm + "; surfaces are computed on voxels of " +
-                               format_number(by * target.grid().voxel_mm, 3) + " mm.");
+  const std::string voxel = format_number(by * target.grid().voxel_mm, 3) + " mm";
+  return plot::page_figure(
+      "Part and print", layers_view(layers, "layer"),
+      "Drag to rotate, scroll to zoom; the rotation axis z points upwards. The design's surface, where voxels of " +
+          voxel + " are half covered, spans " + mm +
+          " along x, y and z, as it is to be printed, to within such a voxel." +
+          (layers.size() > 1 ? " The print's is where the dose, averaged over such voxels, reaches the threshold."
+                             : ""));
 }
 
 }  // namespace vam::report_tool

@@ -55,14 +55,14 @@ openvdb::FloatGrid::Ptr below_level(const model::Grid& grid, const ReadSlices& r
 
 }  // namespace
 
-model::TriangleSoup isosurface(const model::Grid& grid, const ReadSlices& read, double level, double adaptivity) {
+model::TriangleSoup isosurface(const model::Grid& grid, const ReadSlices& read, double level) {
   check_level(level);
   openvdb::initialize();
   const auto field = below_level(grid, read, level);
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
   std::vector<openvdb::Vec4I> quads;
-  openvdb::tools::volumeToMesh(*field, points, triangles, quads, 0.0, adaptivity);
+  openvdb::tools::volumeToMesh(*field, points, triangles, quads);
   model::TriangleSoup mesh;
   mesh.points.reserve(points.size());
   for (const auto& p : points)
@@ -79,11 +79,11 @@ model::TriangleSoup isosurface(const model::Grid& grid, const ReadSlices& read, 
   return mesh;
 }
 
-model::TriangleSoup isosurface(const model::Volume& volume, double level, double adaptivity) {
+model::TriangleSoup isosurface(const model::Volume& volume, double level) {
   const auto read = [&](int k, int count, float* out) {
     std::copy_n(volume.slice(k), volume.grid.slice_size() * static_cast<std::size_t>(count), out);
   };
-  return isosurface(volume.grid, read, level, adaptivity);
+  return isosurface(volume.grid, read, level);
 }
 
 PrintedPoints printed_points(const model::Grid& grid, const ReadSlices& read, double level) {

@@ -14,12 +14,11 @@ using ReadSlices = std::function<void(int k, int count, float* out)>;
 
 /// Closed mesh in mm around { value >= level }, facets anticlockwise seen from outside, by dual contouring of the
 /// trilinear field (openvdb volumeToMesh): vertices lie within a fraction of a voxel of the crossing. Beyond the grid
-/// the value is taken as below the level, so that a surface closes at its border. adaptivity 0...1 merges flat facets.
+/// the value is taken as below the level, so that a surface closes at its border.
 /// Memory: the volume and its mesh. Empty when nothing reaches the level.
 /// Throws Fault::data for a value that is not finite, Fault::usage for a level that is not.
-[[nodiscard]] model::TriangleSoup isosurface(const model::Grid& grid, const ReadSlices& read, double level,
-                                             double adaptivity = 0);
-[[nodiscard]] model::TriangleSoup isosurface(const model::Volume& volume, double level, double adaptivity = 0);
+[[nodiscard]] model::TriangleSoup isosurface(const model::Grid& grid, const ReadSlices& read, double level);
+[[nodiscard]] model::TriangleSoup isosurface(const model::Volume& volume, double level);
 
 /// Centres in mm of the voxels with value >= level, and their values: the print as a point cloud [CAL17 fig 8].
 struct PrintedPoints {
