@@ -113,6 +113,26 @@ says 'fin.stl: [0-9.]+ % of the part is in walls too thin for the voxels: betwee
 # 0.06 mm thick, 4 mm wide, 2.5 mm above the cube: 0.6 mm3, of which up to two layers touch voxels of the cube.
 holds "the volume of the fin is reported" "$(json report.json lost_volume_mm3) > 0.52 && $(json report.json lost_volume_mm3) < 0.6"
 
+# Two plates 0.05 mm apart, wherever the voxels of 0.1 mm lie: 4 x 4 x 0.05 mm3, of which the open rim is no gap.
+plates() {  # plates Z APART: the lower one ends at that height
+  printf 'OFF\n16 24 0\n'
+  for up in "$(awk "BEGIN { print $1 - 1 }")" "$(awk "BEGIN { print $1 + $2 }")"; do
+    box 4 4 1 | awk -v up="$up" 'NR > 2 && NF == 3 { print $1, $2, $3 + up }'
+  done
+  box 4 4 1 | awk 'NF == 4 { print; far = far $1 " " $2 + 8 " " $3 + 8 " " $4 + 8 "\n" } END { printf "%s", far }'
+}
+for z in 0 0.02 0.05 0.08; do
+  plates $z 0.05 >plates.off
+  says 'plates.off: gaps of 0.05 mm are too narrow for the voxels: between z = -?0[.0-9]* and 0.[12] mm no voxel of theirs is three quarters free, and they will be printed shut; voxels of 0.02[0-9]* mm' \
+    vam-slice plates.off --no-centre --stretch-z 1 --voxel 0.1 -o out.vdb --report report.json
+  holds "its volume is reported, at $z" "$(json report.json lost_gaps_mm3) > 0.7 && $(json report.json lost_gaps_mm3) < 0.8"
+  plates $z 0.2 >plates.off
+  quiet "two voxels hold a free one, at $z" vam-slice plates.off --no-centre --stretch-z 1 --voxel 0.1 -o out.vdb
+done
+plates 0 0.05 >plates.off
+quiet 'the voxels that are named resolve it' vam-slice plates.off --voxel 0.025 -o out.vdb
+quiet 'corners between struts are no gaps' vam-slice --shape octet --voxel 0.1 -o out.vdb
+
 # The height in the image: level with the lens, in the image, or as requested
 place() { vam-slice --shape cone:bottom=8,height=6 --voxel 0.25 "$@" -o out.vdb --report report.json && json report.json place.mm; }
 stretch=$(json gyroid.json stretch_z)

@@ -40,7 +40,8 @@ std::vector<std::string> limits() {
       "The part must fit into the projector's rows unless --any-height is given, for machines that lift the vial past "
       "the image during the print (vam-optimize --helix). A part without a voxel wholly inside, or smaller than a "
       "tenth of the writable width, causes a warning with the probable unit of the file or a suitable voxel size, "
-      "and so do walls of which no voxel is half covered: they are not printed.",
+      "and so do walls of which no voxel is half covered, which are not printed, and gaps of which none is three "
+      "quarters free, which are printed shut.",
       "Slices of meshes and shapes begin where a row of the projector does (projector.axis_row), so that voxels "
       "that are one or several pixels high coincide with rows.",
       "An insert keeps the size of its file, in mm or --insert-unit; one smaller than a tenth of the writable width "

@@ -12,61 +12,94 @@ namespace vam::solid {
 namespace {
 
 constexpr float half = 0.5F;
+constexpr float shut = 0.25F;              // covered by no more is free enough for a gap
+constexpr float touching = 1 - 1 / 64.0F;  // covered by more is no gap
 
-/// Whether a voxel of the three slices about (i, j) is half covered; nullptr: no slice.
-bool near_half(const model::Grid& grid, const float* const* slices, int i, int j) {
-  for (int w = 0; w < 3; ++w) {
-    if (slices[w] == nullptr) continue;
-    for (int v = std::max(j - 1, 0); v <= std::min(j + 1, grid.ny - 1); ++v) {
-      const float* row = slices[w] + product(v, grid.nx);
-      if (std::any_of(row + std::max(i - 1, 0), row + std::min(i + 2, grid.nx), [](float c) { return c >= half; })) {
-        return true;
+/// One voxel of the middle one of three slices, nullptr where there is none.
+struct Place {
+  const model::Grid& grid;
+  const float* const* slices;
+  int i, j;
+
+  [[nodiscard]] bool at_border() const {
+    return i == 0 || j == 0 || i == grid.nx - 1 || j == grid.ny - 1 || slices[0] == nullptr || slices[2] == nullptr;
+  }
+  /// Whether what is asked holds for one of the 27 voxels about it.
+  template <class Asked>
+  [[nodiscard]] bool near(const Asked& asked) const {
+    for (int w = 0; w < 3; ++w) {
+      if (slices[w] == nullptr) continue;
+      for (int v = std::max(j - 1, 0); v <= std::min(j + 1, grid.ny - 1); ++v) {
+        const float* row = slices[w] + product(v, grid.nx);
+        if (std::any_of(row + std::max(i - 1, 0), row + std::min(i + 2, grid.nx), asked)) return true;
       }
     }
+    return false;
   }
-  return false;
-}
+  /// Free shares of it and its two neighbours along the axis of which that is least. Not at the border.
+  [[nodiscard]] float gap() const {
+    const std::size_t at = product(j, grid.nx) + static_cast<std::size_t>(i);
+    const float* middle = slices[1] + at;
+    const float across =
+        std::max({middle[-1] + middle[1], *(middle - grid.nx) + middle[grid.nx], slices[0][at] + slices[2][at]});
+    return 3 - across - *middle;
+  }
+};
 
 /// Of the middle one of three slices.
-LostWalls of_slice(const model::Grid& grid, const float* const* slices) {
-  LostWalls lost;
+Lost of_slice(const model::Grid& grid, const float* const* slices) {
+  Lost lost;
   const float* coverage = slices[1];
   for (int j = 0; j < grid.ny; ++j) {
     for (int i = 0; i < grid.nx; ++i, ++coverage) {
-      if (*coverage <= model::coverage_rounding || *coverage >= half || near_half(grid, slices, i, j)) continue;
-      lost.voxels += *coverage;
-      lost.most = std::max(lost.most, *coverage);
+      const float covered = *coverage;
+      if (covered <= model::coverage_rounding || covered >= touching) continue;
+      const Place place{grid, slices, i, j};
+      if (covered < half && !place.near([](float c) { return c >= half; })) {
+        lost.walls.voxels += covered;
+        lost.walls.most = std::max(lost.walls.most, covered);
+      }
+      if (covered > shut && !place.at_border() && !place.near([](float c) { return c <= shut; })) {
+        lost.gaps.voxels += 1 - covered;
+        lost.gaps.widest = std::max(lost.gaps.widest, place.gap());
+      }
     }
   }
   return lost;
 }
 
+/// What a slice holds is added to the sums; their size is its own.
+template <class Sums>
+void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
+  if (slice.voxels == 0) return;
+  if (sums.voxels == 0) sums.first = number;
+  sums.end = number + 1;
+  sums.voxels += slice.voxels;
+  sums.*size = std::max(sums.*size, slice.*size);
+}
+
 }  // namespace
 
 /// All but the first and the last, which are neighbours only; slices[0] is slice number `first`.
-void LostWallFinder::judge(const std::vector<const float*>& slices, int first) {
+void LostFinder::judge(const std::vector<const float*>& slices, int first) {
   if (slices.size() < 3) return;
-  std::vector<LostWalls> lost(slices.size() - 2);
+  std::vector<Lost> lost(slices.size() - 2);
   parallel_for(count_of(lost), [&](int k) { lost[k] = of_slice(grid_, &slices[k]); });
   for (int k = 0; k < count_of(lost); ++k) {
-    if (lost[k].voxels == 0) continue;
-    const int number = first + 1 + k;
-    if (found_.voxels == 0) found_.first = number;
-    found_.end = number + 1;
-    found_.voxels += lost[k].voxels;
-    found_.most = std::max(found_.most, lost[k].most);
+    add_slice(found_.walls, lost[k].walls, &LostWalls::most, first + 1 + k);
+    add_slice(found_.gaps, lost[k].gaps, &LostGaps::widest, first + 1 + k);
   }
 }
 
 /// Those of which the neighbours above are still to come, and one below them.
-std::vector<const float*> LostWallFinder::open() const {
+std::vector<const float*> LostFinder::open() const {
   std::vector<const float*> slices;
   if (added_ < 2) slices.push_back(nullptr);
   for (std::size_t at = 0; at < kept_.size(); at += grid_.slice_size()) slices.push_back(kept_.data() + at);
   return slices;
 }
 
-void LostWallFinder::add(int count, const float* slices) {
+void LostFinder::add(int count, const float* slices) {
   const std::size_t size = grid_.slice_size();
   std::vector<const float*> all = open();
   for (int k = 0; k < count; ++k) all.push_back(slices + product(k, size));
@@ -78,7 +111,7 @@ void LostWallFinder::add(int count, const float* slices) {
   kept_ = std::move(last);
 }
 
-LostWalls LostWallFinder::finish() {
+Lost LostFinder::finish() {
   std::vector<const float*> all = open();
   all.push_back(nullptr);
   judge(all, first_open());

@@ -64,7 +64,7 @@ struct FillSummary {
   long surface_voxels = 0;  // coverage between 0 and 1
   float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
-  LostWalls lost;
+  Lost lost;
   Vote vote;
 };
 

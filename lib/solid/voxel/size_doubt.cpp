@@ -11,6 +11,11 @@ namespace vam::solid {
 
 namespace {
 
+// Of gaps, in voxels: tips of grooves and corners between struts are less.
+constexpr double least_gap = 1;
+constexpr double least_a_slice = 0.1;
+constexpr float least_width = 0.05F;
+
 constexpr std::pair<const char*, double> units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"um", 1e-3}};
 
 /// "; is its unit m?"
@@ -22,6 +27,12 @@ std::string likely_unit(double largest_mm, const Writable& room) {
     if (mm != 1 && widths > 0.25 && widths < 12) likely.emplace_back(name);
   }
   return likely.empty() ? "" : "; is its unit " + join(likely, " or ") + "?";
+}
+
+/// "between z = 1 and 2 mm", of the print.
+std::string heights(int first, int end, const model::Grid& grid, double stretch_z) {
+  return "between z = " + format_number(grid.z_mm(first - 0.5) / stretch_z, 3) + " and " +
+         format_number(grid.z_mm(end - 0.5) / stretch_z, 3) + " mm";
 }
 
 }  // namespace
@@ -45,6 +56,29 @@ std::string unit_doubt(const std::string& subject, const std::string& body, doub
                       : subject + ": the " + body + " is only " + format_number(largest_mm, 3) + " mm large" + unit;
 }
 
+std::string wall_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
+                       double stretch_z) {
+  const LostWalls& lost = content.lost.walls;
+  const double share = lost.voxels * std::pow(grid.voxel_mm, 3) / content.volume_mm3;
+  if (share <= 1e-3) return "";
+  return subject + ": " + format_number(100 * share, 2) +
+         " % of the part is in walls too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
+         " no voxel of theirs is half covered, and they will not be printed; voxels of " +
+         format_number(grid.voxel_mm * static_cast<double>(lost.most), 2) + " mm or thicker walls may help";
+}
+
+std::string gap_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
+                      double stretch_z) {
+  const LostGaps& lost = content.lost.gaps;
+  if (lost.voxels < least_gap || lost.voxels < least_a_slice * (lost.end - lost.first) || lost.widest < least_width)
+    return "";
+  const double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
+  return subject + ": gaps of " + format_number(gap_mm, 2) +
+         " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
+         " no voxel of theirs is three quarters free, and they will be printed shut; voxels of " +
+         format_number(0.5 * gap_mm, 2) + " mm resolve them";
+}
+
 std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
                        const Writable& room, bool unit_known) {
   const Point size = part.extent.box.size();
@@ -57,14 +91,8 @@ std::string size_doubt(const Part& part, const FillSummary& content, const model
            format_number(static_cast<double>(content.most), 2) + " at most)" +
            (unit.empty() ? "; voxels of " + format_number(thinner, 2) + " mm or thicker walls may help" : unit);
   }
-  const double lost = content.lost.voxels * std::pow(grid.voxel_mm, 3) / content.volume_mm3;
-  if (unit.empty() && lost > 1e-3) {
-    return part.subject + ": " + format_number(100 * lost, 2) +
-           " % of the part is in walls too thin for the voxels: between z = " +
-           format_number(grid.z_mm(content.lost.first - 0.5) / stretch_z, 3) + " and " +
-           format_number(grid.z_mm(content.lost.end - 0.5) / stretch_z, 3) +
-           " mm no voxel of theirs is half covered, and they will not be printed; voxels of " +
-           format_number(grid.voxel_mm * static_cast<double>(content.lost.most), 2) + " mm or thicker walls may help";
+  if (unit.empty()) {
+    if (std::string walls = wall_doubt(part.subject, content, grid, stretch_z); !walls.empty()) return walls;
   }
   return unit_known ? "" : unit_doubt(part.subject, "part", largest_mm, room);
 }

@@ -25,4 +25,12 @@ namespace vam::solid {
 [[nodiscard]] std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid,
                                      double stretch_z, const Writable& room, bool unit_known);
 
+/// What a warning should say of walls that no voxel resolves, if they are a thousandth of the part or more; else empty.
+[[nodiscard]] std::string wall_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
+                                     double stretch_z);
+
+/// The same of gaps, from the volume of a voxel, and a tenth of one a slice, on.
+[[nodiscard]] std::string gap_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
+                                    double stretch_z);
+
 }  // namespace vam::solid
