@@ -22,12 +22,18 @@ cli::Manual manual() {
            " iterations of the default method of vam-optimize; voxels are larger by a power of 2 where the part has "
            "more than " +
            std::to_string(most_estimated) +
-           " million of them, and smaller where none would be wholly inside the part. The deviations, one at a time "
-           "and either way, are " +
+           " million of them, and smaller, down to a pixel, where walls or gaps are too thin for them and smaller ones "
+           "are at most " +
+           format_number(most_finer) +
+           " million. What is too thin even then is stated with its volume and heights as not judged; if it is 2 % of "
+           "the part or more, or a wall that is lost, the answer is perhaps. The deviations, one at a time and either "
+           "way, are " +
            deviations +
            " (as in --robust of vam-optimize): the smaller process window of the two is stated, as a fraction of the "
-           "largest dose. Features below a voxel of the estimate are blurred; at full resolution windows are wider and "
-           "walls are sharper. vam-optimize has the last word.",
+           "largest dose. At full resolution windows are wider and walls are sharper. vam-optimize has the last word.",
+       "Walls and gaps that are lost even at the printer's pixels cause a warning, as in vam-slice, for parts of up to "
+       "16 "
+       "million voxels.",
        "The duration requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm."},
       {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:diameter=10,cell=5"},
        {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -127,61 +128,97 @@ solid::Part within_rows(solid::Part part, const solid::Writable& room, double vo
 
 struct Filled {
   model::Volume volume;
-  double farthest_mm = 0;  // from the axis to the centre of the farthest covered voxel
+  solid::FillSummary content;
 };
 
 Filled filled(const solid::Part& part, double voxel_mm) {
-  Filled made{{solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject), {}}};
+  Filled made{{solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject), {}}, {}};
   model::Volume& volume = made.volume;
   require_memory(sizeof(float) * static_cast<double>(volume.grid.size()),
                  part.subject + ": " + model::size_text(volume.grid), "plan a smaller part");
   volume.values.resize(volume.grid.size());
-  made.farthest_mm =
-      solid::fill(part, volume.grid, [&](int k0, int count, const float* slices) {
-        std::copy_n(slices, static_cast<std::size_t>(count) * volume.grid.slice_size(), volume.slice(k0));
-      }).radius_mm;
+  made.content = solid::fill(part, volume.grid, [&](int k0, int count, const float* slices) {
+    std::copy_n(slices, static_cast<std::size_t>(count) * volume.grid.slice_size(), volume.slice(k0));
+  });
   return made;
+}
+
+/// Of walls and gaps that no voxel of the printer resolves.
+void warn_of_lost(const std::string& subject, const Filled& fine, double stretch_z) {
+  for (const std::string& doubt : {solid::wall_doubt(subject, fine.content, fine.volume.grid, stretch_z),
+                                   solid::gap_doubt(subject, fine.content, fine.volume.grid, stretch_z)})
+    if (!doubt.empty()) warn(doubt);
 }
 
 /// On the printer's voxels, or on larger ones where these are too many.
 void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
   plan.wall_resolution = std::max(1, static_cast<int>(by));
-  const solid::Walls walls =
-      solid::walls(filled(part, plan.wall_resolution * plan.grid.voxel_mm).volume, plan.stretch_z);
+  const Filled fine = filled(part, plan.wall_resolution * plan.grid.voxel_mm);
+  if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0) warn_of_lost(part.subject, fine, plan.stretch_z);
+  const solid::Walls walls = solid::walls(fine.volume, plan.stretch_z);
   plan.sharp_edges = walls.sharp_edges;
   plan.wall_voxels = walls.thinnest_voxels;
   plan.wall_mm = walls.thinnest_mm;
   if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
 }
 
-bool is_estimated_at(const model::Grid& grid, int coarseness) {
-  return static_cast<double>(grid.size()) / std::pow(coarseness, 3) <= 1e6 * most_estimated;
+double million_voxels(const model::Grid& grid, int coarseness) {
+  return 1e-6 * static_cast<double>(grid.size()) / std::pow(coarseness, 3);
 }
 
-/// None where no voxel is wholly inside the part.
-std::optional<optimize::Preview> preview_of(const solid::Part& part, const model::Printer& printer, int coarseness) {
+/// The part on the voxels of an estimate.
+struct Coarse {
+  model::Printer printer;
+  Filled part;
+  optimize::Unresolved unresolved;
+
+  /// Whether some voxel is wholly inside the part.
+  [[nodiscard]] bool is_judged() const {
+    const std::vector<float>& values = part.volume.values;
+    return std::any_of(values.begin(), values.end(),
+                       [](float coverage) { return model::label_of(coverage) == model::Label::part; });
+  }
+  /// Whether walls and gaps are as thick as the voxels, but for edges: hardly any is lost, little is not resolved.
+  [[nodiscard]] bool is_all_judged() const {
+    constexpr double most_lost = 0.001, most_unresolved = 0.02;
+    const double lost = part.content.lost.walls.voxels + part.content.lost.gaps.voxels;
+    return is_judged() && lost <= most_lost * unresolved.whole && unresolved.share() <= most_unresolved;
+  }
+};
+
+Coarse coarse(const solid::Part& part, const model::Printer& printer, int coarseness) {
+  Coarse made{printer, {}, {}};
+  for (int by = 1; by < coarseness; by *= 2) made.printer = model::coarser(made.printer);
+  made.part = filled(part, made.printer.projector.pixel_mm);
+  made.unresolved = optimize::unresolved(made.part.volume);
+  return made;
+}
+
+optimize::Preview preview_of(Coarse coarse, int coarseness) {
   optimize::PreviewTask task;
-  task.printer = printer;
-  for (int by = 1; by < coarseness; by *= 2) task.printer = model::coarser(task.printer);
-  auto [target, farthest_mm] = filled(part, task.printer.projector.pixel_mm);
-  if (std::none_of(target.values.begin(), target.values.end(),
-                   [](float coverage) { return model::label_of(coverage) == model::Label::part; }))
-    return std::nullopt;
-  task.part = model::covered_box(target, model::coverage_rounding);
-  task.radius_mm = optics::judged_radius_mm(task.printer, farthest_mm);
-  task.target = std::move(target);
+  task.printer = std::move(coarse.printer);
+  task.part = model::covered_box(coarse.part.volume, model::coverage_rounding);
+  task.radius_mm = optics::judged_radius_mm(task.printer, coarse.part.content.radius_mm);
+  task.target = std::move(coarse.part.volume);
   task.tolerances = model::parse_tolerances(deviations);
   task.tolerances[static_cast<std::size_t>(model::Deviating::axis)] /= coarseness;  // of the printer's pixels
   return optimize::preview(task);
 }
 
-/// On voxels that are larger for large parts, and smaller for those of thin walls.
+/// On voxels that are larger for large parts, and smaller for those of thin walls or gaps.
 void add_preview(Plan& plan, const solid::Part& part, const model::Printer& printer) {
   int& by = plan.coarseness = usual_coarseness;
-  while (!is_estimated_at(plan.grid, by)) by *= 2;
-  for (plan.preview = preview_of(part, printer, by); !plan.preview && by > 1 && is_estimated_at(plan.grid, by / 2);)
-    plan.preview = preview_of(part, printer, by /= 2);
+  while (million_voxels(plan.grid, by) > most_estimated) by *= 2;
+  Coarse judged = coarse(part, printer, by);
+  while (!judged.is_all_judged() && by > 1 && million_voxels(plan.grid, by / 2) <= most_finer)
+    judged = coarse(part, printer, by /= 2);
+  const model::Grid& grid = judged.part.volume.grid;
+  plan.unjudged = judged.unresolved;
+  plan.all_judged = judged.is_all_judged();
+  plan.unjudged_low_mm = grid.z_mm(judged.unresolved.first - 0.5) / plan.stretch_z;
+  plan.unjudged_high_mm = grid.z_mm(judged.unresolved.end - 0.5) / plan.stretch_z;
+  if (judged.is_judged()) plan.preview = preview_of(std::move(judged), by);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "optimize/run/preview.hpp"
+#include "optimize/target/unresolved.hpp"
 #include "score/exposure_plan.hpp"
 #include "vam-plan/options.hpp"
 
@@ -17,6 +18,7 @@ namespace vam::plan_tool {
 
 inline constexpr int usual_coarseness = 4;  // pixels per voxel of the estimate
 inline constexpr int most_estimated = 2;    // million voxels: those of larger parts are larger by a power of 2
+inline constexpr double most_finer = 0.7;   // million voxels that are taken for the sake of thin walls
 inline constexpr const char* deviations = "axis=0.5px,index=0.005,angle=0.25deg";
 
 /// Whether the part fits, and at which scale.
@@ -31,16 +33,20 @@ struct Fit {
 struct Plan {
   std::string subject;
   Fit now;
-  std::optional<Fit> bath;                   // with a bath of the resin's index; none: it has one
-  double given_scale = 1;                    // by the options
-  double scale = 1;                          // of what follows, of the file's coordinates
-  model::Grid grid;                          // at the printer's pixels
-  double stretch_z = 1;                      // of that grid
-  std::optional<double> wall_voxels;         // of that grid; none: there is no wall as thick as the resolution
-  double wall_mm = 0;                        // of the print
-  bool sharp_edges = false;                  // thinner than what prints
-  int wall_resolution = 1;                   // in voxels
-  int coarseness = 0;                        // pixels per voxel of the estimate; 0: none is wanted
+  std::optional<Fit> bath;            // with a bath of the resin's index; none: it has one
+  double given_scale = 1;             // by the options
+  double scale = 1;                   // of what follows, of the file's coordinates
+  model::Grid grid;                   // at the printer's pixels
+  double stretch_z = 1;               // of that grid
+  std::optional<double> wall_voxels;  // of that grid; none: there is no wall as thick as the resolution
+  double wall_mm = 0;                 // of the print
+  bool sharp_edges = false;           // thinner than what prints
+  int wall_resolution = 1;            // in voxels
+  int coarseness = 0;                 // pixels per voxel of the estimate; 0: none is wanted
+  optimize::Unresolved unjudged;      // walls and gaps too thin for the voxels of the estimate
+  bool all_judged = true;             // they are hardly more than rounded edges
+  double unjudged_low_mm = 0;         // heights in the print of most of them
+  double unjudged_high_mm = 0;
   std::optional<optimize::Preview> preview;  // none: none of its voxels is wholly inside the part
   bool resin_known = false;
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light

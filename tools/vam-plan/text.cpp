@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "base/json.hpp"
 #include "solid/voxel/placement.hpp"
@@ -44,18 +45,32 @@ std::string deviation_name(std::size_t tolerance) {
 
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
 
+/// "12 % of the part, and gaps of 3 % of its volume"
+std::string unjudged_share(const optimize::Unresolved& unjudged) {
+  const auto percent = [&](double voxels) { return format_number(100 * voxels / unjudged.whole, 2) + " % of "; };
+  std::vector<std::string> shares;
+  if (unjudged.part > 0) shares.push_back(percent(unjudged.part) + "the part");
+  if (unjudged.gaps > 0) shares.push_back("gaps of " + percent(unjudged.gaps) + "its volume");
+  return join(shares, " and ");
+}
+
 std::string print_rows(const Plan& plan) {
   if (!plan.preview) {
     return row("will it print", "not known: no voxel of " + number(plan.coarseness * plan.grid.voxel_mm) +
                                     " mm is wholly inside the part");
   }
   const optimize::Printed& nominal = plan.preview->trials.nominal;
-  const bool prints = nominal.figures.pw > 0;
+  const char* answer = nominal.figures.pw <= 0 ? "not everywhere" : plan.all_judged ? "yes" : "perhaps";
   std::string text =
-      row("will it print", std::string(prints ? "yes" : "not everywhere") + ": process window " +
-                               signed_number(window(nominal)) + " of the largest dose, VER " +
-                               number(nominal.figures.ver) + " (estimate on voxels of " +
+      row("will it print", std::string(answer) + ": process window " + signed_number(window(nominal)) +
+                               " of the largest dose, VER " + number(nominal.figures.ver) + " (estimate on voxels of " +
                                std::to_string(plan.coarseness) + (plan.coarseness == 1 ? " pixel)" : " pixels)"));
+  constexpr double negligible = 0.001;
+  if (!plan.all_judged || plan.unjudged.share() > negligible) {
+    text += row("  not judged", unjudged_share(plan.unjudged) + ", too thin for these voxels, most between z = " +
+                                    number(plan.unjudged_low_mm) + " and " + number(plan.unjudged_high_mm) +
+                                    " mm; vam-slice and vam-optimize judge them");
+  }
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
   if (!plan.exposure) {
@@ -124,6 +139,13 @@ Json report(const Plan& plan) {
     json["thinnest_wall_mm"] = plan.wall_mm;
   }
   json["sharp_edges"] = plan.sharp_edges;
+  if (plan.coarseness > 0) {
+    const optimize::Unresolved& unjudged = plan.unjudged;
+    json["estimate_voxel_mm"] = plan.coarseness * plan.grid.voxel_mm;
+    json["all_judged"] = plan.all_judged;
+    json["unresolved_part"] = unjudged.whole > 0 ? unjudged.part / unjudged.whole : 0;
+    json["unresolved_gaps"] = unjudged.whole > 0 ? unjudged.gaps / unjudged.whole : 0;
+  }
   if (plan.preview) {
     json["ver"] = plan.preview->trials.nominal.figures.ver;
     json["pw"] = window(plan.preview->trials.nominal);

@@ -56,6 +56,7 @@ Unresolved of_slice(const model::Volume& target, int k) {
 Unresolved unresolved(const model::Volume& target) {
   std::vector<Unresolved> slices(target.grid.nz);
   parallel_for(target.grid.nz, [&](int k) { slices[k] = of_slice(target, k); });
+  constexpr double much = 0.1;
   Unresolved all;
   double most = 0;
   for (int k = 0; k < target.grid.nz; ++k) {
@@ -66,6 +67,11 @@ Unresolved unresolved(const model::Volume& target) {
     if (one.part + one.gaps <= most) continue;
     most = one.part + one.gaps;
     all.slice = k;
+  }
+  for (int k = 0; k < target.grid.nz && most > 0; ++k) {
+    if (slices[k].part + slices[k].gaps < much * most) continue;
+    if (all.end == 0) all.first = k;
+    all.end = k + 1;
   }
   return all;
 }

@@ -13,6 +13,8 @@ struct Unresolved {
   double gaps = 0;   // of the void, in voxels without one wholly outside
   double whole = 0;  // of the part, all of it
   int slice = 0;     // the one with most of it
+  int first = 0;     // slices [first, end) are those from the first to the last with a tenth as much or more
+  int end = 0;
   [[nodiscard]] double share() const { return whole > 0 ? (part + gaps) / whole : 0; }
 };
 

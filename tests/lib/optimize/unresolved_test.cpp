@@ -51,5 +51,12 @@ TEST_CASE("nor are gaps thinner than a voxel") {
 TEST_CASE("the slice with most of it is found") {
   model::Volume volume = walls(3, 4, 0);
   for (int i = 5; i < 20; ++i) volume.slice(1)[1 * 30 + i] = 0.5F;  // a rod in the open
-  CHECK(optimize::unresolved(volume).slice == 1);
+  volume.slice(2)[1 * 30 + 5] = 0.5F;                               // two voxels of fifteen
+  volume.slice(2)[1 * 30 + 6] = 0.5F;
+  volume.slice(28)[1 * 30 + 5] = 0.5F;  // less than a tenth
+  const optimize::Unresolved found = optimize::unresolved(volume);
+  CHECK(found.slice == 1);
+  CHECK(found.first == 1);
+  CHECK(found.end == 3);
+  CHECK(found.part == 9);
 }
