@@ -217,6 +217,9 @@ python3 -c 'import sys; sys.stdout.buffer.write((bytes([0, 0, 0] * 512) + bytes(
 film() { name=$1 from=$2 what=$3; shift 3; ffmpeg -v error -f rawvideo -pix_fmt "$from" -s 32x32 -r 4 -i "$what" "$@" -y "$name"; }
 film tv.mp4 gray levels -c:v libx264 -qp 0 -pix_fmt yuv420p
 film pc.mp4 gray levels -c:v libx264 -qp 0 -pix_fmt yuvj420p
+film grey.mkv gray levels -c:v ffv1 -pix_fmt gray -color_range tv
+film full.mkv gray levels -c:v ffv1 -pix_fmt yuv420p -color_range pc -vf scale=out_range=full
+is 'the grey one states a limited range' "$(ffprobe -v error -show_entries stream=pix_fmt,color_range -of csv=p=0 grey.mkv)" gray,tv
 film blue.mp4 rgb24 blue -c:v libx264 -qp 0 -pix_fmt yuv420p
 film rgb.mp4 rgb24 blue -c:v libx264rgb -qp 0
 film rgb.mkv rgb24 blue -c:v ffv1 -pix_fmt bgr0
@@ -229,7 +232,8 @@ rows = [sum(struct.unpack_from("<32f", data, (31 - row) * 4 * 128)) / 32 for row
 print(*["%.0f" % (sum(rows[i:i + 8]) / 8 * 1000) for i in (0, 8, 16, 24)])
 PY
 }
-for name in tv pc; do is "levels of $name.mp4" "$(quarters $name.mp4)" '0 333 667 1000'; done
+# Grey pixels are of the full range whatever is stated, as ffmpeg takes them.
+for name in tv.mp4 pc.mp4 grey.mkv full.mkv; do is "levels of $name" "$(quarters $name)" '0 333 667 1000'; done
 for name in blue.mp4 rgb.mp4 rgb.mkv; do is "luma of $name" "$(quarters $name)" '0 0 114 114'; done
 
 # Rays climb: rows above and below the part light it, too.

@@ -17,7 +17,7 @@ namespace {
 struct Layout {
   int bits = 0;          // of a frame as read; 0: not a format that is known
   int stored_bits = 0;   // of a value in the file
-  bool limited = false;  // black is 16 and white 235 of 255, unless the video states otherwise
+  bool limited = false;  // black is 16 and white 235 of 255, unless the video states the full range
   bool rgb = false;
 };
 
@@ -146,11 +146,8 @@ struct VideoReader::State {
     throw Error{Fault::data, path + ": frame " + std::to_string(packets - 1) + " is damaged; write the video again"};
   }
 
-  // What the video says counts, else what its pixel format is for.
-  [[nodiscard]] bool is_narrow() const {
-    if (frame->color_range == AVCOL_RANGE_UNSPECIFIED) return layout.limited;
-    return frame->color_range == AVCOL_RANGE_MPEG && !layout.rgb;
-  }
+  // Grey, yuvj and RGB pixels are of the full range whatever the video states, as libswscale, too, takes them.
+  [[nodiscard]] bool is_narrow() const { return layout.limited && frame->color_range != AVCOL_RANGE_JPEG; }
 
   [[nodiscard]] int value(int plane, std::ptrdiff_t byte, int y) const {
     return frame->data[plane][static_cast<std::ptrdiff_t>(y) * frame->linesize[plane] + byte];
