@@ -148,6 +148,8 @@ void declare(cli::App& app, Options& o) {
   cli::App& who = app.subcommand("identify", "print the camera, its settings and its firmware as JSON", o.command);
   add_camera(who, o);
   cli::add_printer(who, o.printer);
+  app.usual({"--output", "--log", "--device", "--exposure", "--fps", "--gain", "--trigger", "--frames", "--view-step",
+             "--turns", "--follow", "--live", "--printer", "--set", "--report"});
 }
 
 void run(const cli::App& app, const Options& options) {

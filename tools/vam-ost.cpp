@@ -209,6 +209,8 @@ void declare(cli::App& app, Options& o) {
   app.group("Output and performance");
   cli::add_report(app, o.report);
   cli::add_threads(app);
+  app.usual({"--output", "--view-step", "--dark", "--flat", "--pixel", "--axis-column", "--voxel", "--isovalue",
+             "--mesh", "--target", "--live", "--uncertainties", "--printer", "--set", "--report"});
 }
 
 void once(const cli::App& app, const Options& options) {

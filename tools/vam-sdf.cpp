@@ -159,6 +159,8 @@ void declare(cli::App& app, Options& options) {
   cli::add_report(app, options.report);
   declare_inspection(app, options);
   cli::add_threads(app);
+  app.usual({"--output", "--volume", "--isovalue", "--align", "--histogram", "--require", "--tolerance", "--report",
+             "--region", "--datum", "--uncertainty"});
 }
 
 void declare_height(cli::App& app, HeightOptions& options) {

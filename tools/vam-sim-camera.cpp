@@ -220,6 +220,8 @@ void declare(cli::App& app, Options& o) {
   app.option("--log", "FILE", o.log, "Append one JSON line per event; - is standard error.");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_printer(app, o.printer);
+  app.usual({"--part", "--lit", "--follow", "--speed", "--cure", "--cured", "--pattern", "--card", "--maker",
+             "--address", "--noise", "--seed", "--log", "--printer", "--set"});
 }
 
 std::vector<GreyImage> read_images(const std::string& path) {

@@ -124,6 +124,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--link", "FILE", options.link, "Symbolic link to the pseudo-terminal, removed at the end.");
   app.flag("--shim", options.shim, "Print the path of the library to preload and exit.");
   app.flag("--die-with-parent", options.with_parent, "Exit when the parent process exits.");
+  app.usual({"--max-speed", "--start-angle", "--protocol", "--address", "--fault", "--seed", "--log", "--link"});
 }
 
 // Beside the program in a build tree (bin/../lib), or where it is installed.

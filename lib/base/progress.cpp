@@ -51,7 +51,7 @@ Progress::~Progress() {
   if (drawn_ms_ > 0 && shown_as(ProgressStyle::line)) status_line::hide();
   if (std::uncaught_exceptions() > 0) return;  // the error says what became of the work
   const long done = done_;
-  if (shown_as(ProgressStyle::json)) print_json(done, 0);
+  if (shown_as(ProgressStyle::json)) print_json(done, 0, true);
   if (talk().verbose) note(program_name() + ": " + what_ + ": " + format_number(elapsed_s(), 3) + " s");
 }
 
@@ -80,7 +80,7 @@ void Progress::look(long done) {
 
 void Progress::draw(long done) {
   const std::scoped_lock one(drawing_);
-  if (shown_as(ProgressStyle::json)) return print_json(done, left_s(done, total_, elapsed_s()));
+  if (shown_as(ProgressStyle::json)) return print_json(done, left_s(done, total_, elapsed_s()), false);
   status_line::show(line(done, status_line::width()));
 }
 
@@ -105,11 +105,12 @@ std::string Progress::line(long done, int width) const {
   return begin + '[' + std::string(filled, '#') + std::string(bar - filled, ' ') + "] " + join(parts, ", ");
 }
 
-void Progress::print_json(long done, std::optional<double> left_s) const {
+void Progress::print_json(long done, std::optional<double> left_s, bool finished) const {
   Json line{{"tool", program_name()}, {"task", what_}, {"done", done}};
   if (total_ > 0) line["total"] = total_.load();
   line["elapsed_s"] = std::round(1000 * elapsed_s()) / 1000;
   if (left_s) line["left_s"] = std::round(1000 * *left_s) / 1000;
+  line["finished"] = finished;
   for (const Figure& figure : figures_) {
     std::string key = figure.name;
     std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -36,7 +36,7 @@ class Progress {
   void look(long done);
   void draw(long done);
   [[nodiscard]] std::string line(long done, int width) const;
-  void print_json(long done, std::optional<double> left_s) const;
+  void print_json(long done, std::optional<double> left_s, bool finished) const;
   std::string what_;
   std::atomic<long> total_, done_{0}, drawn_ms_{0};
   Clock::time_point start_ = Clock::now();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <string_view>
 
 #include "base/text.hpp"
 #include "cli/private/declaration.hpp"
@@ -38,12 +39,28 @@ std::string usage(const Declaration& tool) {
   return "Usage: " + join(lines, "\n       ") + "\n";
 }
 
-std::string help_text(const Group& group) {
+/// The first sentence, to its full stop.
+std::string first_sentence(const std::string& text) {
+  for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1)) {
+    if (!std::string_view(text).substr(0, at).ends_with("e.g")) return text.substr(0, at + 1);
+  }
+  return text;
+}
+
+/// In short: what an option is for, its words and its default.
+Option shortened(Option option) {
+  option.help = first_sentence(option.help);
+  option.range_text.clear();
+  option.needs.clear();
+  return option;
+}
+
+std::string help_text(const Group& group, bool brief) {
   std::string text = group.title + ":\n";
   for (const auto& option : group.options) {
     text += "  " + join(split(option.flag, ','), ", ");
     if (!option.value_name.empty()) text += " " + value_words(option);
-    text += "\n" + wrap(join(details(option), " "), width, indent);
+    text += "\n" + wrap(join(details(brief ? shortened(option) : option), " "), width, indent);
   }
   return text;
 }
@@ -160,9 +177,11 @@ std::string help_text(const Declaration& tool, bool all) {
   if (!tool.positionals.empty()) text += "\n";
   std::size_t hidden = 0;
   const bool whole = all || !has_usual(tool);
-  for (const auto& group : whole ? tool.groups : usual_groups(tool.groups, hidden)) text += help_text(group) + "\n";
-  if (hidden > 0) text += std::to_string(hidden) + " more options: " + tool.manual.name + " --help=all\n\n";
-  text += help_text(Group{"Common options", options_of_all()});
+  for (const auto& group : whole ? tool.groups : usual_groups(tool.groups, hidden))
+    text += help_text(group, !whole) + "\n";
+  if (hidden > 0)
+    text += std::to_string(hidden) + " more options, and all of each: " + tool.manual.name + " --help=all\n\n";
+  text += help_text(Group{"Common options", options_of_all()}, !whole);
   text += "  -h, --help; --version; --man (the manual page); --completion bash|zsh|fish\n";
   return text;
 }

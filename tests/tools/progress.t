@@ -43,12 +43,21 @@ same 'the same bytes' plain.exr x.exr
 ok '--progress json' $work --progress json -o x.exr
 cat >judge.py <<'PY'
 import json, sys
+from collections import Counter
 lines = [json.loads(line) for line in sys.stdin]
 last = [line for line in lines if line["task"] == "optimising"]
 print(all(a["iteration"] <= b["iteration"] and a["elapsed_s"] <= b["elapsed_s"] for a, b in zip(last, last[1:])),
       all(line["tool"] == "vam-optimize" and 0 <= line["done"] <= line["total"] for line in lines),
       all(0 <= line["ver"] <= 1 and -2 <= line["pw"] <= 1 for line in lines),
-      all(("left_s" in line) == (line["done"] > 0) for line in lines), last[-1]["left_s"], len(last) > 1)
+      all(("left_s" in line) == (line["done"] > 0) for line in lines), last[-1]["left_s"], len(last) > 1,
+      all([line["finished"] for line in lines if line["task"] == task] == [False] * (count - 1) + [True]
+          for task, count in Counter(line["task"] for line in lines).items()), lines[-1]["finished"])
 PY
-is 'is lines of JSON' "$(python3 judge.py <.log/err)" 'True True True True 0.0 True'
+is 'is lines of JSON, the last of a task says so' "$(python3 judge.py <.log/err)" 'True True True True 0.0 True True True'
+ok 'short work' vam-slice --shape sphere --voxel 1 --progress json -o short.vdb
+is 'says so, too' "$(sed 's/[0-9.]*,"left_s"/N,"left_s"/' .log/err)" \
+  '{"tool":"vam-slice","task":"slicing","done":12,"total":12,"elapsed_s":N,"left_s":0.0,"finished":true}'
+ok 'work that is interrupted' sh -c "timeout -s INT 4 vam-optimize --method pm --iterations 9999 --angles 90 part.vdb --progress json -o y.exr 2>cut; true"
+holds 'had begun' "$(grep -c '"finished":false' cut) > 0"
+is 'does not' "$(grep -c '"task":"optimising","done".*"finished":true' cut)" 0
 done_testing

@@ -56,8 +56,7 @@ cli::Manual manual() {
        "levels of blue remain; if that is too coarse, write RGB (libx264rgb, or FFV1 in bgr0) or extract the blue "
        "channel "
        "first. Videos in YUV have a limited range (black at 16, white at 235 of 255) unless they state the full one, "
-       "as "
-       "yuvj420p does; grey and RGB have the full range. "
+       "as yuvj420p does; grey and RGB have the full range, whatever they state, as ffmpeg takes them. "
        "The stage angle between the frames of a video is 6 x turns per minute / frames per second."},
       {{"A part to NumPy, and back:",
         "vam-slice --shape disc-grid --voxel 0.5 | vam-convert -o part.npy\n"

@@ -97,6 +97,8 @@ void declare(cli::App& app, Options& options) {
   app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);
+  app.usual({"--output", "--array", "--axes", "--full-scale", "--voxel", "--stretch-z", "--geometry", "--pixel",
+             "--like", "--view-step", "--axis-column", "--orientation", "--printer", "--set"});
 }
 
 std::array<int, 3> axes_of(const Options& options, const std::string& letters) {

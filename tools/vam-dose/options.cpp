@@ -84,6 +84,8 @@ void declare(cli::App& app, Options& options) {
   cli::add_printer(app, options.printer);
   app.group("Performance");
   cli::add_threads(app);
+  app.usual({"--output", "--report", "--like", "--poses", "--bits", "--exposure-plan", "--shown", "--reverse",
+             "--printer", "--set"});
 }
 
 void settle(Options& options, const model::Printer& printer) {

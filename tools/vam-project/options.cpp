@@ -135,6 +135,8 @@ void declare(cli::App& app, Options& options) {
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_report(app, options.report);
   cli::add_threads(app);
+  app.usual({"--output", "--accept-printer", "--fps", "--speed", "--turns", "--orientation", "--multiplier", "--dither",
+             "--follow", "--light", "--log", "--pattern", "--printer", "--set", "--report"});
 }
 
 /// "nul:" or "drn:HDMI-A-1", but not "2026-11-25T15:00.mkv".

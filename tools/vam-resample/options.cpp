@@ -47,6 +47,8 @@ void declare(cli::App& app, Options& options) {
   app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);
+  app.usual({"--output", "--geometry", "--interpolation", "--explain", "--reverse", "--bin-width", "--printer", "--set",
+             "--report"});
 }
 
 void check(const Options& options, const model::Printer& printer) {

@@ -71,6 +71,8 @@ void declare(cli::App& app, Options& options) {
       .writes()
       .was("--json", "-");
   cli::add_threads(app);
+  app.usual({"--grid", "--target", "--sinogram", "--require", "--critical-dose", "--surface", "--grey-target", "--mesh",
+             "--printer", "--set", "--report"});
 }
 
 score::GreyOptions grey_options(const Options& options) {

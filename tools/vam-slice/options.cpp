@@ -97,6 +97,8 @@ void declare(cli::App& app, Options& options) {
   app.group("Report and performance");
   cli::add_report(app, options.report);
   cli::add_threads(app);
+  app.usual({"--output", "--shape", "--voxel", "--unit", "--up", "--scale", "--rotate", "--fit", "--fit-writable",
+             "--place", "--insert", "--printer", "--set", "--report"});
 }
 
 bool is_folder(const std::string& path) {

@@ -73,6 +73,8 @@ void declare(cli::App& app, Options& options) {
   app.default_is("names of file and content");
   app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.");
   cli::add_printer(app, options.printer);
+  app.usual({"--output", "--export", "--grid", "--plane", "--at", "--sheet", "--target", "--dose-histogram",
+             "--cure-map", "--render", "--compare", "--title", "--printer", "--set"});
 }
 
 void check(const Options& options) {

@@ -72,8 +72,10 @@ TEST_CASE("--help shows the usual options, --help=all all") {
   const std::string some = help(true, "--help");
   CHECK(some.find("  --voxel MM\n") != std::string::npos);
   CHECK(some.find("--angles") == std::string::npos);
-  CHECK(some.find("\n4 more options: vam-demo --help=all\n") != std::string::npos);
+  CHECK(some.find("\n4 more options, and all of each: vam-demo --help=all\n") != std::string::npos);
   CHECK(some.find("--quiet") != std::string::npos);
+  CHECK(some.find("json: one object a\n") == std::string::npos);  // the first sentence of each
+  CHECK(help(true, "--help=all").find("json: one object a\n") != std::string::npos);
   CHECK(help(true, "--help=all") == help(false, "--help"));
 }
 
@@ -84,7 +86,7 @@ TEST_CASE("progress as JSON: a line when the work ends, with its figures") {
     progress.stand(3, 9, {{"iteration", 3}, {"VER", 0.25}});
   });
   CHECK(text.find(R"("task":"optimising","done":3,"total":9,)") != std::string::npos);
-  CHECK(text.find(R"("left_s":0.0,"iteration":3.0,"ver":0.25})") != std::string::npos);
+  CHECK(text.find(R"("left_s":0.0,"finished":true,"iteration":3.0,"ver":0.25})") != std::string::npos);
   const std::string failed = written_to(stderr, [] {
     try {
       const Progress progress("slicing", 8);
