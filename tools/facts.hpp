@@ -28,7 +28,7 @@ inline double stretch_z(const Facts& facts) {
   if (found == facts.end()) return 1.0;
   const auto factor = parse_number(found->second);
   if (factor && *factor >= least_stretch && *factor <= most_stretch) return *factor;
-  throw Error{Fault::data, "the volume states vam:stretch_z '" + found->second.substr(0, 64) +
+  throw Error{Fault::data, "the file states vam:stretch_z '" + found->second.substr(0, 64) +
                                "', which is not a factor of 0.1 to 10; slice it again"};
 }
 

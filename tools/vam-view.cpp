@@ -134,7 +134,7 @@ void refuse(const cli::App& app, const Options& options, const std::string& what
   }
 }
 
-void show_images(const cli::App& app, const Options& options, io::FileType type) {
+void show_images(const cli::App& app, Options options, io::FileType type) {
   refuse(app, options, "images",
          {"--grid", "--plane", "--target", "--dose-histogram", "--cure-map", "--render", "--threshold", "--compare"});
   if (!options.exported.empty()) {
@@ -143,6 +143,7 @@ void show_images(const cli::App& app, const Options& options, io::FileType type)
     return io::write_nrrd(options.exported, stack);
   }
   const auto images = io::open_images(options.input, type);
+  options.view.stretch_z = tool::stretch_z(images->info().extra);
   write_figure(options, plot::view_images(*images, options.view), app.history());
 }
 

@@ -18,7 +18,7 @@ struct ViewOptions {
   std::string name;                       // of the file, for titles
   std::optional<std::string> title = {};  // of the figure, instead of one that says what is seen
   Plane plane = Plane::axial;
-  double stretch_z = 1;  // of the volume along z (vam:stretch_z): its z / stretch_z is mm in the print
+  double stretch_z = 1;  // of the volume or sinograms along z (vam:stretch_z): its z / stretch_z is mm in the print
   std::optional<double>
       at;         // mm in the print across the plane; z of a slice in mm or stage angle of a frame in degrees
   int sheet = 1;  // number of images, evenly spread

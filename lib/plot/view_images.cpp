@@ -20,12 +20,13 @@ double angle_of(const model::StackInfo& info, const model::ImageInfo& about, int
   return about.has_angle ? about.angle_deg : info.angle_start_deg + index * info.angle_step_deg;
 }
 
-double coordinate(const model::StackInfo& info, const model::ImageInfo& about, int index) {
-  return info.kind == model::Kind::sinogram ? about.z_mm : angle_of(info, about, index);
+/// Of a sinogram mm in the print.
+double coordinate(const model::StackInfo& info, const model::ImageInfo& about, int index, double stretch_z) {
+  return info.kind == model::Kind::sinogram ? about.z_mm / stretch_z : angle_of(info, about, index);
 }
 
-std::string caption_of(const model::StackInfo& info, const model::ImageInfo& about, int index) {
-  if (info.kind == model::Kind::sinogram) return "z = " + mm(about.z_mm);
+std::string caption_of(const model::StackInfo& info, const model::ImageInfo& about, int index, double stretch_z) {
+  if (info.kind == model::Kind::sinogram) return "z = " + mm(about.z_mm / stretch_z);
   if (about.has_angle || info.angle_step_deg != 0) return format_number(angle_of(info, about, index), 5) + " deg";
   return about.has_time ? format_number(about.time_s, 5) + " s" : "frame " + std::to_string(index);
 }
@@ -92,18 +93,21 @@ void crop(ImageFigure& figure) {
 class Selection {
  public:
   Selection(const model::StackInfo& info, const ViewOptions& options)
-      : info_(info), at_(options.at), indices_(views::spread(info.count, options.sheet)) {
+      : info_(info),
+        at_(options.at),
+        stretch_z_(options.stretch_z),
+        indices_(views::spread(info.count, options.sheet)) {
     if (options.sheet <= 1 && info.kind == model::Kind::frames) indices_ = {0};
   }
 
   void offer(Image&& image, const model::ImageInfo& about, int index) {
     if (at_) {
-      const double away = std::abs(coordinate(info_, about, index) - *at_);
+      const double away = std::abs(coordinate(info_, about, index, stretch_z_) - *at_);
       if (index > 0 && away >= nearest_) return;
       nearest_ = away;
-      panels = {{std::move(image), caption_of(info_, about, index), {}}};
+      panels = {{std::move(image), caption_of(info_, about, index, stretch_z_), {}}};
     } else if (std::find(indices_.begin(), indices_.end(), index) != indices_.end()) {
-      panels.push_back({std::move(image), caption_of(info_, about, index), {}});
+      panels.push_back({std::move(image), caption_of(info_, about, index, stretch_z_), {}});
     }
   }
 
@@ -115,6 +119,7 @@ class Selection {
  private:
   model::StackInfo info_;
   std::optional<double> at_;
+  double stretch_z_;
   std::vector<int> indices_;
   double nearest_ = 0;
 };
@@ -133,7 +138,7 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   model::ImageInfo about;
   for (int index = 0; images.next(image, about); ++index) selection.offer(std::move(image), about, index);
   if (selection.panels.empty()) throw Error{Fault::data, options.name + ": has no image"};
-  const double pitch = std::abs(sinogram ? info.row_mm : info.angle_step_deg);
+  const double pitch = std::abs(sinogram ? info.row_mm / options.stretch_z : info.angle_step_deg);
   if (selection.away() > 0.51 * pitch + 1e-6) {
     throw Error{Fault::data, options.name + ": has no image at " + format_number(*options.at) + "; the nearest is " +
                                  selection.panels[0].caption};

@@ -84,7 +84,7 @@ at = data.index(b'string', data.index(b'vam:stretch_z')) + 6
 size, = struct.unpack_from('<I', data, at)
 open('stretched.vdb', 'wb').write(data[:at + 4] + sys.argv[1].encode().rjust(size) + data[at + 4 + size:])
 PY
-  fails 65 "the volume states vam:stretch_z ' *$stretch', which is not a factor of 0.1 to 10" vam-sdf stretched.vdb part.vdb --isovalue 0.5
+  fails 65 "the file states vam:stretch_z ' *$stretch', which is not a factor of 0.1 to 10" vam-sdf stretched.vdb part.vdb --isovalue 0.5
 done
 
 # ---- records, reports, printer files -------------------------------------------------------------------------------

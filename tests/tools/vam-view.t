@@ -179,6 +179,10 @@ unset VAM_PRINTER; rm -f printer.toml
 vam-slice --shape box:x=4,y=4,z=10 --voxel 0.5 -o box.vdb
 fails 65 'it reaches from -5.057 mm to 5.057 mm' vam-view box.vdb --at 90 -o x.png
 quiet "which --at takes, too" vam-view box.vdb --at 5.05 -o box.png
+vam-sinogram box.vdb --angles 8 -o box.exr
+fails 65 'has no image at 90; the nearest is z = 5.057 mm' vam-view box.exr --at 90 -o x.png  # as the volume's
+fails 65 'has no image at 5.31; the nearest is z = 5.057 mm' vam-view box.exr --at 5.31 -o x.png
+quiet "and of its sinograms" vam-view box.exr --at 5.05 -o box.png
 vam-slice --shape box:x=6,y=6,z=4 --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --cut-insert -o held.vdb
 vam-sinogram held.vdb --filter ram-lak --negative clip -o held.exr
 vam-dose held.exr --like held.vdb -o held-dose.vdb

@@ -14,9 +14,8 @@ cli::Manual manual() {
        "For a volume it shows a section: axial (x to the right, y up), coronal (x to the right, z up) or sagittal (y "
        "to the right, z up), the middle one or the one at --at. For sinograms it shows the middle slice, detector bins "
        "to the right and stage angles downwards; for frames the first one, oriented as in the file. --sheet N shows N "
-       "of them, evenly spaced. z is in mm of the print: that of the volume, which vam-slice stretches for the "
-       "magnification "
-       "of the projector, divided by vam:stretch_z.",
+       "of them, evenly spaced. z is in mm of the print: that of the volume or of its sinograms, which vam-slice "
+       "stretches for the magnification of the projector, divided by vam:stretch_z.",
        "--target draws the surface of the part (coverage 1/2) as a line over the dose. --dose-histogram instead shows "
        "the distributions of dose inside and outside the part, each as a percentage of its voxels (logarithmic): if "
        "they overlap, no "
