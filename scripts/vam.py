@@ -6,7 +6,10 @@
     vam.write_volume("mine.vdb", values, voxel_mm=0.1)  # values[z][y][x], coverage 0...1, z upwards
     vam.write_stack("mine.exr", values, pixel_mm=0.065, row_mm=0.065)  # values[slice][angle][column]
 
-facts: shape, spacing and origin of the axes, in the order of the array (slowest first), in mm or degrees; content.
+facts: shape, spacing and origin of the axes, in the order of the array (slowest first), in mm or degrees; content;
+stretch_z of a volume, the factor by which it is higher than its print (1 where none is stated): z / stretch_z is mm in
+the print. Give it to write_volume with arrays that are stretched already, as those that were read: vam-slice stretches
+its targets by 1/M_vp of the printer, as prints come out lower, and `vam-convert --stretch-z` does so with arrays.
 A volume written without origin_mm (x, y, z of its first voxel's centre) has its middle on the axis, at z = 0. A flat
 array needs shape=(slices, rows, columns). The files are checked with `vam-check FILE`, their keys are in vam-formats(7).
 """
@@ -31,6 +34,8 @@ def read(path, grid=""):
     if "space directions" in keys:
         facts["spacing"] = 3 * (float(keys["space directions"].split(",")[0].strip("(")),)
         facts["origin"] = tuple(float(n) for n in reversed(keys["space origin"].strip("()").split(",")))
+        facts["stretch_z"] = float(next((line.split(":=", 1)[1] for line in head.decode().splitlines()
+                                         if line.startswith("vam:stretch_z:=")), 1))
     else:
         facts["spacing"] = tuple(float(n) for n in reversed(keys["spacings"].split()))
         facts["origin"] = tuple(float(n) for n in reversed(keys["axis mins"].split()))
@@ -53,8 +58,11 @@ def _text(value):
     return struct.pack("<I", len(value)) + value.encode()
 
 
-def write_volume(path, values, voxel_mm, origin_mm=None, name="target", units="relative", shape=None):
+def write_volume(path, values, voxel_mm, origin_mm=None, name="target", units="relative", shape=None,
+                 stretch_z=1):
     """One grid as an OpenVDB file, format 224, leaf by leaf; zero is background. Up to 4096 voxels a side."""
+    if not 0.1 <= stretch_z <= 10:
+        raise ValueError("stretch_z is a factor of 0.1 to 10")
     values, (nz, ny, nx) = _flat(values, shape)
     leaves = {}  # block of 8 x 8 x 8 voxels -> its values, z fastest
     for at, value in enumerate(values):
@@ -81,6 +89,8 @@ def write_volume(path, values, voxel_mm, origin_mm=None, name="target", units="r
     scale = [voxel_mm, voxel_mm, 1 / voxel_mm, voxel_mm ** -2, 0.5 / voxel_mm]
     facts = {"name": ("string", name.encode()), "vam:units": ("string", units.encode()),
              "vam:shape": ("vec3i", struct.pack("<3i", nx, ny, nz)), "vam:history": ("string", b"vam.py write_volume")}
+    if stretch_z != 1:
+        facts["vam:stretch_z"] = ("string", b"%.9g" % stretch_z)
     meta = struct.pack("<I", len(facts)) + b"".join(
         _text(key) + _text(kind) + struct.pack("<I", len(data)) + data for key, (kind, data) in facts.items())
     transform = _text("UniformScaleTranslateMap") + struct.pack("<3d", *origin_mm) + b"".join(

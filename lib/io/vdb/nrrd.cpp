@@ -45,6 +45,12 @@ std::string stack_axes(const model::StackInfo& info) {
                    : "labels: \"column\" \"row\" \"frame\"\nunits: \"mm\" \"mm\" \"deg\"\n");
 }
 
+/// What z is to be divided by for mm in the print, as NRRD keeps the keys of others.
+std::string stretch_line(const SparseVolume& volume) {
+  const auto found = volume.metadata.find("vam:stretch_z");
+  return found == volume.metadata.end() ? "" : "vam:stretch_z:=" + printable(found->second) + "\n";
+}
+
 }  // namespace
 
 void write_nrrd(const std::string& path, const SparseVolume& volume) {
@@ -57,7 +63,7 @@ void write_nrrd(const std::string& path, const SparseVolume& volume) {
              printable(volume.units) + ")\n");
   file.write("space: 3D-right-handed\nspace units: \"mm\" \"mm\" \"mm\"\nspace directions: (" + v + ",0,0) (0," + v +
              ",0) (0,0," + v + ")\nspace origin: (" + number(grid.origin_mm[0]) + "," + number(grid.origin_mm[1]) +
-             "," + number(grid.origin_mm[2]) + ")\nkinds: domain domain domain\n\n");
+             "," + number(grid.origin_mm[2]) + ")\nkinds: domain domain domain\n" + stretch_line(volume) + "\n");
   constexpr int slab = 16;
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
