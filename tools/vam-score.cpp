@@ -53,6 +53,8 @@ void require_known(const std::vector<model::Condition>& conditions, const Option
 }
 
 void require_files_for_outputs(const Options& options) {
+  if (options.print_as == "points" && (options.print.ends_with(".stl") || options.print.ends_with(".obj")))
+    throw Error{Fault::usage, options.print + ": points are written as .ply"};
   for (const auto& output : {options.print, options.lit_fraction}) {
     if (output != "-") continue;
     throw Error{Fault::usage,

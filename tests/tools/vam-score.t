@@ -32,6 +32,12 @@ is "all of the part cures" "$(json at.json cured_part)" 1.0
 
 quiet "the print as a mesh" vam-score --grid target part.vdb --mesh print.ply
 is "a PLY with faces" "$(head -c 400 print.ply | grep -ac 'element face')" 1
+for ending in stl obj; do
+  quiet "the same as $ending" vam-score --grid target part.vdb --mesh print.$ending
+  holds "is the same surface" "$(vam-sdf print.$ending print.ply --align none --report apart.json 2>/dev/null; json apart.json print_to_design.max_abs_mm) < 1e-5"
+done
+is "OBJ counts corners from 1" "$(head -n 3 print.obj | cut -d' ' -f1 | tr -d '\n')" '#vv'
+fails 64 'points are written as .ply' vam-score --grid target part.vdb --mesh points.obj --ply-as points
 quiet "the print as points" vam-score --grid target part.vdb --mesh points.ply --ply-as points
 is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quality')" 1
 
@@ -86,7 +92,7 @@ fails 74 'full' vam-score --grid target part.vdb --mesh /dev/full
 fails 65 'part.vdb' vam-score --grid target part.vdb --sinogram part.vdb
 
 fails 64 'require: is empty' vam-score part.vdb --target part.vdb --require ''
-fails 64 "'print.stl' must end in .ply" vam-score part.vdb --target part.vdb --mesh print.stl
+fails 64 "'print.off' must end in .ply" vam-score part.vdb --target part.vdb --mesh print.off
 
 # Void in the corners of the volume is judged too, up to the writable radius; where that ends is told.
 python3 - "$VAM_SOURCE/scripts" <<'PY'

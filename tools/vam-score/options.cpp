@@ -2,6 +2,7 @@
 #include "vam-score/options.hpp"
 
 #include "base/error.hpp"
+#include "io/mesh/file.hpp"
 
 namespace vam::score_tool {
 
@@ -25,9 +26,11 @@ void declare_grey(cli::App& app, Options& options) {
 
 void declare_print(cli::App& app, Options& options) {
   app.group("Print");
-  app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print").writes_as({".ply"});
+  app.option("--mesh", "FILE", options.print, "Write the print in mm, as PLY, STL or OBJ by the ending of the name.")
+      .was("--print")
+      .writes_as(io::written_mesh_endings());
   app.choice("--ply-as", options.print_as, {"mesh", "points"},
-             "Content of the PLY file: the surface of the print, or its voxels coloured by dose.")
+             "Content of FILE: the surface of the print, or as PLY its voxels coloured by dose.")
       .needs({"--mesh"})
       .was("--print-as");
   app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold dose of the print's surface.")

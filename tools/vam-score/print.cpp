@@ -24,7 +24,9 @@ void write_print(const Options& options, const io::SparseVolume& dose, double th
     auto mesh = solid::isosurface(dose.grid(), read_slices, threshold);
     require_print(mesh.triangles.empty());
     tool::unstretch(mesh, dose.metadata);
-    return io::write_ply(options.print, mesh, {}, comments);
+    for (const std::string& ending : io::written_mesh_endings())
+      if (options.print.ends_with(ending)) return io::write_mesh(options.print, mesh, comments);
+    return io::write_ply(options.print, mesh, {}, comments);  // of another name, as of a device
   }
   auto print = solid::printed_points(dose.grid(), read_slices, threshold);
   require_print(print.points.points.empty());

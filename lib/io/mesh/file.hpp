@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mesh files: STL, OBJ, PLY, OFF and 3MF in; STL and PLY out.
+// Mesh files: STL, OBJ, PLY, OFF and 3MF in; STL, OBJ and PLY out.
 #pragma once
 
 #include <array>

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "io/mesh/file.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
@@ -63,6 +66,22 @@ void write_plain_stl(const std::string& path, const model::TriangleSoup& mesh, c
   write_stl(path, mesh);
 }
 
+void write_obj(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments) {
+  OutputFile file(path);
+  for (const std::string& comment : comments) file.write("# " + printable(comment) + "\n");
+  for (const auto& point : mesh.points) {
+    std::string line = "v";
+    for (const double x : point) line += " " + format_number(x, 9);
+    file.write(line + "\n");
+  }
+  for (const auto& triangle : mesh.triangles) {
+    std::string line = "f";
+    for (const int corner : triangle) line += " " + std::to_string(corner + 1);
+    file.write(line + "\n");
+  }
+  file.commit();
+}
+
 }  // namespace
 
 void require_all_read(std::uint64_t promised, std::uint64_t found) {
@@ -87,7 +106,7 @@ const std::vector<MeshFormat>& mesh_formats() {
   static const std::vector<MeshFormat> formats{
       {".3mf", "3MF", is_3mf, parse_3mf, nullptr},         {".ply", "PLY", is_ply, parse_ply, write_plain_ply},
       {".stl", "STL", is_stl, parse_stl, write_plain_stl}, {".off", "OFF", is_off, parse_off, nullptr},
-      {".obj", "OBJ", is_obj, parse_obj, nullptr},
+      {".obj", "OBJ", is_obj, parse_obj, write_obj},
   };
   return formats;
 }
