@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-score: scores a dose against its target.
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "grey_target.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "model/conditions.hpp"
 #include "printer.hpp"
 #include "score/score.hpp"
 #include "score_volumes.hpp"
+#include "solid/voxel/lost_walls.hpp"
+#include "solid/voxel/size_doubt.hpp"
 #include "vam-score/inputs.hpp"
 #include "vam-score/lit_fraction.hpp"
 #include "vam-score/options.hpp"
@@ -62,6 +68,23 @@ void require_files_for_outputs(const Options& options) {
   }
 }
 
+/// Of walls and gaps of the target that none of its voxels resolves, and which the figures pass over.
+void warn_of_lost(const Inputs& in, const std::string& file) {
+  constexpr int slab = 16;
+  const io::SparseVolume& target = in.target();
+  const model::Grid& grid = target.grid();
+  solid::LostFinder finder(grid);
+  std::vector<float> slices(grid.slice_size() * slab);
+  for (int k = 0; k < grid.nz; k += slab) {
+    const int count = std::min(slab, grid.nz - k);
+    target.read_slices(k, count, slices.data());
+    finder.add(count, slices.data());
+  }
+  const std::string doubt =
+      solid::gap_doubt(io::input_name(file), finder.finish().gaps, grid, tool::stretch_z(target.metadata));
+  if (!doubt.empty()) warn(doubt + "; they are not judged");
+}
+
 void require_met(const std::vector<model::Condition>& conditions,
                  const std::function<double(const std::string&)>& value) {
   const auto failures = model::unmet(conditions, value);
@@ -93,6 +116,7 @@ void run(const cli::App& app, Options& options) {
   require_files_for_outputs(options);
   const Inputs in = read(options);
   tool::warn_of_grey(in.target(), options.target.empty() ? options.input : options.target);
+  warn_of_lost(in, options.target.empty() ? options.input : options.target);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
   require_known(conditions, options);
   score::Score result = tool::score_volumes(in.dose(), in.target(), options.how);

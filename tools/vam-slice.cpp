@@ -48,7 +48,7 @@ void warn_of_size(const cli::App& app, const Options& options, const solid::Part
   const bool known = !part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit");
   const std::string doubt = solid::size_doubt(part, content, grid, options.placement.stretch_z, room, known);
   if (!doubt.empty()) warn(doubt);
-  const std::string gaps = solid::gap_doubt(part.subject, content, grid, options.placement.stretch_z);
+  const std::string gaps = solid::gap_doubt(part.subject, content.lost.gaps, grid, options.placement.stretch_z);
   if (!gaps.empty()) warn(gaps);
 }
 

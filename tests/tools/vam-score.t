@@ -22,6 +22,17 @@ is "the verdict counts part and surface voxels" "$(json perfect.json with_surfac
 quiet "surface voxels as figures of their own" vam-score --grid target part.vdb --surface --report all.json
 is "the verdict has the window of --surface" "$(json all.json pw)" "$(json perfect.json with_surface.pw)"
 
+# Two plates with a slit of half a voxel between them: no void voxel is in it.
+{
+  printf 'OFF\n16 24 0\n'
+  for up in 0 1.05; do box 4 4 1 | awk -v up="$up" 'NR > 2 && NF == 3 { print $1, $2, $3 + up }'; done
+  box 4 4 1 | awk 'NF == 4 { print; far = far $1 " " $2 + 8 " " $3 + 8 " " $4 + 8 "\n" } END { printf "%s", far }'
+} >plates.off
+vam-slice plates.off --voxel 0.1 --stretch-z 1 -o plates.vdb 2>sliced
+ok "a slit that no voxel resolves" sh -c 'vam-score --grid target plates.vdb 2>scored >table'
+is "is warned of as in vam-slice" "$(sed 's/^vam-score/vam-slice/; s/plates.vdb/plates.off/; s/; they are not judged//' scored)" "$(cat sliced)"
+is "with its width" "$(grep -c 'gaps of 0.05 mm are too narrow .*; they are not judged$' scored)" 1
+
 quiet "met conditions" vam-score --grid target part.vdb --require 'ver<=0.01, pw>=0'
 vam-score --grid target part.vdb --require 'pw>1.5,ver<=0' >table 2>why
 is "an unmet condition is status 1" $? 1

@@ -146,7 +146,7 @@ Filled filled(const solid::Part& part, double voxel_mm) {
 /// Of walls and gaps that no voxel of the printer resolves.
 void warn_of_lost(const std::string& subject, const Filled& fine, double stretch_z) {
   for (const std::string& doubt : {solid::wall_doubt(subject, fine.content, fine.volume.grid, stretch_z),
-                                   solid::gap_doubt(subject, fine.content, fine.volume.grid, stretch_z)})
+                                   solid::gap_doubt(subject, fine.content.lost.gaps, fine.volume.grid, stretch_z)})
     if (!doubt.empty()) warn(doubt);
 }
 

@@ -67,9 +67,7 @@ std::string wall_doubt(const std::string& subject, const FillSummary& content, c
          format_number(grid.voxel_mm * static_cast<double>(lost.most), 2) + " mm or thicker walls may help";
 }
 
-std::string gap_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
-                      double stretch_z) {
-  const LostGaps& lost = content.lost.gaps;
+std::string gap_doubt(const std::string& subject, const LostGaps& lost, const model::Grid& grid, double stretch_z) {
   if (lost.voxels < least_gap || lost.voxels < least_a_slice * (lost.end - lost.first) || lost.widest < least_width)
     return "";
   const double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);

@@ -30,7 +30,7 @@ namespace vam::solid {
                                      double stretch_z);
 
 /// The same of gaps, from the volume of a voxel, and a tenth of one a slice, on.
-[[nodiscard]] std::string gap_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
+[[nodiscard]] std::string gap_doubt(const std::string& subject, const LostGaps& lost, const model::Grid& grid,
                                     double stretch_z);
 
 }  // namespace vam::solid
