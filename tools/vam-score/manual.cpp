@@ -14,7 +14,9 @@ std::vector<std::string> description() {
       "/ mean_G. IoU = |print and part| / |print or part| at the threshold that maximises it.",
       "The last line is the verdict in words: whether the part will print (PW > 0), by what margin, from how many "
       "voxels, the figures with the voxels that the surface cuts included, and the duration of the print if the resin "
-      "is known. The exit status depends on --require only.",
+      "is known. The exit status depends on --require only. Gaps of the target of which no voxel is three quarters "
+      "free "
+      "have no void to judge, and cause a warning.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",
       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "
