@@ -45,6 +45,32 @@ vam-check two.exr >out 2>err
 is 'two stacks in a file are said' "$? $(cat err)" \
   '0 vam-check: warning: two.exr: holds 2 stacks, one behind the other, as a live capture does; tools that read one refuse it'
 
+# Of what follows each other on a stream each is judged by itself: what is sealed stays so beside what is not.
+python3 - <<'PY'
+data = open('part.vdb', 'rb').read()
+assert data.count(b'vam:seal') == 1 and data.count(b'vam:facts_seal') == 1
+open('own.vdb', 'wb').write(data.replace(b'vam:seal', b'was:seal').replace(b'vam:facts_seal', b'was:facts_seal'))
+PY
+vam-sinogram part.vdb >pipe.exr
+flip pipe.exr -2000 flipped.exr
+flip part.vdb -40 flipped.vdb
+for kind in vdb exr; do
+  sealed=part.vdb; [ $kind = vdb ] || sealed=pipe.exr
+  seal=$(vam-check $sealed | sed -n '1s/.*, sealed //p')
+  is "$kind: unsealed after sealed on a pipe" "$(cat $sealed own.$kind | vam-check - | sed -n 's/^stdin: .*, //p' | tr '\n' ' ')" \
+    "sealed $seal unsealed "
+  is "$kind: sealed after unsealed on a pipe" "$(cat own.$kind $sealed | vam-check - | sed -n 's/^stdin: .*, //p' | tr '\n' ' ')" \
+    "unsealed sealed $seal "
+  cat own.$kind $sealed >both.$kind
+  is "$kind: and in a file" "$(vam-check both.$kind 2>.log/err | sed -n 's/^both.*, //p' | tr '\n' ' ')" "unsealed sealed $seal "
+  for order in "own.$kind flipped.$kind" "flipped.$kind own.$kind"; do
+    fails 65 'stdin: .*(changed|damaged)' sh -c "cat $order | vam-check -"
+  done
+done
+cat own.exr sino.exr >both.exr
+seal=$(vam-check sino.exr | sed -n '1s/.*, sealed //p')
+is 'the chain of the later one' "$(vam-check both.exr 2>.log/err | grep -c "^  $seal  vam-sinogram .*  (both.exr)$")" 1
+
 # What follows the last image of an unsealed stack, through a pipe whose writer takes its time.
 for rest in 'printf junk' 'cat own.exr'; do
   fails 65 'stdin: (trailing data after|another stack follows) the last image' sh -c "{ cat own.exr; sleep 0.2; $rest; } | vam-resample -o x.exr"

@@ -65,11 +65,14 @@ void send_stack(StackParser& parser, Sender& out) {
   pass_facts(Put{out}, info);
   send_all(info.poses, out);
   send_all(parser.about(), out);
+  out.put(std::uint8_t{parser.seals().sealed()});
+  out.put(parser.seals().chained());
   out.flush();
   Image image;
   for (ImageInfo about; parser.next(image, about, true); out.flush()) {
     out.put(image.values.data(), image.values.size() * sizeof(float));
   }
+  out.put(parser.seals().chained());
 }
 
 void send_stacks(StackParser& parser, Sender& out) {
@@ -110,6 +113,8 @@ bool ForeignStacks::next_stack() {
     pass_facts(Get{in}, info_);
     info_.poses = receive_all<model::Pose>(in);
     about_ = receive_all<ImageInfo>(in);
+    sealed_ = in.get<std::uint8_t>() != 0;
+    seal_ = chained_seal(in.get_text());
   });
   done_ = 0;
   if (follows != Follows::stack) {
@@ -125,6 +130,7 @@ bool ForeignStacks::next(Image& image, ImageInfo& about) {
   image = Image(info_.width, info_.height);
   apart_.take([&](Receiver& in) { in.get(image.values.data(), image.values.size() * sizeof(float)); });
   about = about_[done_++];
+  if (done_ == about_.size()) apart_.take([&](Receiver& in) { seal_ = chained_seal(in.get_text()); });
   return true;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stack with seals is read in this process; any other, which some other program has made, in a child.
+// A stack with seals is read in this process; any other, which some other program has made, in a child, and so is all
+// that follows it.
 #include <optional>
 
 #include "base/error.hpp"
@@ -33,8 +34,12 @@ StackReader::StackReader(const std::string& path, bool several, bool to_end)
     : state_(std::make_unique<State>(path, several, to_end)) {}
 StackReader::~StackReader() = default;
 
-std::string StackReader::seal() const { return state_->foreign ? "" : chained_seal(state_->parser.seals().chained()); }
-bool StackReader::is_sealed() const { return !state_->foreign && state_->parser.seals().sealed(); }
+std::string StackReader::seal() const {
+  return state_->foreign ? state_->foreign->seal() : chained_seal(state_->parser.seals().chained());
+}
+bool StackReader::is_sealed() const {
+  return state_->foreign ? state_->foreign->is_sealed() : state_->parser.seals().sealed();
+}
 
 const StackInfo& StackReader::info() const { return state_->foreign ? state_->foreign->info() : state_->parser.info(); }
 const std::vector<ImageInfo>& StackReader::about() const {

@@ -129,6 +129,7 @@ class PassingArchive : public openvdb::io::Archive {
       : wanted_(wanted), out_(out), kept_(kept) {}
 
   void pass(std::istream& stream) {
+    first_ = nullptr;
     readHeader(stream);
     openvdb::io::StreamMetadata::Ptr facts = std::make_shared<openvdb::io::StreamMetadata>();
     openvdb::io::setStreamMetadataPtr(stream, facts, false);
@@ -201,7 +202,7 @@ class PassingArchive : public openvdb::io::Archive {
 
   const WantedGrids& wanted_;
   Sender& out_;
-  const PassingGrid* first_ = nullptr;
+  const PassingGrid* first_ = nullptr;  // of this archive; on one stream archives of several programs may follow
   bool found_ = false;
   std::vector<std::shared_ptr<void>>& kept_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to the EXR files: stacks of other programs, parsed in a child.
+// Private to the EXR files: stacks of other programs, and what follows them on a stream, parsed in a child.
 #pragma once
 
 #include <vector>
@@ -19,6 +19,9 @@ class ForeignStacks {
 
   [[nodiscard]] const model::StackInfo& info() const { return info_; }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const { return about_; }
+  /// As of StackReader: of a stack that follows one without seals.
+  [[nodiscard]] const std::string& seal() const { return seal_; }
+  [[nodiscard]] bool is_sealed() const { return sealed_; }
 
  private:
   Apart apart_;
@@ -26,6 +29,8 @@ class ForeignStacks {
   model::StackInfo info_;
   std::vector<model::ImageInfo> about_;
   std::size_t done_ = 0;
+  bool sealed_ = false;
+  std::string seal_;
 };
 
 }  // namespace vam::io::exr
