@@ -143,6 +143,15 @@ is 'the new one is kept, too' "$(kept edges)" 2
 vam-calibrate edges moved --pitch 4 --width 2 --accept 2>errors
 is 'accepted' "$? $(grep -c 'warning.*moved' errors)" '0 1'
 near 'it is in force' "$(value cal/current-edges.json axis_column)" 251.3 0.1
+
+# A record that is gone, whose link dangles, is an error, but for the scan that makes it anew.
+rm -f "cal/$(readlink cal/current-axis.json)" "cal/$(readlink cal/current-edges.json)"
+fails 66 'current-axis.json: links to a record that is gone; restore it, or run vam-calibrate axis' vam-calibrate edges moved --pitch 4 --width 2
+quiet 'the axis is measured anew' vam-calibrate axis turn --view-step 10
+vam-calibrate edges moved --pitch 4 --width 2 2>errors
+is 'and the edges, with a warning' "$? $(grep -c 'warning.*not compared with the former record: .*current-edges.json: links to a record that is gone' errors)" '0 1'
+ok 'both are in force' vam-project --print-printer -o healed.toml
+
 echo malformed >cal/current-beam.json
 fails 65 'is not a vam-calibration/1 record' vam-project --print-printer
 fails 73 'cannot make the folder' vam-calibrate axis turn --view-step 10 --set calibration.folder=printer.toml/cal

@@ -2,6 +2,7 @@
 // vam-calibrate edges: where the vial stands, from a sweep of lines through fluorescing resin.
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,12 @@ constexpr double allowed_radius_change = 0.005;
 // What differs from the record before, where both speak of the same vial.
 void compare_edges(const ScanOptions& options, const model::Calibration& calibration, const metrology::VialEdges& edges,
                    Finding& finding) {
-  const auto before = io::current_record(calibration, "edges");
+  std::optional<io::CalibrationRecord> before;
+  try {
+    before = io::current_record(calibration, "edges");
+  } catch (const Error& error) {  // its remedy is this scan
+    finding.warn_because("not compared with the former record: " + std::string(error.what()));
+  }
   if (!before || before->json->value("vial", "") != calibration.vial) return;
   const double shift_px = edges.axis_column.value - before->value("axis_column");
   const double change = edges.radius_mm.value / before->value("radius") - 1;

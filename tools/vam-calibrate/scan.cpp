@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -22,6 +23,15 @@ const std::map<std::string, Scan>& scans() {
   return all;
 }
 
+// For a scan of another kind: one that is to be replaced may be damaged or gone.
+std::optional<io::CalibrationRecord> usable_record(const model::Calibration& calibration, const std::string& scan,
+                                                   const std::string& command) {
+  if (scan == command) return std::nullopt;
+  auto record = io::current_record(calibration, scan);
+  if (record && !io::objection(*record, calibration, utc_seconds()).empty()) record.reset();
+  return record;
+}
+
 }  // namespace
 
 void run_scan(const cli::App& app, const ScanOptions& options) {
@@ -29,14 +39,12 @@ void run_scan(const cli::App& app, const ScanOptions& options) {
   model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
   if (command == "check") return check_records(options, printer);
   // The axis in the camera's image, as measured before.
-  const auto axis_record = io::current_record(printer.calibration, "axis");
-  if (axis_record && command != "axis" && io::objection(*axis_record, printer.calibration, utc_seconds()).empty()) {
-    printer.camera.axis_column = axis_record->value("axis_column");
+  if (const auto axis = usable_record(printer.calibration, "axis", command)) {
+    printer.camera.axis_column = axis->value("axis_column");
   }
   // A latency measured before decides which pattern frame a camera frame shows.
-  const auto known = io::current_record(printer.calibration, "latency");
-  if (known && command != "latency" && io::objection(*known, printer.calibration, utc_seconds()).empty()) {
-    printer.projector.latency_ms = known->value("latency");
+  if (const auto latency = usable_record(printer.calibration, "latency", command)) {
+    printer.projector.latency_ms = latency->value("latency");
   }
   Finding finding = scans().at(command)(options, printer);
   finding.facts["settings"]["exposure_us"] = printer.camera.exposure_us;

@@ -246,10 +246,29 @@ CalibrationRecord read_record(const std::string& path) {
   return record;
 }
 
+namespace {
+
+// The settings of a record that is gone must not fall back to those of the file in silence.
+void require_reachable(const model::Calibration& calibration, const std::string& scan) {
+  const std::string path = current_path(calibration, scan);
+  struct stat about = {};
+  if (stat(path.c_str(), &about) == 0) return;
+  const int problem = errno;
+  if ((problem == ENOENT || problem == ENOTDIR) && lstat(path.c_str(), &about) != 0) return;
+  throw Error{Fault::no_input, path + ": " +
+                                   (problem == ENOENT ? "links to a record that is gone"
+                                                      : "cannot open: " + std::generic_category().message(problem)) +
+                                   "; restore it, or run vam-calibrate " + scan};
+}
+
+}  // namespace
+
 std::optional<CalibrationRecord> current_record(const model::Calibration& calibration, const std::string& scan) {
   const std::string path = current_path(calibration, scan);
+  if (calibration.folder.empty()) return std::nullopt;
+  require_reachable(calibration, scan);
   std::error_code ignored;
-  if (calibration.folder.empty() || !fs::exists(path, ignored)) return std::nullopt;
+  if (!fs::exists(path, ignored)) return std::nullopt;
   require_file(path);
   CalibrationRecord record = read_record(path);
   if (const std::string made = (*record.json)["scan"]; made != scan) {
@@ -298,18 +317,6 @@ void apply_record(model::Printer& printer, const CalibrationRecord& record) {
   require_possible(printer, record);
 }
 
-void require_reachable(const model::Calibration& calibration, const std::string& scan) {
-  const std::string path = current_path(calibration, scan);
-  struct stat about = {};
-  if (stat(path.c_str(), &about) == 0) return;
-  const int problem = errno;
-  if (problem == ENOENT && lstat(path.c_str(), &about) != 0) return;
-  throw Error{Fault::no_input, path + ": " +
-                                   (problem == ENOENT ? "links to a record that is gone"
-                                                      : "cannot open: " + std::generic_category().message(problem)) +
-                                   "; restore it, or run vam-calibrate " + scan};
-}
-
 namespace {
 
 void require_folder(const model::Calibration& calibration) {
@@ -326,7 +333,6 @@ void apply_records(model::Printer& printer, const model::Calibration& calibratio
   require_folder(calibration);
   for (const std::string& scan : calibration_scans()) {
     if (calibration.folder.empty()) break;
-    require_reachable(calibration, scan);
     const auto record = current_record(calibration, scan);
     if (!record) continue;
     if (const std::string why = objection(*record, calibration, utc_s); !why.empty()) {

@@ -40,13 +40,9 @@ struct CalibrationRecord {
 [[nodiscard]] CalibrationRecord read_record(const std::string& path);
 
 /// The current record of a scan, unjudged; nothing when there is none. Throws Fault::data for a damaged one, and for
-/// one that its seal is not of.
+/// one that its seal is not of, Fault::no_input where its link leads nowhere.
 [[nodiscard]] std::optional<CalibrationRecord> current_record(const model::Calibration& calibration,
                                                               const std::string& scan);
-
-/// The settings of a record that is gone must not fall back to those of the file in silence. Throws Fault::no_input
-/// where the link of that scan leads nowhere.
-void require_reachable(const model::Calibration& calibration, const std::string& scan);
 
 /// Why the record must not be used now by this instrument: "is 31 h old, 7 h past its validity; run vam-calibrate";
 /// empty when it may be.

@@ -28,7 +28,7 @@ struct WobbleRecord {
 [[nodiscard]] WobbleRecord read_wobble(const std::string& path, const model::Printer& printer, int direction);
 
 /// The radius of the wobble in the edges record in force, in mm, where it is more than three standard deviations; else
-/// nothing. Throws Fault::data for a damaged record.
+/// nothing. Throws what current_record() throws.
 [[nodiscard]] std::optional<double> wobble_in_force_mm(const model::Calibration& calibration);
 
 }  // namespace vam::io

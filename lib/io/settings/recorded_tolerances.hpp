@@ -10,8 +10,8 @@ namespace vam::io {
 /// Twice the standard deviation of what the current records of printer.calibration measured, which 95 % of such
 /// measurements are within: axis and radius (edges), angle (latency, times the stage's speed), psf (the width at the
 /// axis of beam). 0: not recorded; no scan measures the index or the lamp. Throws Fault::usage without
-/// calibration.folder, Fault::data for a record that current_record() refuses or that lacks a value, and when there is
-/// none of the three.
+/// calibration.folder, Fault::data for a record that lacks a value, and when there is none of the three, what
+/// current_record() throws.
 [[nodiscard]] model::Tolerances recorded_tolerances(const model::Printer& printer);
 
 }  // namespace vam::io

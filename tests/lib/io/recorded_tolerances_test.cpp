@@ -10,6 +10,7 @@
 #include "base/json.hpp"
 #include "fault_of.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "io/settings/pose_file.hpp"
 #include "scratch.hpp"
 
 using namespace vam;
@@ -58,4 +59,34 @@ TEST_CASE("without records there are no tolerances, and an incomplete record is 
   CHECK(fault_of([&] { (void)recorded_tolerances(printer); }) == Fault::data);
   write(printer, "edges", {{"axis_column", measured(510, 0.05)}, {"radius", {{"value", 12}}}});
   CHECK(fault_of([&] { (void)recorded_tolerances(printer); }) == Fault::data);
+}
+
+TEST_CASE("tolerances of a record that is gone, whose link dangles, are an error") {
+  for (const std::string gone : {"edges", "latency", "beam"}) {
+    const scratch::Folder folder;
+    model::Printer printer;
+    printer.calibration.folder = folder / "records";
+    write(printer, "edges", {{"axis_column", measured(510, 0.05)}, {"radius", measured(12, 0.006)}});
+    write(printer, "latency", {{"latency", measured(40, 1.5)}});
+    write(printer, "beam", {{"axis_fwhm", measured(0.2, 0.01)}});
+    (void)recorded_tolerances(printer);
+    const auto link = std::filesystem::path(printer.calibration.folder) / ("current-" + gone + ".json");
+    std::filesystem::remove(std::filesystem::canonical(link));
+    CHECK(fault_of([&] { (void)recorded_tolerances(printer); }) == Fault::no_input);
+    std::filesystem::remove(link);
+    (void)recorded_tolerances(printer);
+  }
+}
+
+TEST_CASE("the wobble of a record that is gone is an error, that of none nothing") {
+  const scratch::Folder folder;
+  model::Printer printer;
+  CHECK_FALSE(wobble_in_force_mm(printer.calibration));
+  printer.calibration.folder = folder / "records";
+  CHECK_FALSE(wobble_in_force_mm(printer.calibration));
+  write(printer, "edges", {{"wobble_mm", measured(0.5, 0.01)}});
+  CHECK(wobble_in_force_mm(printer.calibration) == 0.5);
+  const auto link = std::filesystem::path(printer.calibration.folder) / "current-edges.json";
+  std::filesystem::remove(std::filesystem::canonical(link));
+  CHECK(fault_of([&] { (void)wobble_in_force_mm(printer.calibration); }) == Fault::no_input);
 }
