@@ -7,17 +7,16 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
-#include "base/error.hpp"
+#include "base/system_error.hpp"
 
 namespace vam {
 
 namespace {
 
 [[noreturn]] void fail(Fault fault, const std::string& folder, const std::string& what, int problem) {
-  throw Error{fault, folder + ": " + what + " a scratch file for what does not fit into memory: " +
-                         std::strerror(problem) + "; set TMPDIR to a folder on a disk with room"};
+  throw system_error(fault, folder + ": " + what + " a scratch file for what does not fit into memory", problem,
+                     "set TMPDIR to a folder on a disk with room");
 }
 
 // Where the file system knows no files without a name, one is created and removed at once.

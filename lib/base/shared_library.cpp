@@ -3,7 +3,11 @@
 
 #include <dlfcn.h>
 
+#include <cerrno>
+#include <cstring>
+
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 
 namespace vam {
 
@@ -16,6 +20,10 @@ SharedLibrary::SharedLibrary(const std::string& purpose, const std::string& name
       if (why.find(refused) == std::string::npos) continue;
       throw Error{Fault::memory, purpose_ + ": no memory is left to load " + name_ +
                                      "; allow more (ulimit -v), or close other programs"};
+    }
+    for (const int lack : {EMFILE, ENFILE}) {
+      if (why.find(std::strerror(lack)) == std::string::npos) continue;
+      throw system_error(Fault::memory, purpose_ + ": " + name_ + " cannot be loaded", lack);
     }
     throw Error{Fault::absent, purpose_ + ": " + name_ + " cannot be loaded; install the package " + package};
   }

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <set>
@@ -20,6 +21,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/printable.hpp"
+#include "base/system_error.hpp"
 #include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/private/app_state.hpp"
@@ -235,6 +237,10 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
   } catch (const Error& error) {
     line = error.what();
     fault = error.fault;
+  } catch (const std::filesystem::filesystem_error& problem) {  // of a name that cannot be looked up
+    const Error refused = system_error(Fault::no_input, problem.path1().string(), problem.code().value());
+    line = refused.what();
+    fault = refused.fault;
   } catch (const OutOfMemory& refused) {
     line = refused.what();
     fault = Fault::memory;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/private/cairo_library.hpp"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <system_error>
@@ -14,10 +16,26 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/shared_library.hpp"
+#include "base/system_error.hpp"
 
 namespace vam::plot {
 
 namespace {
+
+// Fontconfig reads files that name each other, and takes other fonts where it cannot open one.
+void require_files() {
+  constexpr std::size_t enough = 4;
+  std::array<int, enough> spare{};
+  int problem = 0;
+  for (int& one : spare) {
+    one = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (one < 0 && errno == EMFILE) problem = errno;
+  }
+  for (const int one : spare) {
+    if (one >= 0) close(one);
+  }
+  if (problem != 0) throw system_error(Fault::memory, "figure: needs 4 files open at a time", problem);
+}
 
 // Pango starts a thread, and GLib below it ends the process where this or memory is refused.
 void require_room() {
@@ -47,6 +65,7 @@ void end_in_one_line(const char* domain, GLogLevelFlags level, const char* messa
 CairoApi load() {
   const SharedLibrary library("figure", "libpangocairo-1.0.so.0", "libpangocairo-1.0-0");
   require_room();
+  require_files();
   CairoApi found{};
 #define VAM_FIND(name) library.find(found.name, #name);
   VAM_CAIRO_FUNCTIONS(VAM_FIND)

@@ -73,6 +73,54 @@ if ! sanitized; then
   is 'a dose in 72 to 100 MiB of addresses is computed or refused in one line' $odd 0
   rm -f bounded* small.toml light.exr
 fi
+# Few open files: all of it or one line with the remedy, and figures are the same.
+if ! sanitized; then
+  tiny_print few.exr
+  vam-sinogram part.vdb --angles 8 -o few-sino.exr
+  vam-view few-sino.exr -o few.png && mv few.png few-want.png
+  vam-project few.exr --printer printer.toml -o few.mkv 2>.log/err
+  refusals=0
+  for files in 4 5 6 7 8 16; do
+    while read -r command; do
+      prlimit --nofile=$files timeout 60 $command >.log/out 2>.log/err </dev/null; status=$?
+      case "$status $(grep -vc warning: .log/err)" in
+        '0 0') ;;
+        '71 1') refusals=$((refusals + 1))
+          grep -v warning: .log/err | grep -Eq '^vam-[a-z]*: .*: Too many open files; raise the limit \(ulimit -n\)$' && continue
+          odd=$((odd + 1)); echo "# $files: $command"; sed 's/^/# /' .log/err ;;
+        *) odd=$((odd + 1)); echo "# $files: $command: $status"; sed 's/^/# /' .log/err ;;
+      esac
+    done <<'EOF'
+vam-slice box.off --voxel 0.2 -o few.vdb
+vam-sinogram part.vdb --angles 8 -o few-new.exr
+vam-resample few-sino.exr -o few-new.exr
+vam-optimize part.vdb --geometry parallel --method fbp --angles 8 -o few-new.exr
+vam-dose few-sino.exr --like part.vdb -o few.vdb
+vam-score part.vdb --grid target --target part.vdb
+vam-curethrough model part.vdb -o few-new.exr
+vam-view few-sino.exr -o few.png
+vam-convert part.vdb -o few.npy
+vam-convert few.mkv --geometry parallel --pixel 1 -o few-new.exr
+vam-project few.exr --printer printer.toml -o few-frames/
+vam-check part.vdb few-sino.exr printer.toml few.mkv
+vam-sdf box.off part.vdb --isovalue 0.5 -o few.ply
+vam-stack few-sino.exr -o few-new.exr
+vam-plan box.off
+vam-report part.vdb few-sino.exr -o few.html
+vam-capture --printer printer.toml --set camera.device=sim: --frames 2 -o few-captured
+vam-stage status --set stage.device=sim:
+EOF
+  done
+  is 'with 4 to 16 open files a tool is done, or refused in one line' $odd 0
+  holds 'most are refused at 4' "$refusals >= 15"
+  # Fonts are files, too.
+  drawn=0
+  for files in 5 6 7 8; do
+    prlimit --nofile=$files vam-view few-sino.exr -o few.png 2>.log/err && { cmp -s few-want.png few.png && drawn=$((drawn + 1)) || drawn=-9; }
+  done
+  holds 'a figure that is drawn is the same' "$drawn > 0"
+  rm -rf few* printer.toml
+fi
 fails 64 '2 inputs are standard input' vam-score - --target -
 fails 64 '2 inputs are standard input' vam-view - --target - -o x.png
 fails 64 '2 inputs are standard input' vam-optimize - --weights - -o x.exr

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/system_error.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 
@@ -45,7 +46,7 @@ EventLog::EventLog(const std::string& path) : path_(path) {
   } else {
     fd_ = opened(0);
   }
-  if (fd_ < 0) throw Error{Fault::no_output, path + ": cannot be written (" + std::strerror(errno) + ")"};
+  if (fd_ < 0) throw system_error(Fault::no_output, path + ": cannot be written", errno);
 }
 
 EventLog::~EventLog() {

@@ -15,6 +15,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 
 namespace vam::device {
 
@@ -63,8 +64,8 @@ DeviceLock::DeviceLock(const std::string& name) {
     if (fd_ >= 0) fchmod(fd_, 0666);  // past the umask: the next user may be another one
   }
   if (fd_ < 0) {
-    throw Error{Fault::no_output, path + ": cannot lock the device (" + std::strerror(errno) +
-                                      "); set VAM_LOCK_DIR to a folder writable by all users"};
+    throw system_error(Fault::no_output, path + ": cannot lock the device", errno,
+                       "set VAM_LOCK_DIR to a folder writable by all users");
   }
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
     const std::string pid = holder(fd_);

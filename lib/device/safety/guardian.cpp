@@ -14,6 +14,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/system_error.hpp"
 #include "device/safety/private/guardian_child.hpp"
 
 namespace vam::device {
@@ -21,11 +22,12 @@ namespace vam::device {
 Guardian::Guardian(double stall_s) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw Error{Fault::bug, std::string("guardian: no socket (") + std::strerror(errno) + ")"};
+    throw system_error(Fault::bug, "guardian: no socket", errno);
   }
   const pid_t parent = getpid();
   child_ = fork();
-  if (child_ < 0) throw Error{Fault::memory, std::string("guardian: cannot fork (") + std::strerror(errno) + ")"};
+  if (child_ < 0)
+    throw system_error(Fault::memory, "guardian: cannot fork", errno, "raise the limit on processes (ulimit -u)");
   if (child_ == 0) {
     close(ends[0]);
     guard(ends[1], parent, stall_s);  // never returns

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 #include "base/text.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 
@@ -52,7 +53,7 @@ class FollowedAngle final : public AngleSource {
  public:
   FollowedAngle(const std::string& path, Clock& clock, double last_deg) : clock_(clock), last_deg_(last_deg) {
     fd_ = path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (fd_ < 0) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(errno)};
+    if (fd_ < 0) throw system_error(Fault::no_input, path + ": cannot open", errno);
   }
   ~FollowedAngle() override { close(fd_); }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 #include "io/image/image_file.hpp"
 
 namespace vam::io {
@@ -73,7 +74,7 @@ ImageFolder::ImageFolder(const std::string& folder, bool gaps) {
   for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
     if (is_image_file(entry->path())) images.push_back({number_of(entry->path()), entry->path()});
   }
-  if (problem) throw Error{Fault::no_input, folder + ": cannot read the folder: " + problem.message()};
+  if (problem) throw system_error(Fault::no_input, folder + ": cannot read the folder", problem.value());
   if (images.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF image in the folder"};
   std::sort(images.begin(), images.end(), [](const Numbered& a, const Numbered& b) {
     return a.number != b.number ? a.number < b.number : a.path < b.path;

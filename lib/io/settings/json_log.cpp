@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 
 namespace vam::io {
 
@@ -16,7 +17,7 @@ JsonLog open_log(const std::string& path) {
   if (path.empty()) return nullptr;
   if (path == "-") return JsonLog(stderr);
   JsonLog log(std::fopen(path.c_str(), "ae"));
-  if (!log) throw Error{Fault::no_output, path + ": cannot append (" + std::strerror(errno) + ")"};
+  if (!log) throw system_error(Fault::no_output, path + ": cannot append", errno);
   return log;
 }
 

@@ -14,6 +14,7 @@
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "base/printer_path.hpp"
+#include "base/system_error.hpp"
 #include "base/text.hpp"
 #include "base/utc.hpp"
 #include "io/settings/calibration_record.hpp"
@@ -223,7 +224,7 @@ std::string slurp(const std::string& file) {
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(stream.gcount());
   if (!stream.is_open() || stream.bad()) {
-    throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
+    throw system_error(Fault::no_input, file + ": cannot open", errno);
   }
   if (text.size() > most_bytes) throw Error{Fault::data, file + ": is longer than 256 KiB; it is not a printer file"};
   return text;

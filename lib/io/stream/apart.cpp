@@ -17,6 +17,7 @@
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/system_error.hpp"
 #include "io/stream/private/confine.hpp"
 #include "io/stream/private/slots.hpp"
 
@@ -148,8 +149,8 @@ struct Apart::State {
       run_child(slots, bounds, source, parse, parent);
     }
     if (child.process < 0) {
-      throw Error{Fault::memory, source.name + ": cannot start the process that parses it (" + std::strerror(errno) +
-                                     "); raise the limit on processes (ulimit -u)"};
+      throw system_error(Fault::memory, source.name + ": cannot start the process that parses it", errno,
+                         "raise the limit on processes (ulimit -u)");
     }
   }
 

@@ -8,11 +8,11 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/signature.hpp"
 
@@ -58,7 +58,7 @@ std::string file_head(const std::string& path) {
     throw Error{Fault::no_input, path + ": is not a regular file; give it on standard input"};
   }
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(errno)};
+  if (!stream) throw system_error(Fault::no_input, path + ": cannot open", errno);
   std::string head(look, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(look));
   head.resize(stream.gcount());

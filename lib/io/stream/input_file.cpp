@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/sha256.hpp"
+#include "base/system_error.hpp"
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
@@ -38,7 +39,7 @@ InputFile::InputFile(const std::string& path, Content content) : name_(input_nam
   if (descriptor_ < 0 || fstat(descriptor_, &about) != 0) {
     const int problem = errno;
     if (descriptor_ > STDIN_FILENO) close(descriptor_);
-    throw Error{Fault::no_input, name_ + ": cannot open: " + std::strerror(problem)};
+    throw system_error(Fault::no_input, name_ + ": cannot open", problem);
   }
   const bool terminal = isatty(descriptor_) == 1;
   if (S_ISDIR(about.st_mode) || never_ends(about) || (terminal && content == Content::binary)) {
@@ -102,7 +103,7 @@ std::string read_all(const std::string& path, Content content, std::uint64_t lim
   InputFile file(path, content);
   std::string bytes;
   for (auto ready = file.peek(); !ready.empty(); ready = file.peek()) {
-    if (bytes.size() + ready.size() > limit) {
+    if (std::max<std::uint64_t>(bytes.size() + ready.size(), file.size()) > limit) {
       throw Error{Fault::data, file.name() + ": longer than the limit of " +
                                    format_number(static_cast<double>(limit) / (1 << 20)) + " MiB"};
     }

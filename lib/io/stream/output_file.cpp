@@ -8,10 +8,10 @@
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
-#include <cstring>
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/system_error.hpp"
 #include "io/stream/private/temporary.hpp"
 #include "io/stream/stream.hpp"
 
@@ -24,7 +24,7 @@ constexpr std::size_t buffer_bytes = std::size_t{1}
 constexpr int pipe_bytes = 1 << 20;
 
 [[noreturn]] void fail(Fault fault, const std::string& name, const std::string& what, int problem) {
-  throw Error{fault, name + ": " + what + ": " + std::strerror(problem)};
+  throw system_error(fault, name + ": " + what, problem);
 }
 
 // Links are followed, so that the file is replaced and not the link that names it. An absent file keeps its path.

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 #include "io/stream/private/temporary.hpp"
 
 namespace vam::io {
@@ -34,8 +35,7 @@ OutputFolder::OutputFolder(const std::string& path, bool (*like_these)(const fs:
     : target_(fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path()) {
   check_replaceable(target_, like_these);
   if (create_temporary_folder(target_.string(), temporary_, slot_) != 0) {
-    throw Error{Fault::no_output,
-                target_.string() + ": cannot create the folder: " + std::generic_category().message(errno)};
+    throw system_error(Fault::no_output, target_.string() + ": cannot create the folder", errno);
   }
 }
 
@@ -53,6 +53,7 @@ void OutputFolder::forget() {
 
 void OutputFolder::write(const std::string& name, std::string_view bytes) const {
   std::ofstream file(fs::path(temporary_) / name, std::ios::binary);
+  if (!file) throw system_error(Fault::no_output, (target_ / name).string() + ": cannot create", errno);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   if (!file) throw Error{Fault::io, (target_ / name).string() + ": cannot write; check the free space on the disk"};
@@ -61,8 +62,9 @@ void OutputFolder::write(const std::string& name, std::string_view bytes) const 
 // One call for the whole folder, in place of an fsync for each of a thousand files.
 void OutputFolder::synchronize() const {
   const int folder = ::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool done = folder >= 0 && syncfs(folder) == 0;
-  if (folder >= 0) ::close(folder);
+  if (folder < 0) throw system_error(Fault::io, target_.string() + ": cannot finish", errno);
+  const bool done = syncfs(folder) == 0;
+  ::close(folder);
   if (!done)
     throw Error{Fault::io, target_.string() + ": not all files were written; check the free space on the disk"};
 }

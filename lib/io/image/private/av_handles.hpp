@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/system_error.hpp"
 #include "io/image/private/av_library.hpp"
 
 namespace vam::io::av {
@@ -22,6 +23,8 @@ using Packet = std::unique_ptr<AVPacket, Free>;
 /// The status itself, unless it is negative: then an Error "<name>: <what> failed: <libav's words>".
 inline int check(int status, Fault fault, const std::string& name, const char* what) {
   if (status >= 0) return status;
+  if (status == AVERROR(EMFILE) || status == AVERROR(ENFILE))
+    throw system_error(fault, name + ": " + what, AVUNERROR(status));
   char words[AV_ERROR_MAX_STRING_SIZE];
   api().av_strerror(status, static_cast<char*>(words), sizeof words);
   throw Error{fault, name + ": " + what + " failed: " + static_cast<char*>(words)};
