@@ -14,7 +14,9 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "device/os/interrupt.hpp"
+#include "io/exr/stack.hpp"
 #include "io/settings/flip_log.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-status/light_view.hpp"
 #include "vam-status/page.hpp"
@@ -81,6 +83,8 @@ void declare(cli::App& app, Options& o) {
 std::optional<status_tool::LightView> light_of(const Options& o, const status_tool::RunFolder& run) {
   const std::string file = o.sinogram.empty() ? run.file("sinogram.exr") : o.sinogram;
   try {
+    if (!io::has_regular_file(file)) throw Error{Fault::no_input, file + ": cannot open: no such file"};
+    (void)io::StackReader(file);  // before all of what may be another file is read for its hash
     io::require_sinogram_of(o.run, file);
     return status_tool::LightView(file, run.printer());
   } catch (const Error& error) {
@@ -94,6 +98,7 @@ void run(const Options& o) {
   if (o.with_parent) device::end_with_parent();
   status_tool::RunFolder run(o.run);
   const std::string name = std::filesystem::weakly_canonical(o.run).filename().string();
+  run.read();  // what is wrong with its logs comes first
   const auto light = o.page.empty() ? std::nullopt : light_of(o, run);
   const bool in_place = o.watch && isatty(STDOUT_FILENO) == 1;
   for (bool more = true; more;) {

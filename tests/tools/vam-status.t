@@ -90,6 +90,30 @@ is 'cut anywhere: one line, status 0' $bad 0
 without events flips angles
 ok 'a page of empty logs' vam-status part --page bare.html
 
+# What is no file in the place of one, a link that leads nowhere, and a file beyond all sizes: one line, and no waiting.
+odd=0
+for name in events.jsonl flips.jsonl angles.jsonl stage.jsonl capture.jsonl ost.jsonl printer.toml calibration.json; do
+  for what in 65:mkfifo 65:mkdir 66:'ln -s gone' 65:'ln -s /dev/zero' '(0|65):truncate -s 20G'; do
+    without; rm -f part/$name; ${what#*:} part/$name
+    timeout 2 vam-status part >.log/out 2>.log/err; status=$?
+    echo $status | grep -Eqx "${what%%:*}" && [ "$(wc -l <.log/err)" = $((status > 0)) ] && continue
+    odd=$((odd + 1)); echo "# $what $name: $status"; sed 's/^/# /' .log/err
+  done
+done
+is 'links, pipes, folders and endless files for logs end at once' $odd 0
+for name in sinogram.exr views/manifest.jsonl renewed.jsonl renewed/sensitivity.vdb camera.png; do
+  for what in mkfifo 'truncate -s 20G'; do
+    without; rm -rf part/views; mkdir -p part/views part/renewed; rm -f part/$name; $what part/$name
+    timeout 4 vam-status part --page odd.html >.log/out 2>.log/err; status=$?
+    case "$status $(wc -l <.log/err)" in '0 0' | '0 1' | '65 1') continue ;; esac
+    odd=$((odd + 1)); echo "# $what $name: $status"; sed 's/^/# /' .log/err
+  done
+done
+is 'and so they do for what a page shows' $odd 0
+without; echo '{"event":{},"from_turn":"x","turns":1e300}' >part/renewed.jsonl
+ok 'a log of other types' vam-status part --page odd.html
+rm -rf part
+
 # Names of folder, records and outcome are escaped.
 hostile='<img src=x onerror=document.title=1>&amp;"'
 mv half "$hostile"

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "facts.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/vdb/vdb.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
@@ -44,9 +43,9 @@ plot::ImageFigure section_of(const io::SparseVolume& volume) {
 }
 
 Json last_line(const std::string& path) {
-  std::ifstream log(path);
+  io::LogLines log(path);
   Json last;
-  for (std::string text; std::getline(log, text);) {
+  for (std::string text; log.next(text);) {
     Json line = parse_json(text);
     if (line.is_object()) last = std::move(line);
   }
@@ -58,16 +57,16 @@ Json last_line(const std::string& path) {
 std::string correction_text(const RunFolder& run) {
   const Json line = last_line(run.file("renewed.jsonl"));
   if (!line.is_object()) return "";
-  if (line.value("event", "") == "hold") return "as before: " + line.value("reason", "");
-  return "from turn " + std::to_string(line.value("from_turn", 0)) + " on, for " +
-         std::to_string(line.value("turns", 0)) + (line.value("turns", 0) == 1 ? " turn" : " turns") +
-         ": sensitivity " + format_number(line.value("sensitivity", 0.0), 3);
+  if (text_at(line, "event") == "hold") return "as before: " + text_at(line, "reason");
+  const double turns = number_at(line, "turns");
+  return "from turn " + format_number(number_at(line, "from_turn")) + " on, for " + format_number(turns) +
+         (turns == 1 ? " turn" : " turns") + ": sensitivity " + format_number(number_at(line, "sensitivity"), 3);
 }
 
 std::string sensitivity_figure(const RunFolder& run) {
   const std::string path = run.file("renewed/sensitivity.vdb");
-  if (!std::filesystem::exists(path)) return "";
   try {
+    if (!io::has_regular_file(path)) return "";
     const plot::ImageFigure figure = section_of(io::read_volume(path, "sensitivity"));
     return plot::page_figure(
         "Sensitivity of the resin", plot::page_image(plot::draw(figure).image(), "section"),

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 
 #include "base/error.hpp"
@@ -19,6 +18,7 @@
 #include "base/printable.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::status_tool {
@@ -31,18 +31,10 @@ constexpr double silence_s = 5;               // longer than any pause of a stag
 constexpr double loading_s = 600;             // and than it takes to load frames and to find a reference
 constexpr std::streamoff tail_bytes = 65536;  // holds many entries
 
-// The whole lines at the end of a log, or of all of it. A log that is not there has none.
+// The whole lines at the end of a log, or of all of it.
 void each_line(const std::string& file, bool only_tail, const std::function<void(const Json&)>& take) {
-  std::ifstream stream(file);
-  std::string text;
-  if (only_tail && stream.seekg(0, std::ios::end) && stream.tellg() > tail_bytes) {
-    stream.seekg(-tail_bytes, std::ios::end);
-    std::getline(stream, text);  // begins somewhere within
-  } else {
-    stream.clear();
-    stream.seekg(0);
-  }
-  while (std::getline(stream, text) && !stream.eof()) {
+  io::LogLines lines(file, only_tail ? tail_bytes : 0);
+  for (std::string text; lines.next(text);) {
     const Json line = parse_json(text);
     if (line.is_object()) take(line);
   }
@@ -59,23 +51,25 @@ bool is_locked(const std::string& file) {
 
 // vam-print writes these before it is armed; a printer file with more beside it is a user's own.
 bool about_to_be_armed(const RunFolder& run) {
-  if (fs::exists(run.file("calibration.json"))) return true;
+  if (io::has_regular_file(run.file("calibration.json"))) return true;
   const std::string settings = run.file("printer.toml");
-  return fs::exists(settings) && io::require_text_seal(io::read_all(settings), settings);
+  return io::has_regular_file(settings) && io::require_text_seal(io::read_all(settings), settings);
 }
 
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path) : path_(path) {
-  if (!fs::is_directory(path)) throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
-  if (!fs::exists(file("events.jsonl")) && !about_to_be_armed(*this)) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored))
+    throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
+  if (!io::has_regular_file(file("events.jsonl")) && !about_to_be_armed(*this)) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
   load_settings();
 }
 
 void RunFolder::load_settings() {
-  if (settled_ || !fs::exists(file("printer.toml"))) return;
+  if (settled_ || !io::has_regular_file(file("printer.toml"))) return;
   printer_ = io::load_printer(file("printer.toml"), {}, io::Records::ignore);
   settled_ = true;
 }
@@ -102,7 +96,7 @@ void RunFolder::read() {
 
 void RunFolder::read_events() {
   progress_.silent_s = 1e9;
-  const bool armed = fs::exists(file("events.jsonl"));  // before, there are only the settings
+  const bool armed = io::has_regular_file(file("events.jsonl"));  // before, there are only the settings
   for (const char* name : {armed ? "events.jsonl" : "printer.toml", armed ? "angles.jsonl" : "calibration.json"}) {
     std::error_code problem;
     const auto written = fs::last_write_time(file(name), problem);
@@ -123,9 +117,9 @@ void RunFolder::read_events() {
   progress_.simulated.clear();
   const auto look = [&](const char* log, const char* event, const char* what) {
     bool simulated = false;
-    std::ifstream stream(file(log));
+    io::LogLines lines(file(log));
     std::string text;
-    for (int first = 0; first < 8 && std::getline(stream, text); ++first) {
+    for (int first = 0; first < 8 && lines.next(text); ++first) {
       const Json line = parse_json(text);
       if (!line.is_object() || line.value("event", Json()) != event) continue;
       simulated = simulated || text.find("\"simulated\":true") != std::string::npos;
@@ -145,7 +139,7 @@ void RunFolder::read_angle() {
 void RunFolder::read_flips() {
   if (progress_.turns > 0 && settled_) progress_.given_fraction = 0;
   if (!flips_) {
-    if (!fs::exists(file("flips.jsonl"))) return;
+    if (!io::has_regular_file(file("flips.jsonl"))) return;
     flips_.emplace(path_);
   }
   flips_->read();
@@ -163,8 +157,9 @@ void RunFolder::read_flips() {
 
 void RunFolder::read_records() {
   progress_.records.clear();
-  if (!fs::exists(file("calibration.json"))) return;
-  const Json records = parse_json(io::read_all(file("calibration.json")));
+  if (!io::has_regular_file(file("calibration.json"))) return;
+  constexpr std::uint64_t most_bytes = 1U << 20U;
+  const Json records = parse_json(io::read_all(file("calibration.json"), io::Content::text, most_bytes));
   if (!records.is_object()) return;
   for (const auto& [scan, record] : records.items()) {
     if (!record.is_object()) continue;

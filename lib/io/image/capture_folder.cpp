@@ -13,7 +13,9 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
+#include "base/system_error.hpp"
 #include "io/image/image_file.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -26,9 +28,7 @@ constexpr const char* manifest_name = "manifest.jsonl";
 
 std::string manifest_path(const std::string& folder) { return (fs::path(folder) / manifest_name).string(); }
 
-Error failed(const std::string& path) {
-  return {Fault::io, path + ": cannot be written (" + std::strerror(errno) + ")"};
-}
+Error failed(const std::string& path) { return system_error(Fault::io, path + ": cannot be written", errno); }
 
 // Whole and on the disk, or an Error.
 void write_synced(int file, const std::string& bytes, const std::string& path) {
@@ -122,11 +122,12 @@ std::string capture_file_name(long place) {
   return name.data();
 }
 
-bool is_capture_folder(const std::string& folder) { return fs::exists(manifest_path(folder)); }
+bool is_capture_folder(const std::string& folder) { return has_regular_file(manifest_path(folder)); }
 
 CaptureManifest read_manifest(const std::string& folder) {
   const std::string path = manifest_path(folder);
-  const std::string text = read_all(path);
+  constexpr std::uint64_t most_bytes = std::uint64_t{256} << 20U;  // a million frames
+  const std::string text = read_all(path, Content::text, most_bytes);
   CaptureManifest manifest;
   long number = 0;
   for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -143,8 +144,9 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
     throw Error{Fault::no_output, folder + ": cannot make the folder (" + problem.message() + ")"};
   }
   const std::string path = manifest_path(folder);
-  const bool again = fs::exists(path) && fs::file_size(path) > 0;
-  if (!again && !fs::is_empty(folder) && !fs::exists(path)) {
+  const bool there = has_regular_file(path);
+  const bool again = there && fs::file_size(path) > 0;
+  if (!again && !fs::is_empty(folder) && !there) {
     throw Error{Fault::no_output, folder + ": contains files of another kind; name another folder"};
   }
   if (again) {
@@ -161,7 +163,7 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
   directory_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   log_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (directory_ < 0 || log_ < 0) {
-    throw Error{Fault::no_output, path + ": cannot be written (" + std::strerror(errno) + ")"};
+    throw system_error(Fault::no_output, path + ": cannot be written", errno);
   }
   if (!again) write_line(head);
 }

@@ -13,6 +13,7 @@
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/video.hpp"
+#include "io/stream/log_lines.hpp"
 
 namespace vam::io {
 
@@ -74,6 +75,7 @@ struct ViewSource::State {
     if (recorded == capture->frames.end()) return false;
     const CaptureRecord& record = recorded++->second;
     frame.name = path + "/" + capture_file_name(record.place);
+    (void)has_regular_file(frame.name);  // a pipe would be waited for
     frame.image = to_image(read_image(frame.name));
     frame.time_s = record.t_monotonic_s;
     frame.time_sigma_s = record.time_sigma_s.value_or(0);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "base/error.hpp"
@@ -25,8 +24,8 @@ constexpr double last_run_up_deg = -360;  // from this angle on missed blanks ar
 // SHA-256 of the sinogram of a run folder; empty where it is not known.
 std::string armed_sinogram(const std::string& run) {
   if (!std::filesystem::is_directory(run)) return "";
-  std::ifstream events((std::filesystem::path(run) / "events.jsonl").string());
-  for (std::string text; std::getline(events, text);) {
+  LogLines events((std::filesystem::path(run) / "events.jsonl").string());
+  for (std::string text; events.next(text);) {
     const Json event = parse_json(text);
     if (!event.is_object() || !event.contains("sinogram_sha256")) continue;
     if (event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
@@ -41,7 +40,7 @@ std::string log_of(const std::string& run) {
 // The hashes that a run states; none while there is no log.
 std::set<std::string> hashes_of(const std::string& run) {
   std::set<std::string> hashes{armed_sinogram(run)};
-  if (std::filesystem::exists(log_of(run))) {
+  if (has_regular_file(log_of(run))) {
     FlipLog log(run);
     log.read();
     for (const ShownSinogram& one : log.sinograms()) hashes.insert(one.sha256);
@@ -58,19 +57,12 @@ std::string beginnings(const std::set<std::string>& hashes) {
 
 }  // namespace
 
-FlipLog::FlipLog(const std::string& path) : file_(log_of(path)), stream_(file_) {
-  if (!stream_.is_open()) throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(errno)};
+FlipLog::FlipLog(const std::string& path) : file_(log_of(path)), lines_(file_) {
+  if (!has_regular_file(file_)) throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(ENOENT)};
 }
 
 void FlipLog::read() {
-  std::string text;
-  for (;;) {
-    const auto begin = stream_.tellg();
-    if (!std::getline(stream_, text) || stream_.eof()) {  // not whole, yet or for ever: its writer goes on or is dead
-      stream_.clear();
-      stream_.seekg(begin);
-      return;
-    }
+  for (std::string text; lines_.next(text);) {
     ++line_;
     const Json event = parse_json(text);
     try {
@@ -119,6 +111,11 @@ void FlipLog::go_on(double image_s, std::vector<ShownImage>& shown) const {
   const double step_deg = flips_.back().angle_deg - flips_[flips_.size() - 2].angle_deg;
   double angle_deg = flips_.back().angle_deg;
   double t_s = flips_.back().t_s + image_s;
+  constexpr double most_images = 1e7;  // two days at 60 Hz
+  if (const double images = (*end_s_ - t_s) / image_s; images > most_images) {
+    throw Error{Fault::data, file_ + ": the light would go on for " + format_number(images, 3) +
+                                 " images to the time at which it is to end; give an earlier one"};
+  }
   while (t_s < *end_s_) {
     angle_deg += step_deg;
     shown.push_back({angle_deg, std::min(image_s, *end_s_ - t_s)});

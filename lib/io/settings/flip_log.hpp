@@ -2,10 +2,11 @@
 // The flips of a print, from the log of vam-project: what was shown when, and at which stage angle.
 #pragma once
 
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "io/stream/log_lines.hpp"
 
 namespace vam::io {
 
@@ -24,7 +25,7 @@ struct ShownSinogram {
 /// The log of a print, also of one that goes on.
 class FlipLog {
  public:
-  /// flips.jsonl, or the run folder (vam-print) that holds it. Throws Fault::no_input.
+  /// flips.jsonl, or the run folder (vam-print) that holds it. Throws Fault::no_input, Fault::data for no regular file.
   explicit FlipLog(const std::string& path);
 
   /// Takes in the whole lines that were added since the last call. Throws Fault::data for another kind of file.
@@ -58,7 +59,7 @@ class FlipLog {
   void go_on(double image_s, std::vector<ShownImage>& shown) const;
 
   std::string file_;
-  std::ifstream stream_;
+  LogLines lines_;
   int line_ = 0;
   std::vector<LoggedFlip> flips_;
   std::vector<ShownSinogram> sinograms_;

@@ -111,6 +111,7 @@ TEST_CASE("light before a moment: images end there, and a print that goes on sho
   CHECK(images[2].angle_deg == 360);
   CHECK(images[4].angle_deg == 540);
   CHECK(images[4].seconds == 0.5);
+  CHECK(has(message_of([&] { (void)seconds(b, 1e8); }), "the light would go on for 1e+08 images"));
   const std::string over = folder.write("flips.jsonl", lit + flip(14, -1, 360));
   CHECK(seconds(b, 17.25) == 2);
 }

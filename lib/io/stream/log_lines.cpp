@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/stream/log_lines.hpp"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+
+#include "base/error.hpp"
+#include "base/system_error.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 20;
+
+}  // namespace
+
+bool has_regular_file(const std::string& path) {
+  struct stat about = {};
+  if (stat(path.c_str(), &about) != 0) {
+    const int problem = errno;
+    if (problem != ENOENT && problem != ENOTDIR) throw system_error(Fault::no_input, path + ": cannot open", problem);
+    if (lstat(path.c_str(), &about) != 0) return false;
+    throw Error{Fault::no_input, path + ": links to a file that is gone; restore it, or remove the link"};
+  }
+  if (!S_ISREG(about.st_mode)) throw Error{Fault::data, path + ": is not a regular file; restore it"};
+  return true;
+}
+
+LogLines::LogLines(const std::string& path, std::streamoff tail_bytes) : path_(path) {
+  if (!has_regular_file(path)) return;
+  stream_.open(path);
+  if (!stream_.is_open()) throw system_error(Fault::no_input, path + ": cannot open", errno);
+  if (tail_bytes == 0) return;
+  stream_.seekg(0, std::ios::end);
+  const std::streamoff size = stream_.tellg();
+  stream_.seekg(size > tail_bytes ? size - tail_bytes : 0);
+  if (size > tail_bytes) stream_.ignore(tail_bytes, '\n');  // begins somewhere within
+}
+
+bool LogLines::next(std::string& line) {
+  if (!stream_.is_open()) return false;
+  const auto begin = stream_.tellg();
+  line.clear();
+  std::streambuf& bytes = *stream_.rdbuf();
+  constexpr int end_of_file = std::char_traits<char>::eof();
+  for (int byte = bytes.sbumpc(); byte != end_of_file; byte = bytes.sbumpc()) {
+    if (byte == '\n') return true;
+    if (line.size() == most_bytes) {
+      throw Error{Fault::data,
+                  path_ + ": has a line of more than 1 MiB, from byte " + std::to_string(begin) + " on; it is damaged"};
+    }
+    line.push_back(static_cast<char>(byte));
+  }
+  stream_.clear();
+  stream_.seekg(begin);
+  return false;
+}
+
+}  // namespace vam::io

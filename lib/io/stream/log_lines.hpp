@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Logs that a folder may hold, and that somebody may still be writing.
+#pragma once
+
+#include <fstream>
+#include <string>
+
+namespace vam::io {
+
+/// Whether a file of that name is there. Throws Fault::no_input where a link leads nowhere, or the name cannot be
+/// reached; Fault::data for what is no regular file: a pipe would be waited for.
+[[nodiscard]] bool has_regular_file(const std::string& path);
+
+/// The lines of a log; one that is not there has none.
+class LogLines {
+ public:
+  /// tail_bytes: only the whole lines of so many bytes at its end; 0: all. Throws as has_regular_file() does, and
+  /// Fault::no_input.
+  explicit LogLines(const std::string& path, std::streamoff tail_bytes = 0);
+  /// The next whole line, without its end; false when there is none yet. What is not whole is read again by the next
+  /// call: its writer goes on, or is dead. Throws Fault::data for a line of more than 1 MiB.
+  bool next(std::string& line);
+
+ private:
+  std::string path_;
+  std::ifstream stream_;
+};
+
+}  // namespace vam::io
