@@ -211,6 +211,28 @@ open("cut.state", "wb").write(bytes[:3000])
 EOF
 fails 65 'nan.state: .*NaN' endless --checkpoint nan.state part.vdb -o out.exr
 fails 65 'cut.state' endless --checkpoint cut.state part.vdb -o out.exr
+{ cat run.state; echo more; } >long.state
+fails 65 'long.state: damaged .something follows its end' endless --checkpoint long.state part.vdb -o out.exr
+mkfifo fifo.state
+fails 65 'fifo.state: is not a regular file' endless --checkpoint fifo.state part.vdb -o out.exr
+ln -s gone gone.state
+fails 66 'gone.state: links to a file that is gone' endless --checkpoint gone.state part.vdb -o out.exr
+rm fifo.state gone.state
+unseen=0
+for trial in $(seq 12); do
+  python3 - "$trial" <<'EOF'
+import random, sys
+random.seed(int(sys.argv[1]))
+data = bytearray(open("run.state", "rb").read())
+at = random.randrange(len(data)) if random.random() < 0.5 else random.randrange(2000)
+if random.random() < 0.3: del data[at:]
+else: data[at] ^= 1 << random.randrange(8)
+open("flipped.state", "wb").write(data)
+EOF
+  timeout 10 vam-optimize --iterations 100000 --patience 0 --checkpoint flipped.state part.vdb -o out.exr 2>.log/err; status=$?
+  [ "$status $(wc -l <.log/err)" = '65 1' ] || { unseen=$((unseen + 1)); echo "# trial $trial: status $status"; }
+done
+is 'a cut or a flipped bit anywhere in a state is an error' $unseen 0
 cp part.vdb other.vdb
 fails 65 'not a checkpoint' vam-optimize --checkpoint other.vdb part.vdb -o out.exr
 

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/stream/log_lines.hpp"
 
 namespace vam::optimize_tool {
 
@@ -20,13 +21,25 @@ std::string job_of(const cli::App& app, const model::Printer& printer, const Opt
   return job;
 }
 
+namespace {
+
+// Before it is opened for writing, which would wait for a pipe.
+const std::string& regular(const std::string& path) {
+  (void)io::has_regular_file(path);
+  return path;
+}
+
+}  // namespace
+
 Checkpoint::Checkpoint(const std::string& path)
-    : path_(path),
+    : path_(regular(path)),
       out_(path),
       to_(optimize::Archive::Way::out, path, [this](void* bytes, std::size_t size) { out_.write(bytes, size); }) {
   if (!std::filesystem::exists(path)) return;
   in_.emplace(path);
-  from_.emplace(optimize::Archive::Way::in, path, [this](void* bytes, std::size_t size) { take(bytes, size); });
+  from_.emplace(
+      optimize::Archive::Way::in, path, [this](void* bytes, std::size_t size) { take(bytes, size); },
+      [this] { return in_->at_end(); });
 }
 
 void Checkpoint::take(void* bytes, std::size_t size) {

@@ -27,6 +27,11 @@ void Archive::seal() {
   if (given != sum) throw Error{Fault::data, name_ + ": damaged (its checksum is wrong); start again without it"};
 }
 
+void Archive::end() const {
+  if (!at_end_ || at_end_()) return;
+  throw Error{Fault::data, name_ + ": damaged (something follows its end); start again without it"};
+}
+
 std::size_t Archive::count(std::size_t size) {
   constexpr std::uint64_t most = std::uint64_t{1} << 31U;
   std::uint64_t n = size;

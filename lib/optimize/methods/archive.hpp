@@ -23,8 +23,11 @@ class Archive {
   enum class Way { out, in };
   using Move = std::function<void(void* bytes, std::size_t size)>;  // takes bytes away, or fills them
 
-  /// `name` is what errors call it.
-  Archive(Way way, std::string name, Move move) : way_(way), name_(std::move(name)), move_(std::move(move)) {}
+  using AtEnd = std::function<bool()>;
+
+  /// `name` is what errors call it; at_end tells a reader whether all has been taken.
+  Archive(Way way, std::string name, Move move, AtEnd at_end = {})
+      : way_(way), name_(std::move(name)), move_(std::move(move)), at_end_(std::move(at_end)) {}
 
   [[nodiscard]] bool reading() const { return way_ == Way::in; }
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -41,6 +44,8 @@ class Archive {
   void operator()(std::string& text);
   /// A checksum of everything up to here, written or compared.
   void seal();
+  /// Throws Fault::data where a reader has not come to the end.
+  void end() const;
 
   template <class T, std::size_t N>
   void operator()(std::array<T, N>& values) {
@@ -78,6 +83,7 @@ class Archive {
   Way way_;
   std::string name_;
   Move move_;
+  AtEnd at_end_;
   std::uint64_t sum_ = 0;
 };
 

@@ -273,6 +273,7 @@ class VolumeRun {
       finished_.take(std::move(*images));
     }
     exchange_open(from, work);
+    from.end();
   }
 
   /// The pass that is open, and what the ended ones left behind.
