@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file system like NFS or vfat, for LD_PRELOAD: it knows no files without a name, and no second names.
+// A file system like NFS or vfat, for LD_PRELOAD: it knows no files without a name, no second names and no modes.
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -29,6 +30,12 @@ int open64(const char *path, int flags, ...) {
   const int file = opened(AT_FDCWD, path, flags, arguments);
   va_end(arguments);
   return file;
+}
+
+int fchmod(int file, mode_t mode) {
+  (void)file, (void)mode;
+  errno = EPERM;
+  return -1;
 }
 
 int linkat(int from_folder, const char *from, int to_folder, const char *to, int flags) {

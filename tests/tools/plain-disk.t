@@ -28,6 +28,34 @@ if strace -qq -o .log/trace -e trace=write true 2>.log/err; then
   is 'SIGKILL leaves a temporary file' "$(ls -A | grep -c '^\.vam-')" 1
   quiet 'which the next run there removes' plain vam-slice box.off --voxel 0.2 -o part.vdb
 fi
+# Whatever is written: killed at its end, what was there stays, and the next run sweeps and completes.
+if strace -qq -o .log/trace -e trace=write true 2>.log/err; then
+  mkdir each && cd each && mkdir .log
+  tiny_print light.exr
+  vam-sinogram ../want.vdb --angles 8 -o sino.exr
+  while read -r call name command; do
+    rm -rf "$name"; case $name in */) mkdir "$name" ;; *) echo old >"$name" ;; esac
+    strace -f -qq -o .log/trace -E LD_PRELOAD="$VAM_BUILD/lib/vam-test/no_tmpfile.so" -e trace=$call \
+      -e inject=$call:signal=KILL:when=1 $command -o "$name" 2>.log/err
+    is "$command: killed" "$(cat "$name" 2>/dev/null || ls -A "$name") $(ls -A | grep -c '^\.vam-')" \
+      "$(case $name in */) ;; *) echo old ;; esac) 1"
+    ok 'the next run' plain $command -o "$name"
+    is 'leaves its output alone' "$(ls -A | grep -c '^\.vam-') $(head -c 3 "$name" 2>/dev/null | grep -c old)" '0 0'
+  done <<'EOF'
+fsync figure.png vam-view sino.exr
+fsync print.mkv vam-project light.exr --printer printer.toml
+fsync new.exr vam-sinogram ../want.vdb --angles 8
+fsync new.npy vam-convert ../want.vdb
+fsync deviation.ply vam-sdf ../box.off ../want.vdb --isovalue 0.5
+fsync page.html vam-report sino.exr
+syncfs frames/ vam-project light.exr --printer printer.toml
+EOF
+  rm -rf captured
+  ok 'images of a camera' plain vam-capture --printer printer.toml --set camera.device=sim: --frames 3 -o captured
+  is 'and nothing else' "$(ls -A captured | grep -c '^\.')" 0
+  cd ..
+  rm -rf each
+fi
 # One that has ended and has not been waited for, as in a container without an init.
 sh -c 'true & echo $! >.log/zombie; exec sleep 60' & parent=$!
 await grep -qs '^State:.*Z' /proc/"$(await test -s .log/zombie; cat .log/zombie)"/status
