@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
@@ -70,11 +71,12 @@ void require_files_for_outputs(const Options& options) {
 
 /// Of walls and gaps of the target that none of its voxels resolves, and which the figures pass over.
 void warn_of_lost(const Inputs& in, const std::string& file) {
-  constexpr int slab = 16;
+  constexpr std::size_t million = 1'000'000;  // voxels at a time
   const io::SparseVolume& target = in.target();
   const model::Grid& grid = target.grid();
+  const int slab = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, 16));
   solid::LostFinder finder(grid);
-  std::vector<float> slices(grid.slice_size() * slab);
+  std::vector<float> slices(product(slab, grid.slice_size()));
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
     target.read_slices(k, count, slices.data());

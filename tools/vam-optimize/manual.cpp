@@ -138,7 +138,7 @@ std::vector<std::pair<std::string, std::string>> examples() {
        "'axis=0.5px,lamp=3%' "
        "--yield-printers 10 --report robust.json -o robust.exr"},
       {"A bound for any projections, and the regions of the part that determine it:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --angles 90 --certify proof.vdb "
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 60 --certify proof.vdb "
        "--report proved.json -o best.exr\n"
        "vam-view proof.vdb -o proof.png"},
       {"A part three times as tall as the image, in three turns:",
