@@ -54,8 +54,7 @@ cli::Manual manual() {
        "is that dose at which the resin gels indeed.",
        "Where there is doubt, vam-correct writes the report alone and ends with status 1: the sensitivity is not known "
        "well enough (--max-uncertainty), as before anything scatters; it is beyond what is plausible (--max-factor); "
-       "or "
-       "the densities differ from those of any smooth sensitivity. The print then goes on as before."},
+       "its mean has changed by more than 5 % and three of the standard deviations of --before; or the densities differ from those of any smooth sensitivity. The print then goes on as before."},
       {{"A cylinder whose resin is 10 % less sensitive than planned:",
         "vam-slice --shape cylinder:diameter=6,height=4 --voxel 0.25 --stretch-z 1 -o part.vdb\n"
         "vam-convert part.vdb -o part.npy\n"
@@ -222,7 +221,8 @@ void run(const cli::App& app, Options& options) {
                                    options.resolution_mm.value_or(0.7 * scatter.grid.voxel_mm));
   const model::Volume delivered = given.planned.with(fit.field.axis_px);
   const auto range = range_of(fit.field, delivered, curve.critical_dose_mj_cm3);
-  const std::vector<std::string> against = doubts(fit, range, options.limits);
+  const auto range_before = range_of(before, delivered, curve.critical_dose_mj_cm3);
+  const std::vector<std::string> against = doubts(fit, range, range_before, options.limits);
   io::write_report(options.report, "vam-correct/1", figures(fit, range, against));
   if (!options.field.empty()) {
     write(app, options.field, "sensitivity", "relative", sensitivity(fit.field, delivered.grid), given.first);

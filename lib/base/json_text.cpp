@@ -9,6 +9,8 @@
 namespace vam {
 
 Json parse_json(std::string_view text, Keys keys) {
+  // The parser takes a zero byte for the end.
+  if (text.find('\0') != std::string_view::npos) return Json(Json::value_t::discarded);
   constexpr int most_levels = 64;
   bool refused = false;
   std::vector<std::set<std::string>> seen(most_levels + 2);  // by the level of their object

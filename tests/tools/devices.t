@@ -13,7 +13,7 @@ on() { device=$1; log=$2; shift 2; exec umockdev-wrapper "$VAM_BUILD/usb_host" "
 
 Xvfb -displayfd 4 -screen 0 64x48x24 -nolisten tcp -noreset 4>number >/dev/null 2>&1 & server=$!
 # Stages as the tool lists them, "gcs:PATH": behind a serial port, else on USB.
-stages=$(vam-stage identify --help | tr -s ' \n' ' ' | sed -n 's/.*Rotation stage: \(.*\) or sim:.*/\1/p' | tr -d ',')
+stages=$(vam-stage identify --help=all | tr -s ' \n' ' ' | sed -n 's/.*Rotation stage: \(.*\) or sim:.*/\1/p' | tr -d ',')
 serial= others= servers=
 for stage in $stages; do
   scheme=${stage%%:*}

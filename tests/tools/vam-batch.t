@@ -111,6 +111,8 @@ mkdir bare; for program in bash dirname readlink; do ln -s "$(command -v $progra
 fails 69 'no GNU make on this machine; install make' env PATH="$PWD/bare" bash "$VAM_SOURCE/scripts/vam-batch" parts.tsv
 [ ! -e batch/log ]; report $? 'logs are those of Slurm'
 
+printf 'part\n-dash.stl\n' >dash.tsv
+fails 65 "'-dash.stl' begins with a dash; write ./-dash.stl" vam-batch --plan dash.tsv
 if ! command -v sbatch >/dev/null; then
   fails 69 '--slurm: no sbatch on this machine' vam-batch --slurm parts.tsv
 fi

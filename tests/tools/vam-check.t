@@ -131,6 +131,8 @@ head -c -9 printer.toml >cut.toml
 fails 65 'cut.toml: changed' vam-slice --print-printer --printer cut.toml -o x.toml
 
 vam-slice a.off --voxel 0.3 --report r.json -o part.vdb
+{ cat r.json; printf '\0{"a":1}'; } >z.json
+fails 65 'z.json' vam-check z.json
 is 'a report is sealed' "$(vam-check r.json)" 'r.json: "vam-slice/1", sealed'
 sed 's/"voxel_mm": 0.3/"voxel_mm": 0.8/' r.json >s.json
 fails 65 's.json: changed after it was written' vam-check s.json

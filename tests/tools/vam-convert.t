@@ -156,6 +156,22 @@ same 'the dose of an array is that of the stack' dose.npy again.npy
 vam-convert back.exr >again.npy
 same 'and the values are' sino.npy again.npy
 
+# frames.csv beside images is held to: a line each, with its name, a time and an angle.
+mkdir even; printf 'file,time_s,angle_deg\n' >even/frames.csv
+ffmpeg -v error -f lavfi -i color=gray:s=6x4:r=1:d=4 -pix_fmt gray -start_number 0 even/%05d.png
+for n in 0 1 2 3; do echo "0000$n.png,$n,$((-90 * n))" >>even/frames.csv; done
+index() { sed "$1" even/frames.csv >index.csv; mv index.csv odd/frames.csv; }
+like_even='--geometry parallel --pixel 1 -o odd.exr'
+quiet 'an index of frames' vam-convert even $like_even
+cp -r even odd
+index '3s/-90/nan/'; fails 65 'odd/frames.csv:3: not a file name, a time and an angle; restore it' vam-convert odd $like_even
+index '3s/,1,/,/'; fails 65 'odd/frames.csv:3: not a file name' vam-convert odd $like_even
+index '3d'; fails 65 "odd/frames.csv:3: '00002.png' is not image 1 of the folder" vam-convert odd $like_even
+index '$d'; fails 65 'odd/frames.csv:4: the last line, of 3 for 4 images' vam-convert odd $like_even
+index 's/-180/-170/'; fails 65 'odd: the stage angles are uneven' vam-convert odd $like_even
+: >odd/frames.csv; fails 65 'odd/frames.csv:1: does not begin with' vam-convert odd $like_even
+rm odd/frames.csv; quiet 'without it they make a turn' vam-convert odd $like_even
+
 # Frames of the projector, to 8 bits: the dose within one level of 255.
 set="--set projector.columns=64 --set projector.rows=48 --set projector.pixel_mm=0.5"
 set="$set --set projector.axis_column=30.5 --set projector.axis_row=21.5"
@@ -167,6 +183,8 @@ set="$set --set projector.axis_column=30.5 --set projector.axis_row=21.5"
   vam-project projector.exr $set --turns 2 --fps 12 --speed 12 --orientation rotate-180 -o turned
   ok 'frames of the projector' vam-convert frames --geometry vial --like part.vdb $set -o back.exr
   quiet 'a video is the same' vam-convert film.mkv --geometry vial --like part.vdb $set -o film.exr
+  vam-dose film.exr --like part.vdb $set --report film.json -o film.vdb
+  is 'whose full grey is the full light' "$(json film.json full_scale)" 1.0
   quiet 'and two turns of turned frames' vam-convert turned --geometry vial --orientation rotate-180 --like part.vdb $set -o turned.exr
   for name in projector back film turned; do vam-dose $name.exr --like part.vdb $set | vam-convert >$name.npy; done
 }

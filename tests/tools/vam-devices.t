@@ -48,11 +48,11 @@ done <schemes >undocumented
 is 'every option is in the manual' "$(cat undocumented)" ''
 {
   for option in $(accepted vam-stage identify --device 'sim:?none=1'); do
-    vam-sim-stage --help | grep -q -- "--$(echo "$option" | tr _ -) " || echo "vam-sim-stage $option"
+    vam-sim-stage --help=all | grep -q -- "--$(echo "$option" | tr _ -) " || echo "vam-sim-stage $option"
   done
   for option in $(accepted vam-capture identify --device 'sim:?none=1'); do
     case $option in bits | pace) continue ;; esac  # of what is no program
-    vam-sim-camera --help | grep -Eq -- "--$(echo "$option" | tr _ -)( |$)" || echo "vam-sim-camera $option"
+    vam-sim-camera --help=all | grep -Eq -- "--$(echo "$option" | tr _ -)( |$)" || echo "vam-sim-camera $option"
   done
 } >unlike
 is 'the simulators have the same names' "$(cat unlike)" ''

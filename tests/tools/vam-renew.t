@@ -77,6 +77,12 @@ ok 'then new light is made' grep -q '"event":"renewed"' closed/renewed.jsonl
 axis=$(json "$(ls closed/renewed/sensitivity-*.json | tail -n 1)" axis_offset_px)
 holds 'for the axis as it is' "($axis - 1) ^ 2 < 0.15 ^ 2"
 holds 'and a resin that needs 5 % more light' "($(json "$(ls closed/renewed/sensitivity-*.json | tail -n 1)" sensitivity_mean) - 0.98) ^ 2 < 0.04 ^ 2"
+of_the_past=$(find closed/ost -name '*.vdb' | sort | tail -n 1)
+number=$(find closed/ost -name '*.vdb' | wc -l)
+cp "$of_the_past" closed/ost/scatter-$(printf %04d $number).vdb
+echo "{\"turns\":30,\"time_s\":540}" >>closed/ost.jsonl
+fails 1 '' vam-renew closed --target part.vdb --curve curve.json --turns "$planned" --axis-sigma 1 --once $number
+is 'a volume that comes again is of no use' "$(grep -c "\"event\":\"hold\".*is the volume ${of_the_past##*/} again" closed/renewed.jsonl)" 1
 echo "# open at its best $best mm, closed $closed mm"
 holds 'the print deviates by less than half of the open loop, stopped at its best moment' "$closed < 0.5 * $best"
 done_testing

@@ -29,7 +29,7 @@ fails 69 '/dev/nope' vam-stage home --printer lab/printer.toml
 fails 65 "odd.toml:2: stage.device: 'usb:1': unknown device scheme" vam-stage home --printer lab/odd.toml
 fails 65 'use one of gcs:, tic:, grbl:, zaber:, sim:' vam-slice --shape gyroid --printer lab/odd.toml --fit-writable -o no.vdb
 fails 64 "camera.device: 'webcam': unknown device scheme" vam-stage home --set camera.device=webcam
-for scheme in $(vam-stage home --help | tr ' ,' '\n\n' | sed -n 's/^\([a-z0-9]*\):[A-Z][A-Z]*$/\1/p' | sort -u) sim; do
+for scheme in $(vam-stage home --help=all | tr ' ,' '\n\n' | sed -n 's/^\([a-z0-9]*\):[A-Z][A-Z]*$/\1/p' | sort -u) sim; do
   ok "the printer file accepts $scheme:" vam-stage home --print-printer --set "stage.device=$scheme:x"
 done
 ok 'options may precede the command' vam-stage --device sim: identify

@@ -37,12 +37,15 @@ class Array : public Images {
 class Frames : public Images {
  public:
   Frames(const Options& options, io::FileType type)
-      : source_(io::open_images(options.input, type)), full_scale_(options.full_scale) {}
+      : source_(io::open_images(options.input, type)), full_scale_(options.full_scale) {
+    views_.source = "frames.csv";
+    for (const model::ImageInfo& about : source_->about()) views_.angles_deg.push_back(about.angle_deg);
+  }
   [[nodiscard]] io::ArraySize size() const override {
     return {source_->info().count, source_->info().height, source_->info().width};
   }
   [[nodiscard]] bool are_frames() const override { return true; }
-  [[nodiscard]] double angle_step_deg() const override { return source_->info().angle_step_deg; }
+  [[nodiscard]] const io::StatedViews& views() const override { return views_; }
   bool next(Image& image) override {
     model::ImageInfo about;
     if (!source_->next(image, about)) return false;
@@ -52,6 +55,7 @@ class Frames : public Images {
 
  private:
   std::unique_ptr<io::ImageSource> source_;
+  io::StatedViews views_;
   std::optional<double> full_scale_;
 };
 

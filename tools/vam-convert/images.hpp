@@ -24,13 +24,8 @@ class Images {
   virtual bool next(Image& image) = 0;
   /// Do they show the projector's image, one a stage angle, row 0 at the top?
   [[nodiscard]] virtual bool are_frames() const = 0;
-  /// From frame to frame, as stated beside them; 0: not known.
-  [[nodiscard]] virtual double angle_step_deg() const { return 0; }
-  /// What an array's file states about projections.
-  [[nodiscard]] virtual const io::StatedViews& views() const {
-    static const io::StatedViews none;
-    return none;
-  }
+  /// What is stated about projections, in an array's file or beside the frames.
+  [[nodiscard]] virtual const io::StatedViews& views() const = 0;
 };
 
 /// An array with these axes for images, rows and columns; or the images of a folder or video. Throws what opening them

@@ -54,7 +54,7 @@ double angle_step_deg(const Options& options, const Slices& slices, Plan& plan) 
     plan.start_deg = measured.start_deg;
     if (measured.step_deg != 0) return measured.step_deg;
   }
-  return slices.angle_step_deg() != 0 ? slices.angle_step_deg() : 360.0 / slices.size().rows;
+  return 360.0 / slices.size().rows;
 }
 
 void plan_turns(const Options& options, const Slices& slices, Plan& plan) {
@@ -166,6 +166,7 @@ model::StackInfo info_of(const cli::App& app, const Options& options, const mode
   info.angle_step_deg = 360.0 / plan.per_turn;
   info.units = frames && options.units == "relative" ? "fraction of full intensity" : options.units;
   info.history = {app.history()};
+  if (frames && options.units == "relative") info.extra["vam:full_scale"] = "1";
   if (projector) info.extra["vam:printer"] = io::printer_settings(printer);
   return info;
 }
@@ -219,6 +220,14 @@ void warn_of_light(const Options& options, double left_out) {
        options.like + " and is left out; check --axis-row");
 }
 
+/// Of frames that the projector would have shown in another size.
+void warn_of_size(const Options& options, const io::ArraySize& size, const model::Projector& projector) {
+  if (!options.in_vial() || (size.columns == projector.columns && size.images == projector.rows)) return;
+  warn(io::input_name(options.input) + ": images of " + std::to_string(size.columns) + " x " +
+       std::to_string(size.images) + " pixels, but the projector has " + std::to_string(projector.columns) + " x " +
+       std::to_string(projector.rows) + "; they are taken for a part of its image, pixel by pixel");
+}
+
 }  // namespace
 
 void make_projections(const cli::App& app, const Options& options, std::optional<io::FileType> type,
@@ -251,6 +260,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   }
   warn_of_negative(options, least);
   warn_of_light(options, resliced.left_out());
+  if (frames) warn_of_size(options, slices.size(), printer.projector);
   out.commit();
 }
 

@@ -45,7 +45,6 @@ Slices::~Slices() = default;
 
 io::ArraySize Slices::size() const { return size_; }
 
-double Slices::angle_step_deg() const { return images_->angle_step_deg(); }
 
 void Slices::collect(const Options& options, const model::Printer& printer) {
   const std::vector<float> table = intensities(options, printer);

@@ -20,7 +20,6 @@ class Slices {
   ~Slices();
   /// Slices, angles and columns.
   [[nodiscard]] io::ArraySize size() const;
-  [[nodiscard]] double angle_step_deg() const;
   [[nodiscard]] const io::StatedViews& views() const { return images_->views(); }
   /// Upwards: a row for each angle; false after the last.
   bool next(Image& slice);

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image/any_frames.hpp"
 
-#include <fstream>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/video.hpp"
+#include "io/stream/log_lines.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
@@ -70,32 +76,51 @@ class VideoSource : public ImageSource {
   int taken_ = 0;
 };
 
-// frames.csv of vam-project beside the images: file,time_s,angle_deg. Empty when there is none.
-std::vector<model::ImageInfo> read_frame_index(const std::string& folder) {
-  std::ifstream stream(folder + "/frames.csv");
+// frames.csv of vam-project beside the images: file,time_s,angle_deg, a line an image. Empty when there is none.
+std::vector<model::ImageInfo> read_frame_index(const std::string& folder, const ImageFolder& images) {
+  const std::string path = folder + "/frames.csv";
+  if (!has_regular_file(path)) return {};
+  std::vector<std::string> lines = split(read_all(path, Content::text, std::uint64_t{64} << 20), '\n');
+  if (!lines.empty() && lines.back().empty()) lines.pop_back();
+  for (std::string& line : lines) {
+    if (line.ends_with('\r')) line.pop_back();
+  }
+  std::size_t number = 1;
+  const auto damaged = [&](const std::string& what) {
+    return Error{Fault::data, path + ":" + std::to_string(number) + ": " + what +
+                                  "; restore it, or remove it where the images are evenly spaced"};
+  };
+  if (lines.empty() || lines.front() != "file,time_s,angle_deg") throw damaged("does not begin with file,time_s,angle_deg");
   std::vector<model::ImageInfo> index;
-  std::string line;
-  std::getline(stream, line);
-  while (std::getline(stream, line)) {
-    const auto cells = split(line, ',');
+  while (number < lines.size()) {
+    const auto cells = split(lines[number++], ',');
     const auto time_s = cells.size() == 3 ? parse_number(cells[1]) : std::nullopt;
     const auto angle_deg = cells.size() == 3 ? parse_number(cells[2]) : std::nullopt;
-    if (!time_s || !angle_deg) return {};
+    if (!time_s || !angle_deg || !std::isfinite(*time_s) || !std::isfinite(*angle_deg)) {
+      throw damaged("not a file name, a time and an angle");
+    }
+    const int at = count_of(index);
+    if (at == images.count() || cells[0] != std::filesystem::path(images.path(at)).filename()) {
+      throw damaged("'" + printable(cells[0]) + "' is not image " + std::to_string(at) + " of the folder");
+    }
     model::ImageInfo& about = index.emplace_back();
     about.time_s = *time_s;
     about.angle_deg = *angle_deg;
     about.has_time = about.has_angle = true;
+  }
+  if (count_of(index) < images.count()) {
+    throw damaged("the last line, of " + std::to_string(index.size()) + " for " + std::to_string(images.count()) +
+                  " images");
   }
   return index;
 }
 
 class FolderSource : public ImageSource {
  public:
-  explicit FolderSource(const std::string& path) : folder_(path), index_(read_frame_index(path)) {
+  explicit FolderSource(const std::string& path) : folder_(path), index_(read_frame_index(path, folder_)) {
     const GreyImage first = folder_.read(0);
     info_ = frames_of(first.width, first.height, folder_.count());
     if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
-    if (index_.size() != static_cast<std::size_t>(folder_.count())) index_.clear();
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }

@@ -139,7 +139,7 @@ SensitivityRange range_of(const SensitivityField& field, const model::Volume& do
 }
 
 std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRange& range,
-                                const CorrectionLimits& limits) {
+                                const SensitivityRange& before, const CorrectionLimits& limits) {
   const auto percent = [](double part) { return format_number(100 * part, 3) + " %"; };
   std::vector<std::string> found;
   if (!(range.sigma <= limits.sigma)) {
@@ -149,6 +149,11 @@ std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRang
     found.push_back("the sensitivity is " + format_number(range.low, 3) + " to " + format_number(range.high, 3) +
                     ", beyond " + format_number(std::exp(-limits.deviation), 3) + " to " +
                     format_number(std::exp(limits.deviation), 3));
+  }
+  const double most_change = limits.change + 3 * before.sigma;
+  if (!(std::abs(std::log(range.mean / before.mean)) <= most_change)) {
+    found.push_back("the sensitivity is " + format_number(range.mean, 3) + ", and was " +
+                    format_number(before.mean, 3) + " a turn before, a change of more than " + percent(most_change));
   }
   if (!(fit.rms <= limits.rms)) {
     found.push_back("the densities differ from those of any smooth sensitivity by " + format_number(fit.rms, 3) +

@@ -96,14 +96,15 @@ struct SensitivityRange {
 [[nodiscard]] SensitivityRange range_of(const SensitivityField& field, const model::Volume& dose,
                                         double critical_dose_mj_cm3);
 
-/// What speaks against light by this fit, a phrase each; empty: nothing does.
 struct CorrectionLimits {
   double sigma = 0.03;     // relative uncertainty of the sensitivity
   double deviation = 0.5;  // of its logarithm
   double rms = 3;          // of the residuals, in their standard deviations
+  double change = 0.05;    // of its mean within a turn, beyond three standard deviations of the former one
 };
+/// What speaks against light by this fit, a phrase each; empty: nothing does. before: of the former field.
 [[nodiscard]] std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRange& range,
-                                              const CorrectionLimits& limits);
+                                              const SensitivityRange& before, const CorrectionLimits& limits);
 
 [[nodiscard]] Json to_json(const SensitivityField& field);
 /// Throws Fault::data, without a subject, for anything but what to_json() made.

@@ -111,10 +111,19 @@ TEST_CASE("The sensitivity that made the densities of a turn is found, within it
   CHECK(range.low < range.mean);
   CHECK(range.mean < range.high);
   CHECK(range.mean == doctest::Approx(std::exp(-0.1)).epsilon(0.03));
-  CHECK(doubts(fit, range, {}).empty());
+  const SensitivityRange expected = range_of(before, dose.middle(), 60);
+  CHECK(doubts(fit, range, expected, {}).empty());
   // What was known before counts: of a second turn's densities the deviation is smaller.
   const SensitivityFit again = fit_sensitivity(scatter, nullptr, {dose}, curve, carried_on(fit.field, {}), 0);
   CHECK(range_of(again.field, dose.middle(), 60).sigma < range.sigma);
+  CHECK(doubts(again, range_of(again.field, dose.middle(), 60), range, {}).empty());
+  // Densities of the past: those of a dose that is 15 % smaller.
+  PlannedDose later = dose;
+  for (float& value : later.at[0].values) value *= 1.15F;
+  const SensitivityFit past = fit_sensitivity(scatter, nullptr, {later}, curve, carried_on(fit.field, {}), 0);
+  const auto changed = doubts(past, range_of(past.field, dose.middle(), 60), range, {});
+  REQUIRE(changed.size() == 1);
+  CHECK(changed.front().find("a turn before, a change of more than") != std::string::npos);
 }
 
 TEST_CASE("Densities are of the print's heights, doses of the stretched ones") {
@@ -155,7 +164,8 @@ TEST_CASE("Before anything scatters, and where nothing fits, there is doubt") {
   PlannedDose early = dose;
   for (float& value : early.at[0].values) value *= 0.6F;
   const SensitivityFit dark = fit_sensitivity(nothing, nullptr, {early}, curve, before, 0);
-  const auto unsure = doubts(dark, range_of(dark.field, dose.middle(), 60), {});
+  const SensitivityRange expected = range_of(before, dose.middle(), 60);
+  const auto unsure = doubts(dark, range_of(dark.field, dose.middle(), 60), expected, {});
   REQUIRE(unsure.size() == 1);
   CHECK(unsure.front().find("is known to") != std::string::npos);
 
@@ -163,11 +173,11 @@ TEST_CASE("Before anything scatters, and where nothing fits, there is doubt") {
   std::mt19937_64 random(3);
   for (float& value : noise.values) value = std::uniform_real_distribution<float>(0, 0.08F)(random);
   const SensitivityFit wild = fit_sensitivity(noise, nullptr, {dose}, curve, before, 0);
-  CHECK_FALSE(doubts(wild, range_of(wild.field, dose.middle(), 60), {}).empty());
+  CHECK_FALSE(doubts(wild, range_of(wild.field, dose.middle(), 60), expected, {}).empty());
 
   SensitivityField much = before;
   much.value[0] = 0.6;
-  CHECK_FALSE(doubts({much, 0, 0, 0}, range_of(much, dose.middle(), 60), {1, 0.5, 3}).empty());
+  CHECK_FALSE(doubts({much, 0, 0, 0}, range_of(much, dose.middle(), 60), expected, {1, 0.5, 3, 1}).empty());
 
   for (float& value : early.at[0].values) value *= 0.1F;
   CHECK(fault_of([&] { (void)expected_sensitivity(early.at[0], curve, {}); }) == Fault::data);
@@ -196,5 +206,5 @@ TEST_CASE("A delivered dose that planned light completes to the critical one is 
   none["half_mm"][1] = 0;
   CHECK(fault_of([&] { (void)sensitivity_field(none); }) == Fault::data);
   const double nan = std::nan("");
-  CHECK(doubts({field, nan, 0, 0}, {nan, nan, nan, nan}, {}).size() == 3);
+  CHECK(doubts({field, nan, 0, 0}, {nan, nan, nan, nan}, {}, {}).size() == 4);
 }
