@@ -45,7 +45,6 @@ Slices::~Slices() = default;
 
 io::ArraySize Slices::size() const { return size_; }
 
-
 void Slices::collect(const Options& options, const model::Printer& printer) {
   const std::vector<float> table = intensities(options, printer);
   Image frame;
