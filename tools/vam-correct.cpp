@@ -54,7 +54,8 @@ cli::Manual manual() {
        "is that dose at which the resin gels indeed.",
        "Where there is doubt, vam-correct writes the report alone and ends with status 1: the sensitivity is not known "
        "well enough (--max-uncertainty), as before anything scatters; it is beyond what is plausible (--max-factor); "
-       "its mean has changed by more than 5 % and three of the standard deviations of --before; or the densities differ from those of any smooth sensitivity. The print then goes on as before."},
+       "its mean has changed by more than 5 % and three of the standard deviations of --before; or the densities "
+       "differ from those of any smooth sensitivity. The print then goes on as before."},
       {{"A cylinder whose resin is 10 % less sensitive than planned:",
         "vam-slice --shape cylinder:diameter=6,height=4 --voxel 0.25 --stretch-z 1 -o part.vdb\n"
         "vam-convert part.vdb -o part.npy\n"

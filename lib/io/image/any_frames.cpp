@@ -90,7 +90,8 @@ std::vector<model::ImageInfo> read_frame_index(const std::string& folder, const 
     return Error{Fault::data, path + ":" + std::to_string(number) + ": " + what +
                                   "; restore it, or remove it where the images are evenly spaced"};
   };
-  if (lines.empty() || lines.front() != "file,time_s,angle_deg") throw damaged("does not begin with file,time_s,angle_deg");
+  if (lines.empty() || lines.front() != "file,time_s,angle_deg")
+    throw damaged("does not begin with file,time_s,angle_deg");
   std::vector<model::ImageInfo> index;
   while (number < lines.size()) {
     const auto cells = split(lines[number++], ',');
