@@ -80,6 +80,7 @@ if ! sanitized; then
   vam-view few-sino.exr -o few.png && mv few.png few-want.png
   vam-project few.exr --printer printer.toml -o few.mkv 2>.log/err
   refusals=0
+  exec 3<&- 4<&- 5<&- 6<&- 7<&- 8<&- 9<&-  # what ctest leaves open would count, too
   for files in 4 5 7 16; do
     while read -r command; do
       prlimit --nofile=$files timeout 60 $command >.log/out 2>.log/err </dev/null; status=$?

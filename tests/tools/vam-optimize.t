@@ -287,7 +287,7 @@ fails 64 '--preview: does not apply to --output; omit it' vam-optimize --preview
 fails 64 '--preview: does not apply to --robust; omit it' vam-optimize --preview --robust lamp=3% boat.vdb
 
 # A budget of time.
-quiet "in five seconds" vam-optimize --angles 60 --budget 5 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json part.vdb -o out.exr
+quiet "in ten seconds" vam-optimize --angles 60 --budget 10 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json part.vdb -o out.exr
 is "time stops the run" "$(value budget.json stopped_by)" time
 holds "its light is of use" "$(value budget.json iou) > 0.95"
 vam-optimize --angles 60 --budget 0.01 --max-intensity 0.12 part.vdb -o out.exr 2>short.txt
