@@ -100,7 +100,7 @@ struct CorrectionLimits {
   double sigma = 0.03;     // relative uncertainty of the sensitivity
   double deviation = 0.5;  // of its logarithm
   double rms = 3;          // of the residuals, in their standard deviations
-  double change = 0.05;    // of its mean within a turn, beyond three standard deviations of the former one
+  double change = 0.05;    // of its mean since the former field, beyond three standard deviations of that
 };
 /// What speaks against light by this fit, a phrase each; empty: nothing does. before: of the former field.
 [[nodiscard]] std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRange& range,

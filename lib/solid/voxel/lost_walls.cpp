@@ -24,14 +24,14 @@ struct Place {
   [[nodiscard]] bool at_border() const {
     return i == 0 || j == 0 || i == grid.nx - 1 || j == grid.ny - 1 || slices[0] == nullptr || slices[2] == nullptr;
   }
-  /// Whether what is asked holds for one of the 27 voxels about it.
-  template <class Asked>
-  [[nodiscard]] bool near(const Asked& asked) const {
+  /// Whether the voxel itself or one of its 26 neighbours fulfils the condition.
+  template <class Condition>
+  [[nodiscard]] bool near(const Condition& condition) const {
     for (int w = 0; w < 3; ++w) {
       if (slices[w] == nullptr) continue;
       for (int v = std::max(j - 1, 0); v <= std::min(j + 1, grid.ny - 1); ++v) {
         const float* row = slices[w] + product(v, grid.nx);
-        if (std::any_of(row + std::max(i - 1, 0), row + std::min(i + 2, grid.nx), asked)) return true;
+        if (std::any_of(row + std::max(i - 1, 0), row + std::min(i + 2, grid.nx), condition)) return true;
       }
     }
     return false;
