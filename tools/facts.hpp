@@ -52,6 +52,11 @@ inline std::optional<double> stated_positive(const Facts& facts, const std::stri
                                "', which is not above 0 and at most 1e6; compute them again"};
 }
 
+/// What a relative dose of 1 is, in mJ/cm3.
+inline std::optional<double> dose_unit_mj_cm3(const Facts& facts) {
+  return stated_number(facts, "vam:dose_unit_mj_cm3");
+}
+
 /// The value of a sinogram that is shown at full intensity.
 inline std::optional<double> full_scale(const Facts& facts) { return stated_positive(facts, "vam:full_scale"); }
 

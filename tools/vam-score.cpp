@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-score: scores a dose against its target.
-#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
@@ -20,7 +18,6 @@
 #include "printer.hpp"
 #include "score/score.hpp"
 #include "score_volumes.hpp"
-#include "solid/voxel/lost_walls.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "vam-score/inputs.hpp"
 #include "vam-score/lit_fraction.hpp"
@@ -69,21 +66,10 @@ void require_files_for_outputs(const Options& options) {
   }
 }
 
-/// Of walls and gaps of the target that none of its voxels resolves, and which the figures pass over.
-void warn_of_lost(const Inputs& in, const std::string& file) {
-  constexpr std::size_t million = 1'000'000;  // voxels at a time
-  const io::SparseVolume& target = in.target();
-  const model::Grid& grid = target.grid();
-  const int slab = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, 16));
-  solid::LostFinder finder(grid);
-  std::vector<float> slices(product(slab, grid.slice_size()));
-  for (int k = 0; k < grid.nz; k += slab) {
-    const int count = std::min(slab, grid.nz - k);
-    target.read_slices(k, count, slices.data());
-    finder.add(count, slices.data());
-  }
+/// Of gaps of the target that none of its voxels resolves, and which the figures pass over.
+void warn_of_gaps(const model::Unresolved& unresolved, const io::SparseVolume& target, const std::string& file) {
   const std::string doubt =
-      solid::gap_doubt(io::input_name(file), finder.finish().gaps, grid, tool::stretch_z(target.metadata));
+      solid::gap_doubt(io::input_name(file), unresolved, target.grid(), tool::stretch_z(target.metadata));
   if (!doubt.empty()) warn(doubt + "; they are not judged");
 }
 
@@ -98,11 +84,23 @@ std::vector<model::Condition> conditions_of(const Options& options) {
   return model::parse_conditions(options.require, options.grey ? score::GreyScore::names() : score::Score::names());
 }
 
+/// What a target's 1 is in the unit of the dose: a target prescribes relative doses unless it states otherwise.
+double unit_of(const io::SparseVolume& target, const io::SparseVolume& dose, const std::string& file) {
+  const std::string relative = "relative";
+  if (dose.units == relative || dose.units == target.units) return 1;
+  const auto unit = tool::dose_unit_mj_cm3(dose.metadata);
+  if (target.units == relative && unit && *unit > 0) return *unit;
+  throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units + ", but the target " +
+                               (target.units == relative ? "prescribes relative doses" : "is in " + target.units) +
+                               "; compute the dose from the projections of vam-optimize --grey-target with vam-dose"};
+}
+
 void score_grey(const Options& options, const model::Printer& printer,
                 const std::vector<model::Condition>& conditions) {
   const Inputs in = read(options);
   score::GreyOptions how = score_tool::grey_options(options);
   how.circle = tool::judged_circle(in.target(), printer);
+  how.unit = unit_of(in.target(), in.dose(), options.input);
   const score::GreyScore result = tool::score_grey_volumes(in.dose(), in.target(), how);
   io::write_report(options.report, "vam-score-grey/1", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
@@ -117,11 +115,12 @@ void run(const cli::App& app, Options& options) {
   if (options.grey) return score_grey(options, printer, conditions);
   require_files_for_outputs(options);
   const Inputs in = read(options);
-  tool::warn_of_grey(in.target(), options.target.empty() ? options.input : options.target);
-  warn_of_lost(in, options.target.empty() ? options.input : options.target);
+  const std::string& file = options.target.empty() ? options.input : options.target;
+  tool::warn_of_grey(in.target(), file);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
   require_known(conditions, options);
   score::Score result = tool::score_volumes(in.dose(), in.target(), options.how);
+  warn_of_gaps(result.unresolved(), in.target(), file);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
   if (!options.lit_fraction.empty())

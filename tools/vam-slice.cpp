@@ -47,9 +47,10 @@ void warn_of_size(const cli::App& app, const Options& options, const solid::Part
                   const solid::FillSummary& content, const model::Grid& grid, const solid::Writable& room) {
   const bool known = !part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit");
   const std::string doubt = solid::size_doubt(part, content, grid, options.placement.stretch_z, room, known);
-  if (!doubt.empty()) warn(doubt);
-  const std::string gaps = solid::gap_doubt(part.subject, content.lost.gaps, grid, options.placement.stretch_z);
-  if (!gaps.empty()) warn(gaps);
+  if (!doubt.empty()) return warn(doubt);
+  for (const std::string& thin :
+       solid::resolution_doubts(part.subject, content.unresolved, grid, options.placement.stretch_z))
+    warn(thin);
 }
 
 void warn_of_insert_size(const cli::App& app, const Options& options, const solid::Part& insert,

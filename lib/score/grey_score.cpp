@@ -46,7 +46,7 @@ void GreyScore::add(const float* dose, const float* target, int count) {
     const bool judged = !is_void || (options_.void_rule != VoidRule::free &&
                                      options_.circle.contains(in_slice % width_, in_slice / width_));
     if (!judged) continue;
-    const double error = static_cast<double>(dose[i]) - static_cast<double>(target[i]);
+    const double error = static_cast<double>(dose[i]) / options_.unit - static_cast<double>(target[i]);
     const bool limited = is_void && options_.void_rule == VoidRule::below;
     // Below the limit the void is right, whatever its dose.
     const double size = limited ? std::max(0.0, error - options_.void_limit) : std::abs(error);
@@ -85,6 +85,7 @@ Json GreyScore::figures() const {
   json["part_voxels"] = part_;
   json["void_voxels"] = void_;
   json["band"] = options_.band;
+  json["dose_unit"] = options_.unit;
   for (const std::string& name : names()) json[name] = figure(name);
   return json;
 }

@@ -23,13 +23,14 @@ struct GreyOptions {
   double band = 0.1;     // epsilon: how far a dose may be from the target
   VoidRule void_rule = VoidRule::met;
   double void_limit = 0.75;  // of VoidRule::below
+  double unit = 1;           // of the target, in that of the dose
 };
 
 class GreyScore {
  public:
   GreyScore(const GreyOptions& options, int width, int height);
 
-  /// `count` row-major slices of dose and target, in one unit. Throws Fault::data for a dose that is not finite.
+  /// `count` row-major slices of dose and target. Throws Fault::data for a dose that is not finite.
   void add(const float* dose, const float* target, int count);
 
   [[nodiscard]] static const std::vector<std::string>& names();

@@ -43,6 +43,8 @@ const std::vector<Figure>& figure_list() {
       {"outside_voxels", "void voxels outside the box around the part"},
       {"outside_gelled_voxels", "void voxels outside the box that gel in the print"},
       {"outside_max_dose", "maximum dose of void voxels outside the box"},
+      {"unresolved_part", "fraction of the part in walls of which no voxel is wholly inside; they are not judged"},
+      {"unresolved_gaps", "gaps of which no voxel is wholly outside, relative to the part; they are not judged"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
@@ -64,7 +66,7 @@ bool is_of_exposure(const std::string& figure) {
 }
 
 Score::Score(const ScoreOptions& options, int width, int height)
-    : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold) {
+    : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold), unresolved_(width, height) {
   const model::Circle& at = options.circle;
   rim_px_ = 0.5 + std::min({at.axis_x, at.axis_y, width - 1 - at.axis_x, height - 1 - at.axis_y});
   inside_.reserve(width * static_cast<std::size_t>(height));
@@ -107,6 +109,7 @@ void Score::add(const float* dose, const float* target, int count) {
     outside_.merge(outside[s]);
     surface_ += surface[s];
   }
+  unresolved_.add(count, target);
   slices_ += count;
 }
 
@@ -128,6 +131,8 @@ const std::vector<std::string>& Score::names() {
 
 double Score::figure(const std::string& name) const {
   if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
+  if (name == "unresolved_part") return unresolved().part_share();
+  if (name == "unresolved_gaps") return unresolved().gap_share();
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
   if (is_of_exposure(name)) {
@@ -190,7 +195,9 @@ Json Score::figures() const {
 
 Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
-  return {whole_.metrics(), with_cut_.metrics(), std::isfinite(duration_s) ? std::optional(duration_s) : std::nullopt};
+  Verdict verdict{whole_.metrics(), with_cut_.metrics(), {}, {}, unresolved().share()};
+  if (std::isfinite(duration_s)) verdict.seconds = duration_s;
+  return verdict;
 }
 
 std::optional<double> Score::judged_radius_mm() const {

@@ -11,6 +11,7 @@
 #include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
 #include "model/printer.hpp"
+#include "model/unresolved.hpp"
 #include "score/exposure_plan.hpp"
 #include "score/verdict.hpp"
 
@@ -58,6 +59,8 @@ class Score {
   [[nodiscard]] double print_threshold() const;
   /// None where the exposure is not known, or nothing is lit.
   [[nodiscard]] std::optional<ExposurePlan> plan() const;
+  /// What of the target its voxels are too coarse for.
+  [[nodiscard]] model::Unresolved unresolved() const { return unresolved_.found(); }
   /// Of the relative figures, whatever the options say.
   [[nodiscard]] Verdict verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
@@ -80,6 +83,7 @@ class Score {
   std::vector<bool> inside_;                // of a slice, whether the circle has it
   model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;
+  model::UnresolvedFinder unresolved_;
   std::int64_t surface_ = 0;
   int slices_ = 0;               // seen
   model::OutsideDoses outside_;  // void outside the part's box

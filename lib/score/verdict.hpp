@@ -18,12 +18,16 @@ struct Verdict {
   model::DoseMetrics with_cut;    // with those that the surface cuts, as part from half coverage on, else as void
   std::optional<double> seconds;  // of the print; none: the resin is not known
   std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
+  double unresolved = 0;  // walls and gaps that the voxels are too coarse for, and no figure judges, by the part
 };
 
 /// The threshold, or some threshold if none is given, prints all voxels that are wholly in part or void.
 [[nodiscard]] bool prints(const Verdict& verdict);
 
-/// "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
+/// Much of the part is in walls or gaps that the voxels are too coarse for.
+[[nodiscard]] bool is_unresolved(const Verdict& verdict);
+
+/// "may print" if too much is not judged, else "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
 /// by the surface: process window -0.31, VER 0.004; duration 360 s".
 [[nodiscard]] std::string words(const Verdict& verdict);
 

@@ -15,7 +15,7 @@ ok "a report on stdout" sh -c 'vam-score --report - --grid target part.vdb >out.
 is "the former --json is a report on stdout" "$(vam-score --json --grid target part.vdb 2>warning)" "$(vam-score --report - --grid target part.vdb)"
 is "with a warning" "$(cat warning)" "vam-score: warning: --json is now --report -"
 is "the report on stdout has the figures of the file" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
-is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 18
+is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 20
 ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0 [(][0-9]+ voxels[)]; including the [0-9]+ voxels cut by the surface: process window [-+0-9.e]+, VER "'
 is "the verdict counts part and surface voxels" "$(json perfect.json with_surface.voxels)" \
   $(($(json perfect.json part_voxels) + $(json perfect.json void_voxels) + $(json perfect.json surface_voxels)))
@@ -32,6 +32,23 @@ vam-slice plates.off --voxel 0.1 --stretch-z 1 -o plates.vdb 2>sliced
 ok "a slit that no voxel resolves" sh -c 'vam-score --grid target plates.vdb 2>scored >table'
 is "is warned of as in vam-slice" "$(sed 's/^vam-score/vam-slice/; s/plates.vdb/plates.off/; s/; they are not judged//' scored)" "$(cat sliced)"
 is "with its width" "$(grep -c 'gaps of 0.05 mm are too narrow .*; they are not judged$' scored)" 1
+
+# A wall of 1.3 voxels in the middle of two: none is wholly inside, and what becomes of it no figure says.
+{
+  printf 'OFF\n16 24 0\n'
+  box 3 4 1 | awk 'NR > 2 && NF == 3 { print $1, $2, $3 }'
+  box 0.26 4 3 | awk 'NR > 2 && NF == 3 { print $1, $2, $3 + 2 }'
+  box 3 4 1 | awk 'NF == 4 { print; far = far $1 " " $2 + 8 " " $3 + 8 " " $4 + 8 "\n" } END { printf "%s", far }'
+} >wall.off
+vam-slice wall.off --voxel 0.2 --stretch-z 1 -o wall.vdb 2>sliced
+ok "a wall of which no voxel is wholly inside" grep -q 'wall.off: 2[0-9]* % of the part is in walls or gaps too thin for the voxels' sliced
+ok "may print" sh -c 'vam-score --grid target wall.vdb | grep -q "^verdict  *may print: .*; walls and gaps too thin for the voxels are not judged: 2[0-9.]* % of the part; smaller voxels"'
+vam-score --grid target wall.vdb --require 'pw>0,unresolved_part<=0.02' >table 2>why
+is "can be required to be judged" "$?" 1
+ok "with its share" grep -q '^vam-score: unresolved_part = 0.2[0-9]*, but unresolved_part<=0.02 is required$' why
+vam-optimize --angles 30 --iterations 5 wall.vdb -o wall.exr --report wall.json 2>&1
+json wall.json verdict >said
+ok "vam-optimize says the same" grep -q 'print.* not judged: 2[0-9.]* % of the part' said
 
 quiet "met conditions" vam-score --grid target part.vdb --require 'ver<=0.01, pw>=0'
 vam-score --grid target part.vdb --require 'pw>1.5,ver<=0' >table 2>why
@@ -56,7 +73,7 @@ is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quali
 quiet "a grey target met" vam-score --grid target part.vdb --grey-target --report grey.json
 is "by all voxels" "$(json grey.json ver) $(json grey.json cv)" "0.0 0.0"
 ok "in words" sh -c 'vam-score --grid target part.vdb --grey-target | grep -q "^verdict  *met: 100 % of [0-9]* voxels are within 0.1 of the target"'
-vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
+vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb 2>.log/coarse
 for rule in met below free; do
   set -- --grey-target --void $rule --dose-low 0.4 --band 0.3
   vam-optimize "$@" --angles 60 --iterations 10 --report want-$rule.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o $rule.vdb
@@ -64,6 +81,16 @@ for rule in met below free; do
   # Of two programs, whose doses differ by rounding.
   holds "void $rule: margin and error rate are those of vam-optimize" \
     "($(json is-$rule.json pw) - $(json want-$rule.json pw)) ^ 2 < 1e-10 && ($(json is-$rule.json ver) - $(json want-$rule.json ver)) ^ 2 < 1e-8"
+done
+# Once the resin is known, the dose is in mJ/cm3 and the target still relative.
+absorbs='--set resin.absorption_per_mm=0.05'
+vam-optimize --grey-target --angles 60 --iterations 10 $absorbs coarse.vdb -o grey.exr 2>.log/optimize
+vam-dose grey.exr --like coarse.vdb $absorbs -o relative.vdb
+vam-dose grey.exr --like coarse.vdb $absorbs --set resin.critical_dose_mj_cm3=50 -o absolute.vdb
+for unit in relative absolute; do vam-score --grey-target --band 0.3 $unit.vdb --target coarse.vdb --report $unit.json >.log/score; done
+holds "the dose in mJ/cm3 is another" "$(json absolute.json dose_unit) > 1.5 || $(json absolute.json dose_unit) < 0.7"
+for figure in ver cv bias; do
+  holds "but not its $figure" "($(json absolute.json $figure) - $(json relative.json $figure)) ^ 2 < 1e-10"
 done
 holds "the less is asked of the void, the more is met" \
   "$(json is-met.json ver) > $(json is-below.json ver) && $(json is-met.json ver) > $(json is-free.json ver)"

@@ -49,6 +49,7 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
   if (unit.absolute) {
     scale(volume, unit.turn * (of_run ? 1.0 : turns));  // that of a run is of its turns already
     volume.units = "mJ/cm3";
+    volume.metadata["vam:dose_unit_mj_cm3"] = format_number(unit.turn * turns, 9);
     const auto threshold = tool::threshold_dose(volume.metadata);
     if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.turn * turns, 9);
   }

@@ -15,10 +15,11 @@
 #include "io/stream/stream.hpp"
 #include "model/coarser.hpp"
 #include "model/magnification.hpp"
+#include "model/unresolved.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
-#include "optimize/target/unresolved.hpp"
 #include "score/exposure_plan.hpp"
+#include "unresolved.hpp"
 #include "vam-optimize/coarse_start.hpp"
 #include "vam-optimize/coarser.hpp"
 #include "vam-optimize/exposure.hpp"
@@ -30,7 +31,7 @@ namespace {
 
 constexpr int least_voxels = 24;                          // a side of the part
 constexpr double most_updates = 2e8;                      // voxels x angles: a projection of those takes 0.1 s
-constexpr double most_unresolved = 0.02, hopeless = 0.5;  // relative to the part
+constexpr double hopeless = 0.5;       // not resolved, relative to the part
 constexpr int least_iterations = 4, most_iterations = 16;
 constexpr int proof_iterations = 40;
 constexpr double proof_updates = 4e8;  // voxels x angles x iterations
@@ -44,15 +45,11 @@ struct Level {
   Inputs own;            // none at the target's own resolution
   const Inputs* finest;  // the target's own
   Scene scene = {};
-  optimize::Unresolved unresolved = {};  // of the coarser ones, once it is asked for
+  model::Unresolved unresolved = {};  // of the coarser ones, once it is asked for
 
   [[nodiscard]] const Inputs& in() const { return own.target.empty() ? *finest : own; }
   [[nodiscard]] double updates() const { return static_cast<double>(scene.grid.size()) * options.angles; }
 };
-
-optimize::Unresolved unresolved_of(const io::SparseVolume& target) {
-  return optimize::unresolved(io::dense_volume(target));
-}
 
 Level coarser(const Level& fine) {
   Level coarse{2 * fine.pixels, model::coarser(fine.printer), coarser(fine.options), coarser(fine.in()), nullptr};
@@ -72,9 +69,9 @@ Level level_of(const model::Printer& printer, const Inputs& in, const Options& o
   }
   for (; levels.size() > 1; levels.pop_back()) {
     Level& level = levels.back();
-    level.unresolved = unresolved_of(level.own.target.front());
+    level.unresolved = tool::unresolved(level.own.target.front());
     const bool finer_is_quick = levels[levels.size() - 2].updates() <= most_updates;
-    if (level.unresolved.share() <= most_unresolved || !finer_is_quick) break;
+    if (level.unresolved.share() <= model::much_unresolved || !finer_is_quick) break;
   }
   return std::move(levels.back());
 }
@@ -135,7 +132,7 @@ Answer answer_of(const Level& level, const model::DoseMetrics& doses, double lea
   if (least >= 1) return {"no", "will not print, by any projections", {}};
   if (doses.pw < 0) return {"no", "will not print", {}};
   std::vector<std::string> doubts;
-  if (level.unresolved.share() > most_unresolved) doubts.push_back(unseen(level));
+  if (level.unresolved.share() > model::much_unresolved) doubts.push_back(unseen(level));
   if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");
   return doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
 }
@@ -149,7 +146,7 @@ struct Seen {
   std::optional<score::ExposurePlan> plan = {};
   double voxel_mm = 0;
   int angles = 0, iterations = 0;
-  optimize::Unresolved unresolved = {};
+  model::Unresolved unresolved = {};
 };
 
 /// Iterations of a proof.
@@ -165,7 +162,7 @@ struct FromCoarser {
 
 FromCoarser from_coarser(const Level& level) {
   Level coarse = coarser(level);
-  if (unresolved_of(coarse.own.target.front()).share() > hopeless) return {};
+  if (tool::unresolved(coarse.own.target.front()).share() > hopeless) return {};
   SolvedLevel found = solved(coarse, proof_on(coarse), {});
   const double least = found.outcome.certificate->least;
   return {least, start_of(std::move(found), coarse.scene, coarse.options, level.scene, level.options)};
@@ -215,10 +212,9 @@ std::string table(const Seen& seen) {
 }
 
 Json report_of(const Seen& seen) {
-  const optimize::Unresolved& fine = seen.unresolved;
   Json report{{"prints", seen.answer.prints}, {"reasons", seen.answer.reasons}};
-  report["unresolved_part"] = fine.whole > 0 ? fine.part / fine.whole : 0;
-  report["unresolved_gaps"] = fine.whole > 0 ? fine.gaps / fine.whole : 0;
+  report["unresolved_part"] = seen.unresolved.part_share();
+  report["unresolved_gaps"] = seen.unresolved.gap_share();
   if (!seen.doses) return report;
   report["ver"] = seen.doses->ver;
   report["pw"] = seen.doses->pw;

@@ -20,6 +20,7 @@
 #include "optimize/run/limited_by.hpp"
 #include "score/exposure_plan.hpp"
 #include "score/verdict.hpp"
+#include "unresolved.hpp"
 #include "vam-optimize/delivered.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
@@ -93,7 +94,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
       report.erase(key);
   } else {
     const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt,
-                                 fixed_threshold(options)};
+                                 fixed_threshold(options), tool::unresolved(target).share()};
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(

@@ -144,10 +144,10 @@ Filled filled(const solid::Part& part, double voxel_mm) {
 }
 
 /// Of walls and gaps that no voxel of the printer resolves.
-void warn_of_lost(const std::string& subject, const Filled& fine, double stretch_z) {
-  for (const std::string& doubt : {solid::wall_doubt(subject, fine.content, fine.volume.grid, stretch_z),
-                                   solid::gap_doubt(subject, fine.content.lost.gaps, fine.volume.grid, stretch_z)})
-    if (!doubt.empty()) warn(doubt);
+void warn_of_resolution(const std::string& subject, const Filled& fine, double stretch_z) {
+  for (const std::string& doubt :
+       solid::resolution_doubts(subject, fine.content.unresolved, fine.volume.grid, stretch_z))
+    warn(doubt);
 }
 
 /// On the printer's voxels, or on larger ones where these are too many.
@@ -155,7 +155,7 @@ void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
   plan.wall_resolution = std::max(1, static_cast<int>(by));
   const Filled fine = filled(part, plan.wall_resolution * plan.grid.voxel_mm);
-  if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0) warn_of_lost(part.subject, fine, plan.stretch_z);
+  if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0) warn_of_resolution(part.subject, fine, plan.stretch_z);
   const solid::Walls walls = solid::walls(fine.volume, plan.stretch_z);
   plan.sharp_edges = walls.sharp_edges;
   plan.wall_voxels = walls.thinnest_voxels;
@@ -171,8 +171,8 @@ double million_voxels(const model::Grid& grid, int coarseness) {
 struct Coarse {
   model::Printer printer;
   Filled part;
-  optimize::Unresolved unresolved;
 
+  [[nodiscard]] const model::Unresolved& unresolved() const { return part.content.unresolved; }
   /// Whether some voxel is wholly inside the part.
   [[nodiscard]] bool is_judged() const {
     const std::vector<float>& values = part.volume.values;
@@ -181,17 +181,16 @@ struct Coarse {
   }
   /// Whether walls and gaps are as thick as the voxels, but for edges: hardly any is lost, little is not resolved.
   [[nodiscard]] bool is_all_judged() const {
-    constexpr double most_lost = 0.001, most_unresolved = 0.02;
-    const double lost = part.content.lost.walls.voxels + part.content.lost.gaps.voxels;
-    return is_judged() && lost <= most_lost * unresolved.whole && unresolved.share() <= most_unresolved;
+    constexpr double most_lost = 0.001;
+    const double lost = unresolved().lost_walls.voxels + unresolved().lost_gaps.voxels;
+    return is_judged() && lost <= most_lost * unresolved().whole && unresolved().share() <= model::much_unresolved;
   }
 };
 
 Coarse coarse(const solid::Part& part, const model::Printer& printer, int coarseness) {
-  Coarse made{printer, {}, {}};
+  Coarse made{printer, {}};
   for (int by = 1; by < coarseness; by *= 2) made.printer = model::coarser(made.printer);
   made.part = filled(part, made.printer.projector.pixel_mm);
-  made.unresolved = optimize::unresolved(made.part.volume);
   return made;
 }
 
@@ -214,10 +213,10 @@ void add_preview(Plan& plan, const solid::Part& part, const model::Printer& prin
   while (!judged.is_all_judged() && by > 1 && million_voxels(plan.grid, by / 2) <= most_finer)
     judged = coarse(part, printer, by /= 2);
   const model::Grid& grid = judged.part.volume.grid;
-  plan.unjudged = judged.unresolved;
+  plan.unjudged = judged.unresolved();
   plan.all_judged = judged.is_all_judged();
-  plan.unjudged_low_mm = grid.z_mm(judged.unresolved.first - 0.5) / plan.stretch_z;
-  plan.unjudged_high_mm = grid.z_mm(judged.unresolved.end - 0.5) / plan.stretch_z;
+  plan.unjudged_low_mm = grid.z_mm(judged.unresolved().first - 0.5) / plan.stretch_z;
+  plan.unjudged_high_mm = grid.z_mm(judged.unresolved().end - 0.5) / plan.stretch_z;
   if (judged.is_judged()) plan.preview = preview_of(std::move(judged), by);
 }
 

@@ -9,8 +9,8 @@
 #include "base/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
+#include "model/unresolved.hpp"
 #include "optimize/run/preview.hpp"
-#include "optimize/target/unresolved.hpp"
 #include "score/exposure_plan.hpp"
 #include "vam-plan/options.hpp"
 
@@ -43,7 +43,7 @@ struct Plan {
   bool sharp_edges = false;           // thinner than what prints
   int wall_resolution = 1;            // in voxels
   int coarseness = 0;                 // pixels per voxel of the estimate; 0: none is wanted
-  optimize::Unresolved unjudged;      // walls and gaps too thin for the voxels of the estimate
+  model::Unresolved unjudged;      // walls and gaps too thin for the voxels of the estimate
   bool all_judged = true;             // they are hardly more than rounded edges
   double unjudged_low_mm = 0;         // heights in the print of most of them
   double unjudged_high_mm = 0;

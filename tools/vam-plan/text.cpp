@@ -46,11 +46,11 @@ std::string deviation_name(std::size_t tolerance) {
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
 
 /// "12 % of the part, and gaps of 3 % of its volume"
-std::string unjudged_share(const optimize::Unresolved& unjudged) {
-  const auto percent = [&](double voxels) { return format_number(100 * voxels / unjudged.whole, 2) + " % of "; };
+std::string unjudged_share(const model::Unresolved& unjudged) {
+  const auto percent = [](double share) { return format_number(100 * share, 2) + " % of "; };
   std::vector<std::string> shares;
-  if (unjudged.part > 0) shares.push_back(percent(unjudged.part) + "the part");
-  if (unjudged.gaps > 0) shares.push_back("gaps of " + percent(unjudged.gaps) + "its volume");
+  if (unjudged.part > 0) shares.push_back(percent(unjudged.part_share()) + "the part");
+  if (unjudged.gaps > 0) shares.push_back("gaps of " + percent(unjudged.gap_share()) + "its volume");
   return join(shares, " and ");
 }
 
@@ -68,8 +68,9 @@ std::string print_rows(const Plan& plan) {
   constexpr double negligible = 0.001;
   if (!plan.all_judged || plan.unjudged.share() > negligible) {
     text += row("  not judged", unjudged_share(plan.unjudged) + ", too thin for these voxels, most between z = " +
-                                    number(plan.unjudged_low_mm) + " and " + number(plan.unjudged_high_mm) +
-                                    " mm; vam-slice and vam-optimize judge them");
+                                    number(plan.unjudged_low_mm) + " and " + number(plan.unjudged_high_mm) + " mm; " +
+                                    (plan.coarseness > 1 ? "vam-slice states which the printer's voxels resolve"
+                                                         : "smaller pixels, or thicker walls, resolve them"));
   }
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
@@ -140,11 +141,10 @@ Json report(const Plan& plan) {
   }
   json["sharp_edges"] = plan.sharp_edges;
   if (plan.coarseness > 0) {
-    const optimize::Unresolved& unjudged = plan.unjudged;
     json["estimate_voxel_mm"] = plan.coarseness * plan.grid.voxel_mm;
     json["all_judged"] = plan.all_judged;
-    json["unresolved_part"] = unjudged.whole > 0 ? unjudged.part / unjudged.whole : 0;
-    json["unresolved_gaps"] = unjudged.whole > 0 ? unjudged.gaps / unjudged.whole : 0;
+    json["unresolved_part"] = plan.unjudged.part_share();
+    json["unresolved_gaps"] = plan.unjudged.gap_share();
   }
   if (plan.preview) {
     json["ver"] = plan.preview->trials.nominal.figures.ver;

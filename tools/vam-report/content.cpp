@@ -41,7 +41,7 @@ std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printe
 
 std::string verdict(const Judged& judged) {
   const score::Verdict verdict = judged.score.verdict();
-  return "<p class=\"verdict " + std::string(score::prints(verdict) ? "good" : "bad") + "\">" +
+  return "<p class=\"verdict " + std::string(score::prints(verdict) && !score::is_unresolved(verdict) ? "good" : "bad") + "\">" +
          page_text(score::words(verdict)) + "</p>\n";
 }
 

@@ -11,7 +11,7 @@ namespace {
 void declare_grey(cli::App& app, Options& options) {
   app.group("Grey target");
   app.flag("--grey-target", options.grey,
-           "The target specifies a dose for every voxel, in the unit of the dose, to be met within --band.");
+           "The target specifies a relative dose for every voxel, to be met within --band.");
   app.option("--band", "EPSILON", options.grey_how.band, cli::non_negative,
              "Maximum deviation of the dose from the target.")
       .needs({"--grey-target"});

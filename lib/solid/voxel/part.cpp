@@ -124,7 +124,7 @@ void count_row(const model::Grid& grid, double y, const float* row, FillSummary&
 FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   FillSummary content;
   double voxels = 0;
-  LostFinder lost(grid);
+  model::UnresolvedFinder finder(grid);
   content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
     std::vector<FillSummary> of_slice(static_cast<std::size_t>(count));
     std::vector<double> covered(of_slice.size());
@@ -141,10 +141,10 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
       content.surface_voxels += of_slice[k].surface_voxels;
       content.radius_mm = std::max(content.radius_mm, of_slice[k].radius_mm);
     }
-    lost.add(count, slices);
+    finder.add(count, slices);
     sink(k0, count, slices);
   });
-  content.lost = lost.finish();
+  content.unresolved = finder.found();
   if (voxels == 0) {
     throw Error{Fault::data, part.subject + ": covers no voxel of " + format_number(grid.voxel_mm) +
                                  " mm; check its unit and the voxel size"};
@@ -165,8 +165,8 @@ Json figures(const Part& part, const FillSummary& content, const model::Grid& gr
               {"voxels", {grid.nx, grid.ny, grid.nz}},
               {"interior_voxels", content.solid_voxels},
               {"surface_voxels", content.surface_voxels},
-              {"lost_volume_mm3", content.lost.walls.voxels * std::pow(grid.voxel_mm, 3) / stretch_z},
-              {"lost_gaps_mm3", content.lost.gaps.voxels * std::pow(grid.voxel_mm, 3) / stretch_z}};
+              {"lost_volume_mm3", content.unresolved.lost_walls.voxels * std::pow(grid.voxel_mm, 3) / stretch_z},
+              {"lost_gaps_mm3", content.unresolved.lost_gaps.voxels * std::pow(grid.voxel_mm, 3) / stretch_z}};
   if (part.repair) {
     const Repair& done = *part.repair;
     report["repair"] = {{"closed", done.closed()},

@@ -10,8 +10,8 @@
 #include "base/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
+#include "model/unresolved.hpp"
 #include "solid/mesh/repair.hpp"
-#include "solid/voxel/lost_walls.hpp"
 #include "solid/voxel/placement.hpp"
 #include "solid/voxel/voxelize.hpp"
 
@@ -64,7 +64,7 @@ struct FillSummary {
   long surface_voxels = 0;  // coverage between 0 and 1
   float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
-  Lost lost;
+  model::Unresolved unresolved;
   Vote vote;
 };
 

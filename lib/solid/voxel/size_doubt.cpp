@@ -35,6 +35,27 @@ std::string heights(int first, int end, const model::Grid& grid, double stretch_
          format_number(grid.z_mm(end - 0.5) / stretch_z, 3) + " mm";
 }
 
+/// Of walls that are lost, if they are a thousandth of the part or more.
+std::string wall_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
+                       double stretch_z) {
+  const model::LostWalls& lost = unresolved.lost_walls;
+  const double share = lost.voxels / unresolved.whole;
+  if (share <= 1e-3) return "";
+  return subject + ": " + format_number(100 * share, 2) +
+         " % of the part is in walls too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
+         " no voxel of theirs is half covered, and they will not be printed; voxels of " +
+         format_number(grid.voxel_mm * static_cast<double>(lost.most), 2) + " mm or thicker walls may help";
+}
+
+std::string thin_doubt(const std::string& subject, const model::Unresolved& thin, const model::Grid& grid,
+                       double stretch_z) {
+  return subject + ": " + format_number(100 * thin.share(), 2) +
+         " % of the part is in walls or gaps too thin for the voxels: " +
+         heights(thin.first, thin.end, grid, stretch_z) +
+         " no voxel of theirs is wholly inside or outside, and whether they print is not judged; smaller voxels "
+         "resolve them";
+}
+
 }  // namespace
 
 const std::vector<std::string>& unit_names() {
@@ -56,18 +77,9 @@ std::string unit_doubt(const std::string& subject, const std::string& body, doub
                       : subject + ": the " + body + " is only " + format_number(largest_mm, 3) + " mm large" + unit;
 }
 
-std::string wall_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
-                       double stretch_z) {
-  const LostWalls& lost = content.lost.walls;
-  const double share = lost.voxels * std::pow(grid.voxel_mm, 3) / content.volume_mm3;
-  if (share <= 1e-3) return "";
-  return subject + ": " + format_number(100 * share, 2) +
-         " % of the part is in walls too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
-         " no voxel of theirs is half covered, and they will not be printed; voxels of " +
-         format_number(grid.voxel_mm * static_cast<double>(lost.most), 2) + " mm or thicker walls may help";
-}
-
-std::string gap_doubt(const std::string& subject, const LostGaps& lost, const model::Grid& grid, double stretch_z) {
+std::string gap_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
+                      double stretch_z) {
+  const model::LostGaps& lost = unresolved.lost_gaps;
   if (lost.voxels < least_gap || lost.voxels < least_a_slice * (lost.end - lost.first) || lost.widest < least_width)
     return "";
   const double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
@@ -75,6 +87,17 @@ std::string gap_doubt(const std::string& subject, const LostGaps& lost, const mo
          " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is three quarters free, and they will be printed shut; voxels of " +
          format_number(0.5 * gap_mm, 2) + " mm resolve them";
+}
+
+std::vector<std::string> resolution_doubts(const std::string& subject, const model::Unresolved& unresolved,
+                                           const model::Grid& grid, double stretch_z) {
+  std::vector<std::string> doubts;
+  for (std::string doubt :
+       {wall_doubt(subject, unresolved, grid, stretch_z), gap_doubt(subject, unresolved, grid, stretch_z)})
+    if (!doubt.empty()) doubts.push_back(std::move(doubt));
+  if (doubts.empty() && unresolved.share() > model::much_unresolved)
+    doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
+  return doubts;
 }
 
 std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
@@ -88,9 +111,6 @@ std::string size_doubt(const Part& part, const FillSummary& content, const model
            format_number(largest_mm, 3) + " mm large (a voxel is covered to " +
            format_number(static_cast<double>(content.most), 2) + " at most)" +
            (unit.empty() ? "; voxels of " + format_number(thinner, 2) + " mm or thicker walls may help" : unit);
-  }
-  if (unit.empty()) {
-    if (std::string walls = wall_doubt(part.subject, content, grid, stretch_z); !walls.empty()) return walls;
   }
   return unit_known ? "" : unit_doubt(part.subject, "part", largest_mm, room);
 }

@@ -20,17 +20,20 @@ namespace vam::solid {
                                      const Writable& room);
 
 /// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
-/// is less than a tenth as large as the writable width, or a thousandth of it or more is in walls that no voxel
-/// resolves. `unit_known`: the user has stated what a unit of the file is, or how large the part.
+/// is less than a tenth as large as the writable width. `unit_known`: the user has stated what a unit of the file is, or
+/// how large the part.
 [[nodiscard]] std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid,
                                      double stretch_z, const Writable& room, bool unit_known);
 
-/// What a warning should say of walls that no voxel resolves, if they are a thousandth of the part or more; else empty.
-[[nodiscard]] std::string wall_doubt(const std::string& subject, const FillSummary& content, const model::Grid& grid,
-                                     double stretch_z);
+/// What a warning should say of gaps that will be printed shut, from the volume of a voxel, and a tenth of one a slice,
+/// on; else empty.
+[[nodiscard]] std::string gap_doubt(const std::string& subject, const model::Unresolved& unresolved,
+                                    const model::Grid& grid, double stretch_z);
 
-/// The same of gaps, from the volume of a voxel, and a tenth of one a slice, on.
-[[nodiscard]] std::string gap_doubt(const std::string& subject, const LostGaps& lost, const model::Grid& grid,
-                                    double stretch_z);
+/// What warnings should say of walls that will not be printed, from a thousandth of the part on, and of such gaps; if
+/// there are neither, of much that is not judged.
+[[nodiscard]] std::vector<std::string> resolution_doubts(const std::string& subject,
+                                                         const model::Unresolved& unresolved, const model::Grid& grid,
+                                                         double stretch_z);
 
 }  // namespace vam::solid

@@ -26,6 +26,19 @@ GreyScore scored(VoidRule rule, double limit = 0.75) {
 
 }  // namespace
 
+TEST_CASE("a dose in another unit than the target's has the same figures") {
+  const std::vector<float> target{0, 0.4F, 1, 1, 0}, dose{0.05F, 0.5F, 1.3F, 0.9F, 0};
+  std::vector<float> scaled = dose;
+  for (float& one : scaled) one *= 12;
+  GreyScore relative({{0, 0, 3.2}, 0.1, VoidRule::met, 0.75}, 5, 1);
+  GreyScore absolute({{0, 0, 3.2}, 0.1, VoidRule::met, 0.75, 12}, 5, 1);
+  relative.add(dose.data(), target.data(), 1);
+  absolute.add(scaled.data(), target.data(), 1);
+  for (const std::string& name : GreyScore::names())
+    CHECK(absolute.figure(name) == doctest::Approx(relative.figure(name)).epsilon(1e-6));
+  CHECK(relative.figure("ipdr") == doctest::Approx(0.3));
+}
+
 TEST_CASE("a grey target is met within its band, in part and void") {
   const GreyScore score = scored(VoidRule::met);
   CHECK(score.figure("ver") == doctest::Approx(0.5));  // two of four

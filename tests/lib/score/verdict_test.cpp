@@ -57,6 +57,14 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
 
 // A dose that is the same everywhere has it: what prints the part prints the void, too.
 TEST_CASE("a window of width 0 does not print, and report and message agree") {
+  Verdict thin = verdict();
+  thin.unresolved = 0.019;
+  CHECK(words(thin) == words(verdict()));
+  thin.unresolved = 0.28;
+  CHECK(words(thin).starts_with("may print: "));
+  CHECK(words(thin).find("not judged: 28 % of the part; smaller voxels resolve them") != std::string::npos);
+  thin.whole.pw = -0.1;
+  CHECK(words(thin).starts_with("will not print: "));
   Verdict edge = verdict();
   edge.whole.pw = 0;
   CHECK(!prints(edge));

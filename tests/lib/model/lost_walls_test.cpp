@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/voxel/lost_walls.hpp"
+#include "model/unresolved.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,18 +9,18 @@
 #include "base/index.hpp"
 
 using namespace vam;
-using namespace vam::solid;
+using namespace vam::model;
 
 namespace {
 
 constexpr int n = 6;
 
 /// Slices handed over `a_pass` at a time.
-Lost found(const std::vector<float>& values, int a_pass) {
+Unresolved found(const std::vector<float>& values, int a_pass) {
   const int nz = static_cast<int>(values.size()) / (n * n);
-  LostFinder finder(model::centred_grid(n, n, nz, 0.1));
+  UnresolvedFinder finder(model::centred_grid(n, n, nz, 0.1));
   for (int k = 0; k < nz; k += a_pass) finder.add(std::min(a_pass, nz - k), values.data() + product(k, n * n));
-  return finder.finish();
+  return finder.found();
 }
 
 void set(std::vector<float>& values, int i, int j, int k, float coverage) {
@@ -36,21 +36,21 @@ TEST_CASE("walls are lost where neither a voxel nor its 26 neighbours are half c
   set(values, 5, 5, 0, 0.1F);  // a speck, at the edge
   for (const int a_pass : {1, 2, 3, 4, 9}) {
     CAPTURE(a_pass);
-    const LostWalls lost = found(values, a_pass).walls;
+    const LostWalls lost = found(values, a_pass).lost_walls;
     CHECK(lost.voxels == doctest::Approx(4 * 0.25 + 0.1));  // slice 3 of the fin touches the pillar by a corner
     CHECK(lost.first == 0);
     CHECK(lost.end == 8);
     CHECK(lost.most == 0.25F);
   }
   set(values, 4, 3, 7, 0.5F);  // half covered: it and its neighbours, below it too
-  CHECK(found(values, 4).walls.voxels == doctest::Approx(2 * 0.25 + 0.1));
+  CHECK(found(values, 4).lost_walls.voxels == doctest::Approx(2 * 0.25 + 0.1));
 }
 
 TEST_CASE("a single slice, and none") {
   std::vector<float> values(product(n * n, 1), 0.0F);
-  CHECK(found(values, 1).walls.voxels == 0);
+  CHECK(found(values, 1).lost_walls.voxels == 0);
   set(values, 1, 1, 0, 0.3F);
-  const LostWalls lost = found(values, 1).walls;
+  const LostWalls lost = found(values, 1).lost_walls;
   CHECK(lost.voxels == doctest::Approx(0.3));
   CHECK(lost.first == 0);
   CHECK(lost.end == 1);
@@ -66,23 +66,23 @@ TEST_CASE("gaps are lost where neither a voxel nor its 26 neighbours are three q
   }
   for (const int a_pass : {1, 2, 3, 4, 9}) {
     CAPTURE(a_pass);
-    const LostGaps lost = found(values, a_pass).gaps;
+    const LostGaps lost = found(values, a_pass).lost_gaps;
     CHECK(lost.voxels == doctest::Approx(5 * 4 * 2 * 0.25));
     CHECK(lost.first == 2);
     CHECK(lost.end == 7);
     CHECK(lost.widest == 0.5F);
   }
-  CHECK(found(values, 9).walls.voxels == 0);
+  CHECK(found(values, 9).lost_walls.voxels == 0);
   set(values, 4, 4, 6, 0.25F);  // a hole at its end: free, and so are its neighbours
-  CHECK(found(values, 9).gaps.voxels == doctest::Approx((5 * 4 * 2 - 4) * 0.25));
+  CHECK(found(values, 9).lost_gaps.voxels == doctest::Approx((5 * 4 * 2 - 4) * 0.25));
 }
 
 TEST_CASE("what is open to a side, and shells that nearly touch, are no gaps") {
   std::vector<float> values(product(n * n, 3), 1.0F);
   for (int j = 0; j < n; ++j) set(values, 3, j, 1, 0.99F);
-  CHECK(found(values, 3).gaps.voxels == 0);
+  CHECK(found(values, 3).lost_gaps.voxels == 0);
   for (int j = 0; j < n; ++j) set(values, 0, j, 1, 0.5F);  // its other half may be beyond the grid
-  CHECK(found(values, 3).gaps.voxels == 0);
+  CHECK(found(values, 3).lost_gaps.voxels == 0);
   set(values, 3, 3, 1, 0.5F);
-  CHECK(found(values, 3).gaps.voxels == doctest::Approx(0.5));
+  CHECK(found(values, 3).lost_gaps.voxels == doctest::Approx(0.5));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Walls and gaps that voxels are too coarse for.
-#include "optimize/target/unresolved.hpp"
+#include "model/unresolved.hpp"
 
 #include <doctest/doctest.h>
 
@@ -28,20 +28,26 @@ model::Volume walls(double thick, double apart, double from) {
   return volume;
 }
 
+model::Unresolved found(const model::Volume& volume) {
+  model::UnresolvedFinder finder(volume.grid);
+  finder.add(volume.grid.nz, volume.values.data());
+  return finder.found();
+}
+
 }  // namespace
 
 TEST_CASE("thick walls with wide gaps are resolved wherever they lie") {
-  for (const double from : {0.0, 0.3, 0.5, 0.8}) CHECK(optimize::unresolved(walls(3, 4, from)).share() == 0);
+  for (const double from : {0.0, 0.3, 0.5, 0.8}) CHECK(found(walls(3, 4, from)).share() == 0);
 }
 
 TEST_CASE("walls thinner than a voxel are not, and all of them count") {
-  const optimize::Unresolved thin = optimize::unresolved(walls(0.5, 4, 0.2));
+  const model::Unresolved thin = found(walls(0.5, 4, 0.2));
   CHECK(thin.part == doctest::Approx(thin.whole));
   CHECK(thin.gaps == 0);
 }
 
 TEST_CASE("nor are gaps thinner than a voxel") {
-  const optimize::Unresolved narrow = optimize::unresolved(walls(5, 0.5, 0.2));
+  const model::Unresolved narrow = found(walls(5, 0.5, 0.2));
   CHECK(narrow.part == 0);
   // Three gaps of 0.5 voxels wholly within the walls; the part's outer faces beside them are open.
   CHECK(narrow.gaps > 0.5 * 3 * 22 * 22);
@@ -54,9 +60,9 @@ TEST_CASE("the slice with most of it is found") {
   volume.slice(2)[1 * 30 + 5] = 0.5F;                               // two voxels of fifteen
   volume.slice(2)[1 * 30 + 6] = 0.5F;
   volume.slice(28)[1 * 30 + 5] = 0.5F;  // less than a tenth
-  const optimize::Unresolved found = optimize::unresolved(volume);
-  CHECK(found.slice == 1);
-  CHECK(found.first == 1);
-  CHECK(found.end == 3);
-  CHECK(found.part == 9);
+  const model::Unresolved most = found(volume);
+  CHECK(most.slice == 1);
+  CHECK(most.first == 1);
+  CHECK(most.end == 3);
+  CHECK(most.part == 9);
 }

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/unresolved.hpp"
+
+#include <algorithm>
+
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "model/dose_metrics.hpp"
+
+namespace vam::model {
+
+namespace {
+
+constexpr float half = 0.5F;
+constexpr float shut = 0.25F;              // covered by no more is free enough for a gap
+constexpr float touching = 1 - 1 / 64.0F;  // covered by more is no gap
+
+/// One voxel of the middle one of three slices, nullptr where there is none.
+struct Place {
+  int width, height;
+  const float* const* slices;
+  int i, j;
+
+  [[nodiscard]] bool at_border() const {
+    return i == 0 || j == 0 || i == width - 1 || j == height - 1 || slices[0] == nullptr || slices[2] == nullptr;
+  }
+  /// Whether the voxel itself or one of its 26 neighbours fulfils the condition.
+  template <class Condition>
+  [[nodiscard]] bool near(const Condition& condition) const {
+    for (int w = 0; w < 3; ++w) {
+      if (slices[w] == nullptr) continue;
+      for (int v = std::max(j - 1, 0); v <= std::min(j + 1, height - 1); ++v) {
+        const float* row = slices[w] + product(v, width);
+        if (std::any_of(row + std::max(i - 1, 0), row + std::min(i + 2, width), condition)) return true;
+      }
+    }
+    return false;
+  }
+  [[nodiscard]] bool near_part() const {
+    return near([](float c) { return label_of(c) == Label::part; });
+  }
+  [[nodiscard]] bool near_void() const {
+    return at_border() || near([](float c) { return label_of(c) == Label::void_; });
+  }
+  /// Free shares of it and its two neighbours along the axis of which that is least. Not at the border.
+  [[nodiscard]] float gap() const {
+    const std::size_t at = product(j, width) + static_cast<std::size_t>(i);
+    const float* middle = slices[1] + at;
+    const float across =
+        std::max({middle[-1] + middle[1], *(middle - width) + middle[width], slices[0][at] + slices[2][at]});
+    return 3 - across - *middle;
+  }
+};
+
+/// What a slice holds is added to the sums; their size is its own.
+template <class Sums>
+void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
+  if (slice.voxels == 0) return;
+  if (sums.voxels == 0) sums.first = number;
+  sums.end = number + 1;
+  sums.voxels += slice.voxels;
+  sums.*size = std::max(sums.*size, slice.*size);
+}
+
+}  // namespace
+
+/// Of the middle one of three slices.
+UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) const {
+  Slice sums;
+  const float* coverage = slices[1];
+  for (int j = 0; j < height_; ++j) {
+    for (int i = 0; i < width_; ++i, ++coverage) {
+      const float covered = *coverage;
+      sums.whole += covered;
+      if (label_of(covered) != Label::surface) continue;
+      const Place place{width_, height_, slices, i, j};
+      if (!place.near_part()) {
+        sums.part += covered;
+        if (covered < half && !place.near([](float c) { return c >= half; })) {
+          sums.walls.voxels += covered;
+          sums.walls.most = std::max(sums.walls.most, covered);
+        }
+      }
+      if (!place.near_void()) {
+        sums.gaps += 1 - covered;
+        if (covered > shut && covered < touching && !place.near([](float c) { return c <= shut; })) {
+          sums.lost.voxels += 1 - covered;
+          sums.lost.widest = std::max(sums.lost.widest, place.gap());
+        }
+      }
+    }
+  }
+  return sums;
+}
+
+/// All but the first and the last, which are neighbours only.
+std::vector<UnresolvedFinder::Slice> UnresolvedFinder::judged(const std::vector<const float*>& slices) const {
+  std::vector<Slice> found(slices.size() < 3 ? 0 : slices.size() - 2);
+  parallel_for(count_of(found), [&](int k) { found[k] = of_slice(&slices[k]); });
+  return found;
+}
+
+/// Those of which the neighbours above are still to come, and one below them.
+std::vector<const float*> UnresolvedFinder::open() const {
+  std::vector<const float*> slices;
+  if (added_ < 2) slices.push_back(nullptr);
+  for (std::size_t at = 0; at < kept_.size(); at += product(width_, height_)) slices.push_back(kept_.data() + at);
+  return slices;
+}
+
+void UnresolvedFinder::add(int count, const float* slices) {
+  const std::size_t size = product(width_, height_);
+  std::vector<const float*> all = open();
+  for (int k = 0; k < count; ++k) all.push_back(slices + product(k, size));
+  const std::vector<Slice> next = judged(all);
+  slices_.insert(slices_.end(), next.begin(), next.end());
+  added_ += count;
+  std::vector<float> last;
+  const std::size_t keep = std::min(added_, 2);
+  for (std::size_t k = all.size() - keep; k < all.size(); ++k) last.insert(last.end(), all[k], all[k] + size);
+  kept_ = std::move(last);
+}
+
+Unresolved UnresolvedFinder::found() const {
+  std::vector<const float*> last = open();
+  last.push_back(nullptr);
+  std::vector<Slice> slices = slices_;
+  const std::vector<Slice> top = judged(last);
+  slices.insert(slices.end(), top.begin(), top.end());
+  constexpr double much = 0.1;
+  Unresolved all;
+  double most = 0;
+  for (int k = 0; k < count_of(slices); ++k) {
+    const Slice& one = slices[k];
+    all.part += one.part;
+    all.gaps += one.gaps;
+    all.whole += one.whole;
+    add_slice(all.lost_walls, one.walls, &LostWalls::most, k);
+    add_slice(all.lost_gaps, one.lost, &LostGaps::widest, k);
+    if (one.part + one.gaps <= most) continue;
+    most = one.part + one.gaps;
+    all.slice = k;
+  }
+  for (int k = 0; k < count_of(slices) && most > 0; ++k) {
+    if (slices[k].part + slices[k].gaps < much * most) continue;
+    if (all.end == 0) all.first = k;
+    all.end = k + 1;
+  }
+  return all;
+}
+
+}  // namespace vam::model

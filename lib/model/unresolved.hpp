@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of a part its voxels are too coarse for. No voxel shows whether it prints where none nearby is wholly part, or
+// wholly void. Of that, walls that have no voxel that is half covered are surely not printed, and gaps that have none
+// that is three quarters free are surely printed shut.
+#pragma once
+
+#include <vector>
+
+#include "model/grid.hpp"
+
+namespace vam::model {
+
+/// Coverage of voxels that are covered by less than a half, and so are their 26 neighbours.
+struct LostWalls {
+  double voxels = 0;  // sum of coverage
+  float most = 0;     // the largest one, about the thickness of the wall in voxels
+  int first = 0;      // slices [first, end) hold them
+  int end = 0;
+};
+
+/// Free shares of voxels that are free by less than three quarters, and so are their 26 neighbours. Shares below 1/64,
+/// as of shells that nearly touch, are no gap, and beyond the grid all is free.
+struct LostGaps {
+  double voxels = 0;  // sum of free shares
+  float widest = 0;   // gap, in voxels: the free shares along the axis that it is narrowest along
+  int first = 0;      // slices [first, end) hold them
+  int end = 0;
+};
+
+/// In voxels of volume. Voxels beyond the grid are void.
+struct Unresolved {
+  double part = 0;   // of the part, in voxels without one wholly inside the part among their 26 neighbours
+  double gaps = 0;   // of the void, in voxels without one wholly outside
+  double whole = 0;  // of the part, all of it
+  int slice = 0;     // the one with most of it
+  int first = 0;     // slices [first, end) are those from the first to the last with a tenth as much or more
+  int end = 0;
+  LostWalls lost_walls;
+  LostGaps lost_gaps;
+
+  /// Relative to the part.
+  [[nodiscard]] double part_share() const { return whole > 0 ? part / whole : 0; }
+  [[nodiscard]] double gap_share() const { return whole > 0 ? gaps / whole : 0; }
+  [[nodiscard]] double share() const { return part_share() + gap_share(); }
+};
+
+/// Rounded edges and tips are less of a part; with more of it, a verdict on the voxels is none on the part.
+inline constexpr double much_unresolved = 0.02;
+
+/// Finds it slice by slice, from the lowest up.
+class UnresolvedFinder {
+ public:
+  explicit UnresolvedFinder(const Grid& grid) : UnresolvedFinder(grid.nx, grid.ny) {}
+  UnresolvedFinder(int width, int height) : width_(width), height_(height) {}
+  /// The next slices of coverage 0...1, row-major.
+  void add(int count, const float* slices);
+  /// Of the slices so far, beyond which is nothing.
+  [[nodiscard]] Unresolved found() const;
+
+ private:
+  struct Slice {
+    double part = 0, gaps = 0, whole = 0;
+    LostWalls walls;
+    LostGaps lost;
+  };
+
+  [[nodiscard]] Slice of_slice(const float* const* slices) const;
+  [[nodiscard]] std::vector<Slice> judged(const std::vector<const float*>& slices) const;
+  [[nodiscard]] std::vector<const float*> open() const;
+
+  int width_, height_;
+  std::vector<float> kept_;    // the last two slices
+  std::vector<Slice> slices_;  // all but the last slice
+  int added_ = 0;
+};
+
+}  // namespace vam::model

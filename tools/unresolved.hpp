@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of a target in a file its voxels are too coarse for.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "base/index.hpp"
+#include "io/vdb/vdb.hpp"
+#include "model/unresolved.hpp"
+
+namespace vam::tool {
+
+inline model::Unresolved unresolved(const io::SparseVolume& target) {
+  constexpr std::size_t million = 1'000'000;  // voxels at a time
+  const model::Grid& grid = target.grid();
+  const int slab = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, 16));
+  model::UnresolvedFinder finder(grid);
+  std::vector<float> slices(product(slab, grid.slice_size()));
+  for (int k = 0; k < grid.nz; k += slab) {
+    const int count = std::min(slab, grid.nz - k);
+    target.read_slices(k, count, slices.data());
+    finder.add(count, slices.data());
+  }
+  return finder.found();
+}
+
+}  // namespace vam::tool
