@@ -280,6 +280,9 @@ vam-optimize --preview --report foil.json foil.vdb >foil.txt
 is "walls too thin to be seen are no silent yes" "$(value foil.json prints)" unsure
 holds "their share is reported" "$(value foil.json unresolved_part) > 0.9"
 ok "and the reason is stated" grep -q '^verdict .*may not print: .* walls or gaps too thin' foil.txt
+vam-slice --shape box:x=2,y=2,z=8 -o tall.vdb
+vam-optimize --preview --report tall.json tall.vdb >tall.txt
+holds "of a thin part, too, where the resin around it is large" "$(value tall.json voxel_mm) >= 0.2"
 vam-optimize --preview --set resin.psf_mm=1 --report blurred.json boat.vdb >blurred.txt
 is "what the beam blurs away does not print" "$(value blurred.json prints)" no
 ok "and where" grep -q '^wrong voxels  *z = ' blurred.txt

@@ -29,8 +29,9 @@ namespace vam::optimize_tool {
 
 namespace {
 
-constexpr int least_voxels = 24;                          // a side of the part
-constexpr double most_updates = 2e8;                      // voxels x angles: a projection of those takes 0.1 s
+constexpr int least_voxels = 24;       // a side of the part
+constexpr int least_of_slow = 7;       // of one whose finer voxels take long
+constexpr double most_updates = 2e8;   // voxels x angles: a projection of those takes 0.1 s
 constexpr double hopeless = 0.5;       // not resolved, relative to the part
 constexpr int least_iterations = 4, most_iterations = 16;
 constexpr int proof_iterations = 40;
@@ -57,21 +58,25 @@ Level coarser(const Level& fine) {
   return coarse;
 }
 
-bool can_be_coarser(const model::Grid& grid) { return std::min(grid.nx, grid.ny) >= 2 * least_voxels && grid.nz > 1; }
+bool is_quick(const Level& level) { return level.updates() <= most_updates; }
+
+bool can_be_coarser(const Level& level) {
+  const model::Grid& grid = level.in().grid();
+  return std::min(grid.nx, grid.ny) >= 2 * (is_quick(level) ? least_voxels : least_of_slow) && grid.nz > 1;
+}
 
 /// The coarsest of four, two and one voxels of the target that shows all of the part, or that is quick enough.
 Level level_of(const model::Printer& printer, const Inputs& in, const Options& options) {
   std::vector<Level> levels;
   levels.push_back({1, printer, options, {}, &in, make_scene(in.target.front(), printer, options)});
   while (levels.back().pixels < 4) {
-    if (!can_be_coarser(levels.back().in().grid())) break;
+    if (!can_be_coarser(levels.back())) break;
     levels.push_back(coarser(levels.back()));
   }
   for (; levels.size() > 1; levels.pop_back()) {
     Level& level = levels.back();
     level.unresolved = tool::unresolved(level.own.target.front());
-    const bool finer_is_quick = levels[levels.size() - 2].updates() <= most_updates;
-    if (level.unresolved.share() <= model::much_unresolved || !finer_is_quick) break;
+    if (level.unresolved.share() <= model::much_unresolved || !is_quick(levels[levels.size() - 2])) break;
   }
   return std::move(levels.back());
 }
@@ -171,7 +176,7 @@ FromCoarser from_coarser(const Level& level) {
 Seen see(Level level) {
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
   warn_of(level.scene, level.in().target.front(), level.options);
-  const bool has_coarser = can_be_coarser(level.in().grid());
+  const bool has_coarser = can_be_coarser(level);
   FromCoarser below = has_coarser ? from_coarser(level) : FromCoarser{};
   const optimize::VolumeOutcome outcome =
       solved(level, has_coarser ? 0 : proof_on(level), std::move(below.start)).outcome;
