@@ -84,7 +84,10 @@ cli::Manual manual() {
        "when its image is on the disk: frame (its index), file, number, t_monotonic_s, time_sigma_s, device_s (the "
        "camera's own "
        "stamp), angle_deg, sigma_deg, complete and levels (a fingerprint of the grey levels); dropped frames have a "
-       "line {\"dropped\":[FIRST,LAST]}."},
+       "line {\"dropped\":[FIRST,LAST]}, and the last line states how many frames there are. Every line is sealed "
+       "together with the one above: images and lines that were changed, exchanged, added or lost are refused (65) by "
+       "all tools that read the folder, and by a capture that completes it; vam-check(1) verifies it. An image that "
+       "was deleted is captured again."},
       cli::device_statuses};
 }
 

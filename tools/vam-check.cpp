@@ -34,6 +34,8 @@ cli::Manual manual() {
            "tools write into stacks, volumes, calibration records, reports and the printer file of a print "
            "(vam-formats(7), SEALS), and the checksums of lossless videos. If a file differs, the exit status is 65, "
            "after all others have been checked.",
+           "Of a folder of vam-capture every line of the manifest is verified against the one above, and every image "
+           "against its line; images that are lost, exchanged or without a line are named.",
            "For each file vam-check prints whether it is sealed, and the commands that produced it: for each command "
            "the seal of the file that it wrote, the command line, and the name of that file if it is among those "
            "checked. A dash replaces the seal of a file that was not sealed or came through a pipe.",
@@ -62,7 +64,10 @@ std::string report(const std::string& path, const std::vector<ProvenanceEntry>& 
   std::string text;
   for (const ProvenanceEntry& finding : findings) {
     text += printable(io::input_name(path)) + ": " + printable(finding.what) +
-            (finding.sealed ? ", sealed" : ", unsealed") + (finding.seal.empty() ? "" : " " + finding.seal) + "\n";
+            (!finding.damage.empty() ? ", damaged"
+             : finding.sealed        ? ", sealed"
+                                     : ", unsealed") +
+            (finding.seal.empty() ? "" : " " + finding.seal) + "\n";
     for (const auto& [command, seal] : chain_of(finding)) {
       const auto named = names.find(seal);
       text += "  " + (seal.empty() ? std::string(15, ' ') + "-" : seal) + "  " + printable(command) +
@@ -88,6 +93,7 @@ void check(const Options& options) {
       continue;
     }
     for (const ProvenanceEntry& finding : found[path]) {
+      for (const std::string& damage : finding.damage) damaged.push_back({Fault::data, damage});
       if (!finding.seal.empty()) names.emplace(finding.seal, io::input_name(path));
     }
   }

@@ -88,12 +88,14 @@ is 'the incomplete one is marked' "$(grep '"complete":false' folder/manifest.jso
 vam-capture --device "replay:views.exr" --frames 10 -o folder/ 2>said
 is 'another camera is refused' "$? $(grep -c 'was captured with another setting (camera' said)" '73 1'
 quiet 'a whole recording' vam-capture --device replay:views.exr --frames 12 -o whole/
-cp -r whole half; rm half/000003.png half/00001*.png
-sed -e '5d' -e '12,13d' whole/manifest.jsonl >half/manifest.jsonl
+cp -r whole half; rm half/000003.png half/00001*.png  # one is deleted; the capture was killed before two more
+head -n 11 whole/manifest.jsonl >half/manifest.jsonl
 printf '{"frame":10,"file":"0000' >>half/manifest.jsonl
 quiet 'resumes' vam-capture --device replay:views.exr --frames 12 -o half/
-is 'and captures only the missing frames' "$(($(wc -l <half/manifest.jsonl) - $(wc -l <whole/manifest.jsonl)))" 0
-sort half/manifest.jsonl >half.lines; sort whole/manifest.jsonl >whole.lines
+is 'and captures only the missing frames' "$(tail -n 4 half/manifest.jsonl | sed 's/,"file.*//;s/,"dropped.*//' | tr '\n' ' ')" \
+  '{"frame":3 {"frame":10 {"frame":11 {"frames":12 '
+lines() { sed 's/,"seal":.*//' $1/manifest.jsonl | sort -u; }
+lines half >half.lines; lines whole >whole.lines
 same 'the manifests agree' half.lines whole.lines
 for file in whole/*.png; do cmp -s "$file" "half/$(basename "$file")" || echo "$file"; done >different
 is 'the images are identical' "$(cat different)" ''
@@ -112,6 +114,8 @@ quiet 'the remaining frames are captured' shrinking ''
 is 'all six' "$(grep -c '"complete":true' shrunk/manifest.jsonl)" 6
 vam-capture --device 'sim:?pace=virtual' --binning 20 --frames 4 -o coarse/
 cp -r whole differs; cp coarse/000003.png differs/
+fails 65 'differs/000003.png: is not the image that was captured' vam-capture --device replay:differs --frames 12 -o no.exr
+sed -i 's/"levels":"[0-9a-f]*"/"levels":""/;s/,"seal":"[^"]*"//' differs/manifest.jsonl  # as a former version may have it
 fails 65 'differs: frame 3 has 36 x 27 pixels instead of 60 x 45' vam-capture --device replay:differs --frames 12 -o no.exr
 
 # Killed at any moment: every listed image exists, and the remaining frames can be captured.
@@ -129,7 +133,7 @@ quiet 'by angle' $take --speed 90 --view-step 9 --turns 1.1 -o turn/
 is 'the number of multiples in the turns' "$(grep -c '"frame"' turn/manifest.jsonl)" 44
 python3 - >worst <<'PY'
 import json
-lines = [json.loads(line) for line in open("turn/manifest.jsonl")][1:]
+lines = [json.loads(line) for line in open("turn/manifest.jsonl")][1:-1]
 print(max(abs(line["angle_deg"] - 9 * line["frame"]) for line in lines))
 PY
 holds 'each within half a frame of its angle' "$(cat worst) <= 4.5"
@@ -137,9 +141,60 @@ echo "vam-capture --device '$sim' --binning 12 --fps 10 --speed 90 --view-step 9
   vam-ost --live -o live/ --log live.log" >live.sh
 quiet 'live frames reach vam-ost' sh live.sh
 holds 'which saw a turn' "$(grep -c turns live.log) >= 1"
-sed -i '/"frame":0,/d' turn/manifest.jsonl  # there was no print yet
-quiet 'a capture folder is read by vam-ost with its angles' vam-ost turn -o seen.vdb
+vam-ost turn -o seen.vdb 2>said
+is 'a capture folder is read by vam-ost with its angles' "$? $(grep -vc '000000.png: dark' said)" '0 0'  # no print yet
 
+# Images and lines that were changed, exchanged, added or lost are named by what reads a folder.
+ok 'a whole folder is sealed' sh -c 'vam-check turn | grep -qx "turn: capture folder of 44 images, sealed"'
+$take --frames 3 -o again/
+refused() {  # refused WHAT: of the folder bad, in all tools that read it, until it is completed
+  vam-check bad >out 2>said
+  is "65: vam-check: $1" "$? $(grep -Ec "^vam-check: (warning: )?bad/$1" said)" '65 1'
+  for tool in 'vam-ost bad -o no.vdb' 'vam-convert bad --voxel 1 -o no.vdb' 'vam-capture --device replay:bad --frames 4 -o no.exr'; do
+    fails 65 "^${tool%% *}: bad/$1" $tool
+  done
+}
+spoil() { rm -rf bad; cp -r turn bad; }
+again() { fails 65 "^vam-capture: bad/$1" $take --speed 90 --view-step 9 --turns 1.1 -o bad/; }
+spoil; mv bad/000003.png t; mv bad/000004.png bad/000003.png; mv t bad/000004.png
+refused '000003.png: is not the image that was captured \(fingerprint .[0-9a-f]{8}. in manifest.jsonl, read [0-9a-f]{8}\); restore it, or delete it and repeat vam-capture$'
+again '000003.png: is not the image'
+is 'the other is named, too' "$(vam-check bad 2>&1 | grep -c 'bad/000004.png: is not the image') $(vam-check bad 2>&1 | grep -c '^bad: .*, damaged$')" '1 1'
+spoil; cp again/000002.png bad/000003.png; refused '000003.png: is not the image'
+spoil; cp bad/000003.png bad/000044.png; refused '000044.png: has no line in manifest.jsonl; restore the manifest, or remove'
+spoil; rm bad/000003.png
+fails 66 'bad/000003.png: is gone, but manifest.jsonl lists it; restore it, or repeat vam-capture' vam-ost bad -o no.vdb
+fails 65 'bad/000003.png: is gone' vam-check --fast bad
+quiet 'one that was deleted is captured again' $take --speed 90 --view-step 9 --turns 1.1 -o bad/
+ok 'and the folder is whole' vam-check bad
+for change in '5d' '2d' '1d' '5s/"angle_deg":[0-9.]*/"angle_deg":33.5/' '5s/,"seal.*"/,"seal":"xxh3:"/' '5s/,"seal[^}]*//' '1s/,"seal[^}]*//' '46s/:44,/:43,/'; do
+  spoil; sed -i "$change" bad/manifest.jsonl
+  refused 'manifest.jsonl: line [0-9]*: (changed after it was written, or lines before it are gone \(|is not a manifest of|has (a|no) seal, but those before).*; restore the manifest, or capture again$'
+done
+again 'manifest.jsonl: line 46: changed'
+spoil; head -n 40 turn/manifest.jsonl >bad/manifest.jsonl; refused '000039.png: has no line in manifest.jsonl, as 4 more images'
+spoil; sed -i '$d' bad/manifest.jsonl
+fails 65 'bad/manifest.jsonl: does not end as that of a capture that ended: .*; repeat vam-capture, which completes it' vam-check bad
+ok 'or is read with a warning' sh -c 'vam-ost bad -o seen.vdb 2>&1 | grep -q "warning: bad/manifest.jsonl: does not end"'
+quiet 'the end is written' $take --speed 90 --view-step 9 --turns 1.1 -o bad/
+same 'as it was' bad/manifest.jsonl turn/manifest.jsonl
+# Those of former versions have no seals, those of other programs no manifest.
+spoil; sed -i 's/,"seal":"[^"]*"//;$d' bad/manifest.jsonl
+ok 'a former folder is unsealed' sh -c 'vam-check bad | grep -qx "bad: capture folder of 44 images, unsealed"'
+ok 'and read' vam-ost bad -o seen.vdb
+cp turn/000004.png bad/000003.png; refused '000003.png: is not the image that was captured'
+rm bad/manifest.jsonl
+ok 'a folder of images is one' sh -c 'vam-check bad | grep -qx "bad: folder of images, unsealed"'
+for text in '' '{' '[]' '{"schema":7}' '{"schema":"vam-capture/1"}\n{}' '{"schema":"vam-capture/1"}\n{"frame":0,"number":0,"t_monotonic_s":"x"}' '{"schema":"vam-capture/1"}\n{"dropped":7}'; do
+  printf "$text\n" >bad/manifest.jsonl
+  fails 65 '^vam-ost: bad/manifest.jsonl: line [12]: (has no key|its key|.* is not|is not) .*; restore the manifest, or capture again$' vam-ost bad -o no.vdb
+done
+is 'and no words of a library' "$(cat .log/err | grep -c 'json\.exception')" 0
+
+vam-capture --device 'sim:?speed=90' --binning 12 -o open/ 2>said & tool=$!  # without a number of frames
+await grep -qs '"frame":3,' open/manifest.jsonl
+kill -TERM $tool; wait $tool 2>/dev/null
+is 'a folder that a signal ends is whole' "$? $(vam-check open | grep -c ', sealed$')" '143 1'
 vam-capture --device 'sim:?speed=90' --binning 12 --frames 500 -o stopped.exr --log begun 2>said & tool=$!
 tries=0; until [ -s begun ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.02; done
 kill -TERM $tool; wait $tool 2>/dev/null

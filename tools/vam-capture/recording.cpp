@@ -19,11 +19,11 @@ using device::CapturedFrame;
 
 // Every frame of a folder of vam-capture, by its manifest.
 device::CameraFeed folder_feed(const std::string& place) {
-  auto manifest = std::make_shared<io::CaptureManifest>(io::read_manifest(place));
+  auto manifest = std::make_shared<io::CaptureManifest>(io::open_capture(place));
   return [manifest, place, next = manifest->frames.begin()](CapturedFrame& frame) mutable {
     if (next == manifest->frames.end()) return false;
     const io::CaptureRecord& record = next->second;
-    frame.levels = io::read_image((std::filesystem::path(place) / io::capture_file_name(record.place)).string());
+    frame.levels = io::read_captured(place, record);
     frame.number = record.number;
     frame.time_s = record.t_monotonic_s;
     frame.time_sigma_s = record.time_sigma_s.value_or(0);

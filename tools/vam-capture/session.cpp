@@ -12,6 +12,7 @@
 #include "base/progress.hpp"
 #include "device/open/camera.hpp"
 #include "device/os/event_log.hpp"
+#include "device/os/interrupt.hpp"
 #include "device/port/lines.hpp"
 #include "io/image/image_file.hpp"
 #include "io/settings/report.hpp"
@@ -214,7 +215,13 @@ void take(const cli::App& app, const Options& options) {
     return plan.frames > 0;
   }();
   device::CaptureTally tally;
-  if (!nothing_to_do) tally = device::capture(*camera, angles.get(), plan, sink);
+  try {
+    if (!nothing_to_do) tally = device::capture(*camera, angles.get(), plan, sink);
+  } catch (const device::Interrupted&) {  // the usual end of a capture without a number of frames
+    store->close();
+    throw;
+  }
+  store->close();
   log("end", device::to_json(tally));
   conclude(options, tally, plan.frames);
   store->commit();

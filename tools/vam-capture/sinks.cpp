@@ -5,7 +5,6 @@
 
 #include "base/json.hpp"
 #include "io/image/capture_folder.hpp"
-#include "sim/cameras/camera.hpp"
 
 namespace vam::capture_tool {
 
@@ -42,6 +41,7 @@ class StackStore final : public FrameStore {
     writer_.write(fractions(shot.frame.levels), about(shot, info_.z_start_mm));
   }
   void dropped(long, long) override {}  // the numbers of the frames beside the gap tell
+  void close() override {}
   void commit() override { writer_.commit(); }
 
  private:
@@ -64,6 +64,7 @@ class StreamStore final : public FrameStore {
     writer.commit();
   }
   void dropped(long, long) override {}
+  void close() override {}
   void commit() override {}
 
  private:
@@ -89,10 +90,10 @@ class FolderStore final : public FrameStore {
       record.sigma_deg = shot.angle->sigma_deg;
     }
     record.complete = shot.frame.complete;
-    record.levels = sim::fingerprint(shot.frame.levels);
     folder_.keep(record, shot.frame.levels);
   }
   void dropped(long first, long last) override { folder_.dropped(first, last); }
+  void close() override { folder_.end(); }
   void commit() override {}
 
  private:

@@ -20,7 +20,9 @@ class FrameStore {
   [[nodiscard]] virtual bool wanted(long place) const = 0;
   virtual void keep(device::Shot&& shot) = 0;
   virtual void dropped(long first, long last) = 0;
-  /// After the last frame. Throws Error: io, no_output.
+  /// After the last frame that came, whether all did or a signal ended the capture. Throws Fault::io.
+  virtual void close() = 0;
+  /// When all frames came. Throws Error: io, no_output.
   virtual void commit() = 0;
 };
 

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/video.hpp"
 #include "io/stream/log_lines.hpp"
@@ -116,9 +118,18 @@ std::vector<model::ImageInfo> read_frame_index(const std::string& folder, const 
   return index;
 }
 
+// Lines of the manifest, by their images; none where the folder is not one of vam-capture.
+std::map<std::string, CaptureRecord> captured_images(const std::string& folder) {
+  std::map<std::string, CaptureRecord> records;
+  if (!is_capture_folder(folder)) return records;
+  for (const auto& [place, record] : open_capture(folder).frames) records[capture_file_name(place)] = record;
+  return records;
+}
+
 class FolderSource : public ImageSource {
  public:
-  explicit FolderSource(const std::string& path) : folder_(path), index_(read_frame_index(path, folder_)) {
+  explicit FolderSource(const std::string& path)
+      : folder_(path), index_(read_frame_index(path, folder_)), captured_(captured_images(path)) {
     const GreyImage first = folder_.read(0);
     info_ = frames_of(first.width, first.height, folder_.count());
     if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
@@ -128,13 +139,18 @@ class FolderSource : public ImageSource {
   bool next(Image& image, model::ImageInfo& about) override {
     if (taken_ == folder_.count()) return false;
     about = index_.empty() ? model::ImageInfo{} : index_[taken_];
-    image = fractions(folder_.read(taken_++));
+    const std::string& path = folder_.path(taken_);
+    const GreyImage levels = folder_.read(taken_++);
+    const auto record = captured_.find(std::filesystem::path(path).filename());
+    if (record != captured_.end()) require_captured(path, record->second, levels);
+    image = fractions(levels);
     return true;
   }
 
  private:
   ImageFolder folder_;
   std::vector<model::ImageInfo> index_;
+  std::map<std::string, CaptureRecord> captured_;
   model::StackInfo info_;
   int taken_ = 0;
 };

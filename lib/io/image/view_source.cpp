@@ -13,7 +13,6 @@
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/video.hpp"
-#include "io/stream/log_lines.hpp"
 
 namespace vam::io {
 
@@ -75,8 +74,7 @@ struct ViewSource::State {
     if (recorded == capture->frames.end()) return false;
     const CaptureRecord& record = recorded++->second;
     frame.name = path + "/" + capture_file_name(record.place);
-    (void)has_regular_file(frame.name);  // a pipe would be waited for
-    frame.image = to_image(read_image(frame.name));
+    frame.image = to_image(read_captured(path, record));
     frame.time_s = record.t_monotonic_s;
     frame.time_sigma_s = record.time_sigma_s.value_or(0);
     frame.angle_deg = record.angle_deg ? *record.angle_deg : static_cast<double>(record.place) * needed_step();
@@ -94,7 +92,7 @@ ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::m
   state_->path = path;
   state_->step_deg = step_deg;
   if (path != "-" && is_capture_folder(path)) {
-    state_->capture = read_manifest(path);
+    state_->capture = open_capture(path);
     state_->recorded = state_->capture->frames.begin();
   } else if (path != "-" && std::filesystem::is_directory(path)) {
     state_->folder = std::make_unique<ImageFolder>(path, true);

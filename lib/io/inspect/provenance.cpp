@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
+#include "io/image/capture_folder.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
@@ -55,6 +56,15 @@ std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType ty
   return {{type == FileType::video ? "video" : "folder of images", source->is_sealed(), "", source->info().history}};
 }
 
+std::vector<ProvenanceEntry> inspect_capture(const std::string& path, bool fast) {
+  const CaptureManifest manifest = read_manifest(path);
+  return {{"capture folder of " + std::to_string(manifest.frames.size()) + " images",
+           manifest.sealed,
+           "",
+           {},
+           capture_damage(path, manifest, fast)}};
+}
+
 std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
   const std::string name = input_name(path);
@@ -94,6 +104,9 @@ std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast) {
       return inspect_volumes(path, fast);
     case FileType::stack:
       return inspect_stacks(path, fast);
+    case FileType::images:
+      if (is_capture_folder(path)) return inspect_capture(path, fast);
+      [[fallthrough]];
     default:
       return inspect_images(path, *type, fast);
   }

@@ -9,10 +9,11 @@ namespace vam::io {
 
 /// One image stack, grid, video or text.
 struct ProvenanceEntry {
-  std::string what;                  // "stack of 120 images", "grid 'target'"
-  bool sealed = false;               // and held to it
-  std::string seal;                  // 16 digits; empty where there is none, or it is not known
-  std::vector<std::string> history;  // with the lines of seals
+  std::string what;                      // "stack of 120 images", "grid 'target'"
+  bool sealed = false;                   // and held to it
+  std::string seal;                      // 16 digits; empty where there is none, or it is not known
+  std::vector<std::string> history;      // with the lines of seals
+  std::vector<std::string> damage = {};  // of a folder: what differs, is gone or does not belong to it, a line each
 };
 
 /// Reads the file, or with `fast` its headers alone. Throws Fault::data where it is not what was written, and what its

@@ -2,12 +2,11 @@
 #include "sim/cameras/camera.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/fingerprint.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
@@ -165,18 +164,6 @@ std::set<long> parse_frames(const std::string& text) {
     numbers.insert(static_cast<long>(*value));
   }
   return numbers;
-}
-
-std::string fingerprint(const GreyImage& levels) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  const auto add = [&hash](unsigned byte) { hash = (hash ^ byte) * 0x100000001b3ULL; };
-  for (const std::uint16_t level : levels.values) {
-    add(level & 255U);
-    if (levels.bits > 8) add(level >> 8U);
-  }
-  std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash));
-  return text.data();
 }
 
 std::unique_ptr<device::Camera> open_sim_camera(const device::Address& address, const device::CameraSettings& settings,

@@ -36,7 +36,4 @@ struct SimCameraSettings {
 /// "3,7" to numbers of frames. Throws Fault::usage.
 [[nodiscard]] std::set<long> parse_frames(const std::string& text);
 
-/// 16 hexadecimal digits that tell images apart (FNV-1a of the levels, low byte first), for logs and manifests.
-[[nodiscard]] std::string fingerprint(const GreyImage& levels);
-
 }  // namespace vam::sim

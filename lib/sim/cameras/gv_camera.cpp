@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/fingerprint.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"

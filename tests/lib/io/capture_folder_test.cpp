@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "base/fingerprint.hpp"
 #include "base/json.hpp"
 #include "io/image/image_file.hpp"
 #include "lib/io/scratch.hpp"
@@ -55,10 +56,16 @@ TEST_CASE("a folder of frames goes on where it ended, and gives back what was re
     frames.keep(record(1, true), levels(30));
     frames.dropped(20, 20);
     frames.keep(record(0, false), levels(10));  // worse than what is there
+    frames.end();
+    frames.end();  // once is enough
   }
   const CaptureManifest manifest = read_manifest(path);
-  CHECK(Json::parse(manifest.head) == head);
+  Json first_line = Json::parse(manifest.head);
+  CHECK(first_line.erase("seal") == 1);
+  CHECK(first_line == head);
+  CHECK(manifest.sealed);
   CHECK(manifest.dropped == 3 + 1);
+  CHECK(manifest.ended);
   REQUIRE(manifest.frames.size() == 2);
   const CaptureRecord& first = manifest.frames.at(0);
   CHECK(first.complete);
@@ -68,9 +75,47 @@ TEST_CASE("a folder of frames goes on where it ended, and gives back what was re
   CHECK(first.device_s == 3.25);
   CHECK_FALSE(first.angle_deg);
   CHECK(first.sigma_deg == 0.125);
-  CHECK(first.levels == "a");
+  CHECK(first.levels == fingerprint(levels(10)));
   CHECK(manifest.frames.at(1).complete);
   CHECK(read_image(path + "/000001.png").values == levels(30).values);
+}
+
+TEST_CASE("no byte of a sealed manifest can change, and none of its lines go, unseen") {
+  const scratch::Folder folder;
+  const std::string path = folder / "frames";
+  {
+    CaptureFolder frames(path, head);
+    for (long place = 0; place < 3; ++place)
+      frames.keep(record(place, place != 1), levels(static_cast<std::uint16_t>(place)));
+    frames.dropped(4, 5);
+    frames.end();
+  }
+  const std::string file = path + "/manifest.jsonl";
+  const std::string text = scratch::slurp(file);
+  REQUIRE(capture_damage(path, read_manifest(path), false).empty());
+  const auto noticed = [&](const std::string& changed) {
+    scratch::spill(file, changed);
+    std::string line;
+    const int status = scratch::status(
+        [&] {
+          if (const auto damage = capture_damage(path, read_manifest(path), true); !damage.empty())
+            throw Error{Fault::data, damage.front()};
+        },
+        &line);
+    return status == static_cast<int>(Fault::data) && line.find("exception") == std::string::npos;
+  };
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    CAPTURE(at);
+    std::string changed = text;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    CHECK(noticed(changed));
+  }
+  for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    CAPTURE(begin);
+    CHECK(noticed(text.substr(0, begin) + text.substr(end + 1)));
+    CHECK(noticed(text.substr(0, begin)));
+  }
+  CHECK_FALSE(noticed(text));
 }
 
 TEST_CASE("a folder of another capture or with other files is not gone on with") {
