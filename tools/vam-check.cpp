@@ -28,33 +28,36 @@ struct Options {
 };
 
 cli::Manual manual() {
-  return {"vam-check",
-          "verify the integrity of files and show their provenance",
-          {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these "
-           "tools write into stacks, volumes, calibration records, reports and the printer file of a print "
-           "(vam-formats(7), SEALS), and the checksums of lossless videos. If a file differs, the exit status is 65, "
-           "after all others have been checked.",
-           "Of a folder of vam-capture every line of the manifest is verified against the one above, and every image "
-           "against its line; images that are lost, exchanged or without a line are named.",
-           "For each file vam-check prints whether it is sealed, and the commands that produced it: for each command "
-           "the seal of the file that it wrote, the command line, and the name of that file if it is among those "
-           "checked. A dash replaces the seal of a file that was not sealed or came through a pipe.",
-           "All tools verify the seals of the files that they read; vam-check is for archives and for files received "
-           "from others. Files of other programs have no seal, which is printed and is not an error. Seals reveal bit "
-           "rot, truncation and edits; they are not signatures."},
-          {{"Check a part and its sinogram:",
-            "vam-slice --shape gyroid --voxel 0.2 -o part.vdb\n"
-            "vam-sinogram part.vdb -o sino.exr\n"
-            "vam-check part.vdb sino.exr"},
-           {"Headers only, for large archives:",
-            "vam-slice --shape gyroid --voxel 0.2 | vam-sinogram -o sino.exr\n"
-            "vam-check --fast sino.exr"},
-           {"Seal printer settings:",
-            "vam-slice --print-printer -o printer.toml\n"
-            "vam-check --seal printer.toml\n"
-            "vam-check printer.toml"}},
-          {"Memory: one image, or the topology of one volume. Speed: that of reading."},
-          {"vam-print", "vam-view"}};
+  return {
+      "vam-check",
+      "verify the integrity of files and show their provenance",
+      {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these "
+       "tools write into stacks, volumes, calibration records, reports and the printer file of a print "
+       "(vam-formats(7), SEALS), and the checksums of lossless videos. If a file differs, the exit status is 65, "
+       "after all others have been checked.",
+       "Of the run folder of a print every file is verified against its SHA256SUMS; files that were changed, that "
+       "are lost or that are not in the list are named (all but resumed.json, which a resumption adds). Of a folder of "
+       "vam-capture every line of the manifest is verified against the one above, and every image "
+       "against its line; images that are lost, exchanged or without a line are named.",
+       "For each file vam-check prints whether it is sealed, and the commands that produced it: for each command "
+       "the seal of the file that it wrote, the command line, and the name of that file if it is among those "
+       "checked. A dash replaces the seal of a file that was not sealed or came through a pipe.",
+       "All tools verify the seals of the files that they read; vam-check is for archives and for files received "
+       "from others. Files of other programs have no seal, which is printed and is not an error. Seals reveal bit "
+       "rot, truncation and edits; they are not signatures."},
+      {{"Check a part and its sinogram:",
+        "vam-slice --shape gyroid --voxel 0.2 -o part.vdb\n"
+        "vam-sinogram part.vdb -o sino.exr\n"
+        "vam-check part.vdb sino.exr"},
+       {"Headers only, for large archives:",
+        "vam-slice --shape gyroid --voxel 0.2 | vam-sinogram -o sino.exr\n"
+        "vam-check --fast sino.exr"},
+       {"Seal printer settings:",
+        "vam-slice --print-printer -o printer.toml\n"
+        "vam-check --seal printer.toml\n"
+        "vam-check printer.toml"}},
+      {"Memory: one image, or the topology of one volume. Speed: that of reading."},
+      {"vam-print", "vam-view"}};
 }
 
 // The names of the files that are checked, by their seals.
@@ -125,7 +128,8 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   cli::App app(manual());
   Options options;
-  app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or other files.")
+  app.positional("FILE ...", options.files,
+                 "Stacks, volumes, videos, records, reports, printer files, run and capture folders, or other files.")
       .reads();
   app.flag("--fast", options.fast, "Check the headers of stacks and volumes, not their values.");
   app.flag(

@@ -35,7 +35,7 @@ is 'without a terminal no line is printed and no page written' "$? $(cat out err
 
 # Progress after half of the flips: the dose is that of vam-dose on the same log.
 cp -r run half
-rm half/SHA256SUMS  # which a print writes at its end
+rm half/SHA256SUMS half/summary.json  # which a print writes at its end
 sed -i '/"event":"end"/d' half/events.jsonl
 head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl >half/flips.jsonl
 last=$(tail -n 1 half/flips.jsonl | grep -o '"angle_deg":[-0-9.e]*' | cut -d: -f2)
@@ -60,6 +60,41 @@ ok 'or from when on' grep -q 'from turn 11 on, for 2 turns: sensitivity 0.953' n
 ok 'with the sensitivity' grep -q 'Sensitivity of the resin' new.html
 rm -r half/renewed half/renewed.jsonl
 ok 'live metrology' sh -c 'vam-status half | grep -q "cured 65.8 %, missing 34.2 %"'
+
+# A print that has ended is held to its hashes: what was cut, changed, lost or added since is named.
+spoil() { rm -rf part; cp -r run part; }
+ok 'a run folder is verified' sh -c "vam-check run | grep -Eqx 'run: run folder of [0-9]+ files, sealed'"
+for log in events.jsonl flips.jsonl angles.jsonl stage.jsonl capture.jsonl printer.toml summary.json project.json views/manifest.jsonl; do
+  for change in 'sed -i $d' 'sed -i 1s/[a-z{]/Q/' rm; do
+    [ "$change" != 'sed -i $d' ] || case $log in *.json) continue ;; esac
+    spoil; $change part/$log
+    what=': changed after the print \(its hash is not that in SHA256SUMS\); restore the original file'
+    [ "$change" != rm ] || what=': is gone, but SHA256SUMS lists it; restore it'
+    for tool in vam-status 'timeout 20 vam-status --watch' vam-check; do fails 65 "part/$log$what\$" $tool part; done
+  done
+done
+spoil; printf x >>part/page.html; printf x >>part/views/000003.png; rm part/views/000004.png; echo >part/views/000099.png
+vam-check part >said 2>err
+is 'all that is wrong is named' "$? $(cat said | sed 's/[0-9][0-9]*/N/')" '65 part: run folder of N files, damaged'
+for what in 'page.html: changed' 'views/000003.png: changed' 'views/000004.png: is gone' 'views/000099.png: is not in SHA256SUMS: it was added'; do
+  ok "$what" grep -q "part/$what" err
+done
+is '--fast looks for names only' "$(vam-check --fast part 2>&1 | grep -c 'part/')" 2
+ok 'the line needs none of these' vam-status part
+spoil; echo '{}' >part/resumed.json
+ok 'that it was resumed is no damage' vam-check part
+for change in '$d' '3s/^./x/' '/events/d' '/flips/d' '1s/^/ /' '1p' '1s|\./|../|' '1s|\./|/|'; do
+  spoil; sed -i "$change" part/SHA256SUMS
+  ok "a list changed by $change" sh -c 'vam-check part 2>&1 | grep -Eq "SHA256SUMS: line [0-9]+: (is not a hash and the name of a file in the folder|names a file for the second time)|is not in SHA256SUMS: it was added after the print, or the list was cut"'
+done
+spoil; sed -i /events/d part/SHA256SUMS; fails 65 'part/SHA256SUMS: has no hash of events.jsonl; it was cut' vam-status part
+spoil; : >part/SHA256SUMS; fails 65 'part/SHA256SUMS: is empty; it was cut; restore it' vam-status part
+rm part/SHA256SUMS; fails 65 'part: has no SHA256SUMS, which a print writes when it has ended' vam-check part
+for spoiling in ': >part/events.jsonl' 'rm part/events.jsonl' 'sed -i "/\"end\"/d" part/events.jsonl'; do
+  spoil; rm part/SHA256SUMS; eval "$spoiling"
+  timeout 20 vam-status part --watch >said 2>err
+  is "without the list: $spoiling" "$? $(grep -c '^ended: done  turn 3.00 of 3 ' said) $(grep -c 'warning: part/events.jsonl: does not tell of the end that summary.json states' err)" '0 1 1'
+done
 
 # Folders of prints that have just begun, or were killed at once: logs that are missing, empty or cut.
 without() { rm -rf part; cp -r run part; rm -f part/SHA256SUMS part/summary.json; for f; do : >part/$f.jsonl; done; }

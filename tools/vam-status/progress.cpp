@@ -15,8 +15,10 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
+#include "base/log.hpp"
 #include "base/printable.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
@@ -56,12 +58,31 @@ bool about_to_be_armed(const RunFolder& run) {
   return io::has_regular_file(settings) && io::require_text_seal(io::read_all(settings), settings);
 }
 
+// The logs of a print that has ended are what they were at its end; other files need not be read for a line.
+void require_logs(const std::string& folder) {
+  if (!io::has_run_sums(folder)) return;
+  const io::RunSums sums = io::read_run_sums(folder);
+  if (!sums.contains("events.jsonl")) {
+    throw Error{Fault::data, folder +
+                                 "/SHA256SUMS: has no hash of events.jsonl; it was cut or changed; restore it, or "
+                                 "delete it to use the logs unverified"};
+  }
+  for (const auto& file : sums) {
+    const fs::path name(file.first);
+    const fs::path ending = name.extension();
+    const bool is_log = ending == ".jsonl" || ending == ".json" || ending == ".toml";
+    if (!is_log || (name.has_parent_path() && name.filename() != "manifest.jsonl")) continue;
+    if (const std::string problem = io::sum_problem(folder, file); !problem.empty()) throw Error{Fault::data, problem};
+  }
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path) : path_(path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored))
     throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
+  require_logs(path);
   if (!io::has_regular_file(file("events.jsonl")) && !about_to_be_armed(*this)) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
@@ -113,6 +134,7 @@ void RunFolder::read_events() {
       progress_.status = static_cast<int>(number_at(line, "status", 0));
     }
   });
+  if (!progress_.outcome) read_summary();
   progress_.abandoned = !progress_.outcome && progress_.silent_s > silence_s && !is_locked(file("events.jsonl"));
   progress_.simulated.clear();
   const auto look = [&](const char* log, const char* event, const char* what) {
@@ -129,6 +151,18 @@ void RunFolder::read_events() {
   look("stage.jsonl", "begin", "stage");
   look("capture.jsonl", "begin", "camera");
   look("flips.jsonl", "light", "light engine");
+}
+
+// The last that vam-print writes: a print that has it has ended, whatever became of its events.
+void RunFolder::read_summary() {
+  if (!io::has_regular_file(file("summary.json"))) return;
+  constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
+  const Json summary = parse_json(io::read_all(file("summary.json"), io::Content::text, most_bytes));
+  if (!summary.is_object() || text_at(summary, "outcome").empty()) return;  // one that is being written
+  progress_.outcome = text_at(summary, "outcome");
+  progress_.status = static_cast<int>(number_at(summary, "status", 0));
+  if (progress_.turns == 0) progress_.turns = number_at(summary, "turns", 0);
+  warn(file("events.jsonl") + ": does not tell of the end that summary.json states; it was cut or changed; restore it");
 }
 
 void RunFolder::read_angle() {

@@ -38,7 +38,8 @@ struct PrintProgress {
 /// Follows the logs of one run.
 class RunFolder {
  public:
-  /// Throws Fault::no_input where there is no such folder, Fault::data where it is none of vam-print.
+  /// Throws Fault::no_input where there is no such folder, Fault::data where it is none of vam-print, or its logs are
+  /// not those of which SHA256SUMS has the hashes.
   explicit RunFolder(const std::string& path);
 
   /// Reads what has been added.
@@ -55,6 +56,7 @@ class RunFolder {
  private:
   void load_settings();  // once; before a print is armed there may be none
   void read_events();
+  void read_summary();
   void read_angle();
   void read_flips();
   void read_records();

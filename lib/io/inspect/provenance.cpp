@@ -12,9 +12,11 @@
 #include "io/image/any_frames.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/seal.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
@@ -56,13 +58,26 @@ std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType ty
   return {{type == FileType::video ? "video" : "folder of images", source->is_sealed(), "", source->info().history}};
 }
 
+std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
+  if (!has_run_sums(path)) {
+    throw Error{Fault::data, path +
+                                 ": has no SHA256SUMS, which a print writes when it has ended: it goes on, was "
+                                 "killed, or the list is gone; nothing of it can be verified"};
+  }
+  const RunSums sums = read_run_sums(path);
+  return {{"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, run_damage(path, sums, fast)}};
+}
+
 std::vector<ProvenanceEntry> inspect_capture(const std::string& path, bool fast) {
   const CaptureManifest manifest = read_manifest(path);
-  return {{"capture folder of " + std::to_string(manifest.frames.size()) + " images",
-           manifest.sealed,
-           "",
-           {},
-           capture_damage(path, manifest, fast)}};
+  const std::string what = "capture folder of " + std::to_string(manifest.frames.size()) + " images";
+  return {{what, manifest.sealed, "", {}, capture_damage(path, manifest, fast)}};
+}
+
+std::vector<ProvenanceEntry> inspect_folder(const std::string& path, bool fast) {
+  const bool is_run = has_run_sums(path) || has_regular_file((std::filesystem::path(path) / "events.jsonl").string());
+  if (is_run) return inspect_run(path, fast);
+  return is_capture_folder(path) ? inspect_capture(path, fast) : inspect_images(path, FileType::images, fast);
 }
 
 std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
@@ -105,8 +120,7 @@ std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast) {
     case FileType::stack:
       return inspect_stacks(path, fast);
     case FileType::images:
-      if (is_capture_folder(path)) return inspect_capture(path, fast);
-      [[fallthrough]];
+      return inspect_folder(path, fast);
     default:
       return inspect_images(path, *type, fast);
   }

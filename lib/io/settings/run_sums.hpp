@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SHA256SUMS of a run folder: the hashes of its files, which vam-print writes when the print has ended.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vam::io {
+
+/// Hashes of 64 digits by the names of files, relative to their folder.
+using RunSums = std::map<std::string, std::string>;
+
+/// Is there such a list? Throws as has_regular_file() does.
+[[nodiscard]] bool has_run_sums(const std::string& folder);
+
+/// As sha256sum(1) writes it. Throws Fault::data where a line is no hash and name of a file in the folder, or none is.
+[[nodiscard]] RunSums read_run_sums(const std::string& folder);
+
+/// What is wrong with a file of the list, as a line; empty: nothing.
+[[nodiscard]] std::string sum_problem(const std::string& folder, const RunSums::value_type& file);
+
+/// What differs, is gone or is not in the list, a line each; with `fast` no file is read. resumed.json, which a
+/// resumption adds, need not be in it.
+[[nodiscard]] std::vector<std::string> run_damage(const std::string& folder, const RunSums& sums, bool fast);
+
+}  // namespace vam::io
