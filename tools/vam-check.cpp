@@ -32,8 +32,8 @@ cli::Manual manual() {
       "vam-check",
       "verify the integrity of files and show their provenance",
       {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these "
-       "tools write into stacks, volumes, calibration records, reports and the printer file of a print "
-       "(vam-formats(7), SEALS), and the checksums of lossless videos. If a file differs, the exit status is 65, "
+       "tools write into stacks, volumes, lossless videos, calibration records, reports and the printer file of a "
+       "print (vam-formats(7), SEALS). If a file differs, the exit status is 65, "
        "after all others have been checked.",
        "Of the run folder of a print every file is verified against its SHA256SUMS; files that were changed, that "
        "are lost or that are not in the list are named (all but resumed.json, which a resumption adds). Of a folder of "
@@ -43,7 +43,8 @@ cli::Manual manual() {
        "the seal of the file that it wrote, the command line, and the name of that file if it is among those "
        "checked. A dash replaces the seal of a file that was not sealed or came through a pipe.",
        "All tools verify the seals of the files that they read; vam-check is for archives and for files received "
-       "from others. Files of other programs have no seal, which is printed and is not an error. Seals reveal bit "
+       "from others. Files of other programs have no seal, which is printed and is not an error; of their videos the "
+       "checksums of container and slices are verified, where they have some. Seals reveal bit "
        "rot, truncation and edits; they are not signatures."},
       {{"Check a part and its sinogram:",
         "vam-slice --shape gyroid --voxel 0.2 -o part.vdb\n"
@@ -63,14 +64,16 @@ cli::Manual manual() {
 // The names of the files that are checked, by their seals.
 using Names = std::map<std::string, std::string>;
 
+std::string state_of(const ProvenanceEntry& finding) {
+  if (!finding.damage.empty()) return ", damaged";
+  if (!finding.sealed) return finding.checksums ? ", unsealed; its checksums hold" : ", unsealed";
+  return ", sealed" + (finding.seal.empty() ? "" : " " + finding.seal);
+}
+
 std::string report(const std::string& path, const std::vector<ProvenanceEntry>& findings, const Names& names) {
   std::string text;
   for (const ProvenanceEntry& finding : findings) {
-    text += printable(io::input_name(path)) + ": " + printable(finding.what) +
-            (!finding.damage.empty() ? ", damaged"
-             : finding.sealed        ? ", sealed"
-                                     : ", unsealed") +
-            (finding.seal.empty() ? "" : " " + finding.seal) + "\n";
+    text += printable(io::input_name(path)) + ": " + printable(finding.what) + state_of(finding) + "\n";
     for (const auto& [command, seal] : chain_of(finding)) {
       const auto named = names.find(seal);
       text += "  " + (seal.empty() ? std::string(15, ' ') + "-" : seal) + "  " + printable(command) +

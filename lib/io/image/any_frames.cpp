@@ -69,7 +69,12 @@ class VideoSource : public ImageSource {
     ++taken_;
     return true;
   }
-  [[nodiscard]] bool is_sealed() const override { return reader_.format().sealed; }
+  [[nodiscard]] bool is_sealed() const override { return reader_.format().seal.has_value(); }
+  [[nodiscard]] std::string seal() const override {
+    constexpr std::size_t head = 5, digits = 16;
+    return is_sealed() ? seal_text(*reader_.format().seal).substr(head, digits) : "";
+  }
+  [[nodiscard]] bool has_checksums() const override { return reader_.format().checksums; }
 
  private:
   VideoReader reader_;

@@ -24,8 +24,12 @@ class ImageSource {
   /// The facts of every image, where they are known before the first is read; else empty.
   [[nodiscard]] virtual const std::vector<model::ImageInfo>& about() const = 0;
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
-  /// Whether all of it has checksums, to which reading holds it.
+  /// Whether all of it has hashes of what was written, to which reading holds it.
   [[nodiscard]] virtual bool is_sealed() const { return false; }
+  /// The first 16 digits of that of a video; empty for others.
+  [[nodiscard]] virtual std::string seal() const { return ""; }
+  /// Whether its bytes have checksums, and these are right: of a video, whoever wrote it.
+  [[nodiscard]] virtual bool has_checksums() const { return false; }
 };
 
 /// type: stack, video or images. Throws Error: no_input, data.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "io/image/private/video_seal.hpp"
 
 namespace vam::io {
 
@@ -21,6 +22,10 @@ namespace {
 constexpr std::uint64_t ebml_head = 0x1a45dfa3;
 constexpr std::uint64_t segment = 0x18538067;
 constexpr std::uint64_t filler = 0xec;  // Void
+constexpr std::uint64_t tags = 0x1254c367;
+// What a segment consists of: SeekHead, Info, Tracks, Cluster, Cues, Attachments, Chapters, Tags.
+constexpr std::array<std::uint64_t, 8> known_parts{0x114d9b74, 0x1549a966, 0x1654ae6b, 0x1f43b675,
+                                                   0x1c53bb6b, 0x1941a469, 0x1043a770, tags};
 constexpr std::array<char, 2> checksum_head{'\xbf', '\x84'};
 constexpr std::uint64_t checksum_bytes = 6;  // head and four bytes
 
@@ -62,10 +67,18 @@ Sum judged(std::istream& in, std::uint64_t size) {
   return crc32_of(in, size - checksum_bytes) == sealed ? Sum::right : Sum::wrong;
 }
 
-// True when they have checksums.
-bool check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
-  std::uint64_t first_bare = 0;
-  bool has_sums = false;
+// Of the tags at whose content the stream stands.
+std::optional<Digest> seal_in(std::istream& in, std::uint64_t size) {
+  if (size != seal_element_bytes()) return std::nullopt;
+  std::string content(size, '\0');
+  in.read(content.data(), static_cast<std::streamsize>(size));
+  return parse_seal_element(content);
+}
+
+MatroskaProof check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
+  MatroskaProof proof;
+  std::uint64_t first_bare = 0, first_odd = 0;
+  bool& has_sums = proof.checksums;
   while (static_cast<std::uint64_t>(in.tellg()) < end) {
     const auto at = static_cast<std::uint64_t>(in.tellg());
     const auto identifier = number(in, true);
@@ -76,41 +89,49 @@ bool check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
     };
     if (!identifier || !size || content > end || *size > end - content) {
       if (has_sums) refuse(at);
-      return false;  // of unknown size: a stream, which bears no checksums
+      return {};  // of unknown size: a stream, which bears no checksums
     }
     if (*identifier != filler) {
       const Sum sum = judged(in, *size);
       if (sum == Sum::wrong) refuse(at);
       has_sums = has_sums || sum == Sum::right;
       if (sum == Sum::none && first_bare == 0) first_bare = at;
-      if (has_sums && first_bare > 0) refuse(first_bare);
+      if (std::find(known_parts.begin(), known_parts.end(), *identifier) == known_parts.end() && first_odd == 0)
+        first_odd = at;
+      for (const std::uint64_t wrong : {first_bare, first_odd}) {
+        if (has_sums && wrong > 0) refuse(wrong);
+      }
+      if (*identifier == tags && sum == Sum::right) {
+        in.seekg(static_cast<std::streamoff>(content));
+        if (const auto seal = seal_in(in, *size)) proof.seal = seal;
+      }
     }
     in.seekg(static_cast<std::streamoff>(content + *size));
   }
-  return has_sums;
+  return proof;
 }
 
 }  // namespace
 
-bool require_whole_matroska(const std::string& path) {
+MatroskaProof require_whole_matroska(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (number(in, true) != ebml_head) return false;
+  if (number(in, true) != ebml_head) return {};
   if (const auto head = number(in, false)) in.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
   if (number(in, true) != segment) throw Error{Fault::data, path + ": the video is truncated in its head"};
   const auto size = number(in, false);
-  if (!size) return false;
+  if (!size) return {};
   const std::uint64_t whole = static_cast<std::uint64_t>(in.tellg()) + *size;
   const std::uint64_t there = std::filesystem::file_size(path);
   if (there < whole) {
     throw Error{Fault::data, path + ": the video is truncated: " + std::to_string(there) + " of " +
                                  std::to_string(whole) + " bytes"};
   }
-  const bool sealed = check_parts(in, path, whole);
-  if (sealed && there > whole) {
+  const MatroskaProof proof = check_parts(in, path, whole);
+  if (proof.checksums && there > whole) {
     throw Error{Fault::data,
                 path + ": trailing data after the video, from byte " + std::to_string(whole) + " on; write it again"};
   }
-  return sealed;
+  return proof;
 }
 
 }  // namespace vam::io

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 #include "io/image/private/av_handles.hpp"
 #include "io/image/private/matroska.hpp"
 #include "io/image/private/video.hpp"
+#include "io/image/private/video_seal.hpp"
 
 namespace vam::io {
 
@@ -89,6 +91,8 @@ struct VideoReader::State {
   av::Packet packet{av::api().av_packet_alloc()};
   std::int64_t announced = 0;  // frames; 0: not known
   std::int64_t packets = 0;
+  std::optional<VideoSeal> read;  // of the frames so far, where there is a seal
+  bool held = false;              // to the seal
 
   ~State() { av::api().avformat_close_input(&container); }
 
@@ -146,6 +150,16 @@ struct VideoReader::State {
     throw Error{Fault::data, path + ": frame " + std::to_string(packets - 1) + " is damaged; write the video again"};
   }
 
+  // With the last frame, or when there is no more.
+  void hold(bool at_end) {
+    if (!read || held || (!at_end && read->frames() != announced)) return;
+    if (read->digest() != *format.seal) {
+      throw Error{Fault::data, path + ": the video changed after it was written (sealed " + shortened(*format.seal) +
+                                   ", read " + shortened(read->digest()) + "); write it again"};
+    }
+    held = true;
+  }
+
   // Grey, yuvj and RGB pixels are of the full range whatever the video states, as libswscale, too, takes them.
   [[nodiscard]] bool is_narrow() const { return layout.limited && frame->color_range != AVCOL_RANGE_JPEG; }
 
@@ -180,11 +194,14 @@ struct VideoReader::State {
 
 VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<State>()) {
   if (!std::filesystem::exists(path)) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(ENOENT)};
-  const bool sealed = require_whole_matroska(path);
+  const MatroskaProof proof = require_whole_matroska(path);
   av::api().av_log_set_level(AV_LOG_QUIET);
   state_->path = path;
   state_->open();
-  state_->format.sealed = sealed;
+  VideoFormat& format = state_->format;
+  format.checksums = proof.checksums;
+  format.seal = proof.seal;
+  if (format.seal) state_->read.emplace(format.width, format.height, format.bits);
 }
 
 VideoReader::~VideoReader() = default;
@@ -193,7 +210,10 @@ const VideoFormat& VideoReader::format() const { return state_->format; }
 
 bool VideoReader::next(GreyImage& image) {
   State& s = *state_;
-  if (!s.decode()) return false;
+  if (!s.decode()) {
+    s.hold(true);
+    return false;
+  }
   const bool narrow = s.is_narrow();
   image = GreyImage(s.frame->width, s.frame->height, narrow ? 16 : s.format.bits);
   for (int y = 0; y < image.height; ++y) {
@@ -202,6 +222,8 @@ bool VideoReader::next(GreyImage& image) {
       image(x, y) = narrow ? widened(level, s.layout.stored_bits) : level;
     }
   }
+  if (s.read) s.read->add(VideoSeal::of(image));
+  s.hold(false);
   return true;
 }
 

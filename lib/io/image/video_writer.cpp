@@ -14,6 +14,7 @@
 #include "io/image/private/av_handles.hpp"
 #include "io/image/private/ffv1.hpp"
 #include "io/image/private/video.hpp"
+#include "io/image/private/video_seal.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -33,11 +34,19 @@ AVPixelFormat pixel_format(bool lossless, int bits) {
 struct EncoderSink {
   OutputFile file;
   std::uint64_t position = 0;
+  std::string head;  // the first bytes as they are now
   std::exception_ptr failure;
 
   explicit EncoderSink(const std::string& path) : file(path) {}
 
+  static constexpr std::size_t head_bytes = 256;  // where a container tells its size
+
   void put(const std::uint8_t* bytes, std::size_t size) {
+    if (position < head_bytes) {
+      const auto at = static_cast<std::size_t>(position), count = std::min(size, head_bytes - at);
+      head.resize(std::max(head.size(), at + count));
+      std::copy_n(reinterpret_cast<const char*>(bytes), count, head.begin() + static_cast<std::ptrdiff_t>(at));
+    }
     const std::uint64_t end = file.position();
     const std::size_t patch =
         position < end ? static_cast<std::size_t>(std::min<std::uint64_t>(size, end - position)) : 0;
@@ -107,6 +116,7 @@ struct VideoWriter::State {
   av::Packet packet{av::api().av_packet_alloc()};
   std::int64_t written = 0;
   std::optional<Ffv1Frames> alone;  // frames of which each is encoded by one thread
+  std::optional<VideoSeal> seal;    // of a lossless video
 
   State(const std::string& path, const VideoFormat& wanted)
       : format(wanted),
@@ -292,6 +302,26 @@ struct VideoWriter::State {
     send(frame.get());
   }
 
+  // Of what the frame is decoded to.
+  [[nodiscard]] Digest digest(const GreyImage& image) const {
+    if (wide || format.bits == 8) return VideoSeal::of(image);
+    GreyImage decoded = image;
+    for (std::uint16_t& level : decoded.values) level = stored[level];
+    return VideoSeal::of(decoded);
+  }
+
+  // Behind all parts, where the size of the segment then says so.
+  void write_seal() {
+    const auto size_at = sink.file.is_stream() ? std::nullopt : segment_size_at(sink.head);
+    if (!seal || !size_at) return;
+    const std::string element = seal_element(seal->digest());
+    sink.file.write(element);
+    std::array<char, 8> size{1};  // seven bytes follow
+    const std::uint64_t whole = sink.file.position() - (*size_at + size.size());
+    for (std::size_t i = 1; i < size.size(); ++i) size[i] = static_cast<char>(whole >> 8 * (size.size() - 1 - i));
+    sink.file.write_at(*size_at, size.data(), size.size());
+  }
+
   void send(const AVFrame* next) {
     check(av::api().avcodec_send_frame(codec.get(), next), "video encoding");
     for (;;) {
@@ -317,6 +347,7 @@ VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   state_->codec = state_->opened_codec(format.width, format.height);
   state_->open_stream();
   state_->try_alone();
+  if (state_->lossless) state_->seal.emplace(format.width, format.height, state_->wide ? format.bits : 8);
 }
 
 VideoWriter::~VideoWriter() = default;
@@ -330,11 +361,19 @@ void VideoWriter::write(int count, const std::function<const GreyImage&(int)>& i
   for (int i = 0; i < count; ++i) s.require_format(image(i));
   if (s.alone) {
     std::vector<Bytes> packets(static_cast<std::size_t>(count));
-    parallel_for(count, [&](int i) { packets[static_cast<std::size_t>(i)] = s.alone->packet(image(i)); });
+    std::vector<Digest> digests(packets.size());
+    parallel_for(count, [&](int i) {
+      packets[static_cast<std::size_t>(i)] = s.alone->packet(image(i));
+      digests[static_cast<std::size_t>(i)] = s.digest(image(i));
+    });
     for (Bytes& packet : packets) s.put(packet);
+    for (const Digest& digest : digests) s.seal->add(digest);
     return;
   }
-  for (int i = 0; i < count; ++i) s.put_frame(image(i));
+  for (int i = 0; i < count; ++i) {
+    s.put_frame(image(i));
+    if (s.seal) s.seal->add(s.digest(image(i)));
+  }
 }
 
 void VideoWriter::write(const RgbImage& image) {
@@ -350,6 +389,7 @@ void VideoWriter::commit() {
   s.check(av::api().av_write_trailer(s.container), "ending the video");
   av::api().avio_flush(s.io);
   s.check(0, "ending the video");
+  s.write_seal();
   s.sink.file.commit();
 }
 

@@ -55,7 +55,8 @@ std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType ty
   Image image;
   model::ImageInfo about;
   while (!fast && source->next(image, about)) continue;
-  return {{type == FileType::video ? "video" : "folder of images", source->is_sealed(), "", source->info().history}};
+  const char* what = type == FileType::video ? "video" : "folder of images";
+  return {{what, source->is_sealed(), source->seal(), source->info().history, source->has_checksums()}};
 }
 
 std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
@@ -65,13 +66,14 @@ std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
                                  "killed, or the list is gone; nothing of it can be verified"};
   }
   const RunSums sums = read_run_sums(path);
-  return {{"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, run_damage(path, sums, fast)}};
+  return {
+      {"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, false, run_damage(path, sums, fast)}};
 }
 
 std::vector<ProvenanceEntry> inspect_capture(const std::string& path, bool fast) {
   const CaptureManifest manifest = read_manifest(path);
   const std::string what = "capture folder of " + std::to_string(manifest.frames.size()) + " images";
-  return {{what, manifest.sealed, "", {}, capture_damage(path, manifest, fast)}};
+  return {{what, manifest.sealed, "", {}, false, capture_damage(path, manifest, fast)}};
 }
 
 std::vector<ProvenanceEntry> inspect_folder(const std::string& path, bool fast) {

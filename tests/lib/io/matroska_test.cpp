@@ -44,7 +44,7 @@ std::string refusal(const std::string& bytes) {
 
 bool has_checksums(const std::string& bytes) {
   const scratch::Folder folder;
-  return vam::io::require_whole_matroska(folder.write("a.mkv", bytes));
+  return vam::io::require_whole_matroska(folder.write("a.mkv", bytes)).checksums;
 }
 
 std::string damaged_at(std::size_t byte) {

@@ -60,6 +60,8 @@ TEST_CASE("FFV1 is lossless at every depth, and keeps rate, count and comment") 
     }
     CHECK(count == 20);
     CHECK(wrong == 0);
+    CHECK(reader.format().checksums);
+    CHECK(reader.format().seal);  // to which these frames were held
   }
 }
 

@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/pixels.hpp"
+#include "io/stream/seal.hpp"
 
 namespace vam::io {
 
@@ -17,7 +19,9 @@ struct VideoFormat {
   double fps = 0;       // frames per second
   std::string comment;  // goes into the file's metadata
   bool colour = false;  // H.264 of RgbImages
-  bool sealed = false;  // of one that is read: its container has checksums, and all are right
+  // Of one that is read:
+  bool checksums = false;      // its container has some, and all are right
+  std::optional<Digest> seal = std::nullopt;  // of the decoded levels, to which reading to the end holds them
 };
 
 /// Writes frames of one size. The name chooses the format:
@@ -26,6 +30,7 @@ struct VideoFormat {
 ///  .mp4  H.264 yuv420p, 8 bits, full range, odd sizes padded with their last row or column. Errs by up to 59 of 255 on
 ///  fine
 ///        patterns: never print from it.
+/// FFV1 in a file, not in a pipe, ends in a seal of its levels.
 /// The bytes do not depend on the machine or the number of threads. A file appears under its name at commit() only.
 /// Throws Error: usage (another ending), no_output, io.
 class VideoWriter {
@@ -53,7 +58,7 @@ class VideoReader {
   ~VideoReader();
   /// Size, depth (8, 10 or 16 bits; frames of limited range have 16) and rate.
   [[nodiscard]] const VideoFormat& format() const;
-  /// False after the last frame.
+  /// False after the last frame. Throws Fault::data where all frames are not those that were sealed.
   bool next(GreyImage& frame);
 
  private:
