@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
@@ -59,6 +60,10 @@ void run(const cli::App& app, const Options& options) {
   if (tool::print_printer(options.printer, printer, options.output)) return;
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);
   io::require_usable(options.input, volume);
+  if (volume.name() == "target" && io::farthest_mm(volume, 0) < 0) {
+    throw Error{Fault::data, io::input_name(options.input) +
+                                 ": the target is empty (no coverage anywhere); there is nothing to project"};
+  }
   const tomo::ProjectionSpec spec = make_spec(options, printer, volume.grid());
   io::StackWriter out(options.output, make_info(spec, volume, app.history()), options.stack);
 

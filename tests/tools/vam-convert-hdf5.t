@@ -107,6 +107,8 @@ uneven '45.0 * numpy.array([0, 1, 2, 4, 5, 6, 7, 8])' 'angles.h5: the stage angl
 uneven '[5.0] * 8' 'from projection 0 to 1 they go from 5 to 5 degrees'
 uneven '41.6 * numpy.arange(8.0)' 'the stage angles drift: that of projection [0-9]+ is [-0-9.]+ degrees beside even steps of 40'
 uneven '45.0 * numpy.arange(7)' 'has 7 angles \(/exchange/theta\) of 8 projections'
+uneven 'numpy.zeros(0)' 'has 0 angles \(/exchange/theta\) of 8 projections; check --axes, or give --view-step'
+is 'which is given' "$(angles 'numpy.zeros(0)' --view-step 45)" 'sizes: 3 8 1 spacings: 1 45 1 axis mins: -1 0 0 '
 uneven '[0, 45, numpy.nan, 135, 180, 225, 270, 315]' 'angle 2 of /exchange/theta is no angle'
 uneven '22.5 * numpy.arange(8)' 'has 8 projections, 16 make a turn'
 

@@ -81,6 +81,17 @@ fails 64 "--axes: 'zyy' is not an order of the letters zyx" vam-convert a.npy --
 fails 64 '--pixel: is for projections' vam-convert a.npy --voxel 1 --pixel 1 -o x.vdb
 fails 64 'two.npz: holds 2 arrays \(dose, plan/e\); name one by --array' vam-convert two.npz --voxel 1 -o x.vdb
 fails 64 'holds 2 arrays \(dose, plan/e\), but none is called dos$' vam-convert two.npz --array dos --voxel 1 -o x.vdb
+python3 -c '
+import zipfile
+data = open("one.npz", "rb").read()
+open("long.npz", "wb").write(data + b"x")
+open("twice.npz", "wb").write(data + b"PK\5\6" + bytes(5))
+with zipfile.ZipFile("noted.npz", "w") as z: z.write("a.npy", "dose.npy"); z.comment = b"by hand PK\5\6" + bytes(40)'
+for name in long twice; do
+  fails 65 "$name.npz: trailing data after the end of the .npz archive, from byte $(wc -c <one.npz) on; save it again" vam-convert $name.npz --voxel 1 -o x.vdb
+done
+ok 'the comment of an archive belongs to it' vam-convert noted.npz --voxel 0.5 --grid weight -o x.vdb
+rm x.vdb
 fails 65 'none.npz: is a zip archive without an array' vam-convert none.npz --voxel 1 -o x.vdb
 fails 66 'no.npy: cannot open' vam-convert no.npy --voxel 1 -o x.vdb
 refused() {  # refused DICTIONARY REGEX

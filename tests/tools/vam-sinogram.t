@@ -74,6 +74,14 @@ fails 64 'cutoff' vam-sinogram --filter hann --cutoff 0 part.vdb -o x.exr
 fails 64 'requires --filter' vam-sinogram --cutoff 0.5 part.vdb -o x.exr
 fails 64 'give either' vam-sinogram --printer-absorption --absorption 1 part.vdb -o x.exr
 fails 64 'absorption' vam-sinogram --absorption -1 part.vdb -o x.exr
+python3 - <<'PY'
+head = "{'descr': '<f4', 'fortran_order': False, 'shape': (4, 8, 8), }"
+open("zero.npy", "wb").write(b"\x93NUMPY\x01\0\x76\0" + head.ljust(117).encode() + b"\n" + bytes(4 * 256))
+PY
+vam-convert zero.npy --voxel 0.5 --stretch-z 1 -o zero.vdb
+fails 65 'zero.vdb: the target is empty \(no coverage anywhere\); there is nothing to project' vam-sinogram zero.vdb -o x.exr
+vam-convert zero.npy --voxel 0.5 --grid dose --value-unit relative -o dark.vdb
+ok 'which holds for targets' vam-sinogram --grid dose dark.vdb -o dark.exr
 fails 65 'overflows' vam-sinogram --absorption 100 part.vdb -o x.exr
 fails 64 'also the input' vam-sinogram part.vdb -o part.vdb
 fails 73 'nowhere' vam-sinogram part.vdb -o nowhere/x.exr

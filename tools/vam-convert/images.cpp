@@ -38,7 +38,7 @@ class Frames : public Images {
  public:
   Frames(const Options& options, io::FileType type)
       : source_(io::open_images(options.input, type)), full_scale_(options.full_scale) {
-    views_.source = "frames.csv";
+    if (!source_->about().empty()) views_.source = "frames.csv";
     for (const model::ImageInfo& about : source_->about()) views_.angles_deg.push_back(about.angle_deg);
   }
   [[nodiscard]] io::ArraySize size() const override {

@@ -49,7 +49,7 @@ struct Plan {
 double angle_step_deg(const Options& options, const Slices& slices, Plan& plan) {
   const io::StatedViews& views = slices.views();
   if (options.view_step_deg) return *options.view_step_deg;
-  if (!views.angles_deg.empty()) {
+  if (!views.source.empty()) {  // also where it holds none
     const StageAngles measured = even_angles(views, slices.size().rows, io::input_name(options.input));
     plan.start_deg = measured.start_deg;
     if (measured.step_deg != 0) return measured.step_deg;

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "io/stream/zip_end.hpp"
 
 namespace vam::io::arrays {
 
@@ -49,6 +50,10 @@ void PackedArray::Close::operator()(zip* archive) const { zip_discard(archive); 
 void PackedArray::Close::operator()(zip_file* file) const { zip_fclose(file); }
 
 PackedArray::PackedArray(std::string_view bytes, const std::string& name, const std::string& file) : file_(file) {
+  if (const std::uint64_t more = bytes_behind_zip(bytes); more > 0) {
+    throw Error{Fault::data, file + ": trailing data after the end of the .npz archive, from byte " +
+                                 std::to_string(bytes.size() - more) + " on; save it again with numpy.savez()"};
+  }
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, nullptr);
   if (source == nullptr) damaged(file);
   archive_.reset(zip_open_from_source(source, ZIP_RDONLY, nullptr));

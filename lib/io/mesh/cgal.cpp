@@ -71,30 +71,21 @@ bool check_ply_header(const std::string& bytes) {
   throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
 }
 
-// Of what follows the last element: lines, or bytes of the smallest face, a triangle of bytes.
-std::uint64_t faces_left(std::istream& stream, bool text) {
+// What follows the last element: of a text lines, each of which is a face; of others nothing may but the end of a line.
+void require_ply_end(std::istream& stream, bool text, std::size_t faces, std::size_t size) {
   stream.exceptions(std::ios::goodbit);
   const std::string rest(std::istreambuf_iterator<char>(stream), {});
-  constexpr std::size_t triangle_bytes = 13;
-  if (!text) return rest.size() / triangle_bytes;
+  constexpr std::size_t triangle_bytes = 13;  // of bytes: the smallest face
+  if (!text) {
+    require_all_read(faces, faces + rest.size() / triangle_bytes);
+    if (rest.size() <= 2 && rest.find_first_not_of("\r\n") == rest.npos) return;  // the end of a line
+    throw MeshProblem{"trailing data after the last face, from byte " + std::to_string(size - rest.size()) +
+                      " on; save it again"};
+  }
   std::istringstream lines(rest);
   std::uint64_t left = 0;
   for (std::string line; std::getline(lines, line);) left += line.find_first_not_of(" \t\r") == line.npos ? 0 : 1;
-  return left;
-}
-
-// CGAL takes 2.7 for 2.
-void require_whole_indices(const std::string& bytes) {
-  std::size_t number = 1;
-  for (auto line = bytes.begin(); line != bytes.end(); ++number) {
-    const auto end = std::find(line, bytes.end(), '\n');
-    const bool face = end - line > 2 && line[0] == 'f' && line[1] == ' ';
-    const auto comment = face ? std::find(line, end, '#') : line;
-    if (std::find(line, comment, '.') != comment) {
-      throw MeshProblem{"line " + std::to_string(number) + ": a face has an index that is no whole number"};
-    }
-    line = end == bytes.end() ? end : end + 1;
-  }
+  require_all_read(faces, faces + left);
 }
 
 }  // namespace
@@ -114,8 +105,7 @@ PolygonSoup parse_ascii_stl(const std::string& bytes) {
 }
 
 PolygonSoup parse_obj(const std::string& bytes) {
-  require_whole_indices(bytes);
-  std::istringstream stream(bytes);
+  std::istringstream stream(checked_obj(bytes));
   CgalSoup soup;
   // False also for a file without faces, which the caller names for what it is.
   if (!CGAL::IO::read_OBJ(stream, soup.points, soup.faces) && !soup.faces.empty())
@@ -138,7 +128,7 @@ PolygonSoup parse_ply(const std::string& bytes) {
   } catch (const std::length_error&) {  // a list of fewer than 0 values
     give_up("PLY", converted(std::move(soup)));
   }
-  require_all_read(soup.faces.size(), soup.faces.size() + faces_left(stream, text));
+  require_ply_end(stream, text, soup.faces.size(), bytes.size());
   PolygonSoup result = converted(std::move(soup));
   result.uncertainty = ply_numbers(bytes, "scalar_uncertainty", result.points.size());
   if (of_points.size() != result.points.size()) return result;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/mesh/private/formats.hpp"
+#include "io/stream/zip_end.hpp"
 
 namespace vam::io {
 
@@ -30,6 +31,10 @@ struct CloseZipFile {
 void ZipArchive::Close::operator()(zip* archive) const { zip_discard(archive); }
 
 ZipArchive::ZipArchive(std::string_view bytes) : left_(most_unpacked + most_ratio * bytes.size()) {
+  if (const std::uint64_t more = bytes_behind_zip(bytes); more > 0) {
+    throw MeshProblem{"trailing data after the end of the 3MF archive, from byte " +
+                      std::to_string(bytes.size() - more) + " on; save it again"};
+  }
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);

@@ -310,12 +310,39 @@ TEST_CASE("faces beyond the count of a header are refused with both numbers") {
   const std::string ply = slurp(folder / "b.ply");
   CHECK(has(refusal(folder, ply + ply.substr(ply.size() - 26)), "states 12 faces but the file has 14"));
   CHECK(read_mesh(folder.write("a", ply + "\n")).triangles.size() == 12);
+  for (const std::string& junk : {std::string("x"), std::string("\n\n\n"), std::string(12, '\0')}) {
+    CHECK(has(refusal(folder, ply + junk),
+              "trailing data after the last face, from byte " + std::to_string(ply.size()) + " on; save it again"));
+  }
+  const std::string zip = box_3mf("millimeter", "");
+  CHECK(has(refusal(folder, zip + "x"), "trailing data after the end of the 3MF archive, from byte " +
+                                            std::to_string(zip.size()) + " on; save it again"));
   std::string minus = box_ply();
   minus.replace(minus.find("vertex 8"), 8, "vertex -1");
   CHECK(has(refusal(folder, minus), "the PLY header states -1 vertex elements"));
   std::string obj = box_obj();
   obj.insert(obj.rfind("//1"), ".7");
   CHECK(has(refusal(folder, obj), "a face has an index that is no whole number"));
+}
+
+TEST_CASE("lines of an OBJ file are joined where they go on, and one that is no vertex is named") {
+  const scratch::Folder folder;
+  const std::string obj = box_obj();
+  std::string continued = "# C:\\parts\\\n" + obj;  // which is no line that goes on
+  for (std::size_t at = continued.find("\nv "); at != std::string::npos; at = continued.find("\nv ", at + 4)) {
+    continued.insert(at + 3, at % 2 == 0 ? "\\\n" : "\\\r\n \t");
+  }
+  continued.insert(continued.rfind("\nf ") + 2, "\\\n");
+  CHECK(volume(read_mesh(folder.write("a", continued))) == doctest::Approx(6));
+  CHECK(has(refusal(folder, continued + "f 1 2.5 3\n"), ": a face has an index that is no whole number"));
+  for (const std::string bad : {"v 1 2", "v", "v 1 2 x", " v 1 nan 2", "v 1 1e400 2", "v 1 2,5 3", "v 1 # 2 3"}) {
+    CAPTURE(bad);
+    std::string damaged = "v\\\n 0 0 0\n" + bad + "\n" + obj;
+    CHECK(has(refusal(folder, damaged),
+              ": line 3: '" + bad.substr(bad.find('v')) + "' is no vertex of three coordinates; mend the line"));
+  }
+  CHECK(
+      has(refusal(folder, "v +1e-3 .5 -7. 1\nv\t1 2 3 # here\r\nvn 1 0\n"), "the mesh is empty: 2 vertices, no face"));
 }
 
 TEST_CASE("an element of other programs in a PLY file, a digit a line, is no promise that the file is too short for") {

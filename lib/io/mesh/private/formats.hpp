@@ -61,6 +61,10 @@ struct MeshFormat {
 /// The property `name`, a float of every vertex, of a little-endian PLY; nothing where it has none.
 [[nodiscard]] std::vector<float> ply_numbers(const std::string& bytes, const std::string& name, std::size_t vertices);
 
+/// An OBJ file with its continued lines joined. Throws MeshProblem for a vertex without three coordinates and for an
+/// index that is no whole number, which CGAL takes for the end of the file and for its whole part.
+[[nodiscard]] std::string checked_obj(const std::string& bytes);
+
 /// By CGAL; each throws MeshProblem when CGAL gives up.
 [[nodiscard]] PolygonSoup parse_ascii_stl(const std::string& bytes);
 [[nodiscard]] PolygonSoup parse_obj(const std::string& bytes);
