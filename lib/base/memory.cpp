@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <malloc.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,17 +30,29 @@ const char* bound_name = "a higher limit";     // NOLINT: what messages call it
 
 constexpr double bytes_per_gib = 1024.0 * 1024.0 * 1024.0;
 
-// Private pages in memory. Without an allocation, as `new` asks; 0 where the system does not say.
-std::uint64_t taken() {
+struct Pages {
+  std::uint64_t addresses = 0, in_memory = 0, shared = 0;
+};
+
+// Without an allocation, as `new` asks; 0 where the system does not say.
+Pages pages_of_process() {
   std::array<char, 128> line{};
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-  if (file < 0) return 0;
+  if (file < 0) return {};
   const ssize_t size = read(file, line.data(), line.size() - 1);
   close(file);
-  std::uint64_t pages = 0;
-  std::uint64_t shared = 0;
-  if (size <= 0 || std::sscanf(line.data(), "%*s %lu %lu", &pages, &shared) != 2 || shared > pages) return 0;
-  return (pages - shared) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  Pages pages;
+  const bool whole =
+      size > 0 && std::sscanf(line.data(), "%lu %lu %lu", &pages.addresses, &pages.in_memory, &pages.shared) == 3;
+  return whole ? pages : Pages{};
+}
+
+std::uint64_t bytes_of(std::uint64_t pages) { return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)); }
+
+// Private pages in memory.
+std::uint64_t taken() {
+  const Pages pages = pages_of_process();
+  return bytes_of(pages.in_memory - std::min(pages.in_memory, pages.shared));
 }
 
 // The number in a file, or behind a key in it; `everything` where there is none ("max").
@@ -104,6 +117,20 @@ OutOfMemory::OutOfMemory(std::uint64_t wanted, std::uint64_t has, std::uint64_t 
                 chosen ? bound_name : "the machine had", chosen ? " allows" : "", of(most), chosen ? "" : " free");
 }
 
+OutOfMemory::OutOfMemory(std::uint64_t wanted) noexcept {
+  const auto mib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / (1 << 20); };
+  const double has = mib(bytes_of(pages_of_process().addresses));
+  rlimit most{};
+  const bool limited = getrlimit(RLIMIT_AS, &most) == 0 && most.rlim_cur != RLIM_INFINITY;
+  std::array<char, 64> start{"no memory is left"}, end{"the system gives no more; end other programs"};
+  if (wanted >= 1 << 20) std::snprintf(start.data(), start.size(), "needs %.3g MiB of memory more", mib(wanted));
+  if (limited) {
+    std::snprintf(end.data(), end.size(), "the limit is %.4g MiB; raise it (ulimit -v)",
+                  mib(static_cast<std::uint64_t>(most.rlim_cur)));
+  }
+  std::snprintf(text_.data(), text_.size(), "%s: %.4g MiB of addresses are in use, %s", start.data(), has, end.data());
+}
+
 void bound_memory(std::uint64_t bytes, const char* name) {
   bound_name = name;
   chosen = bytes > 0;
@@ -141,8 +168,8 @@ void require_memory(double bytes, const std::string& subject, const std::string&
 
 namespace {
 
-void* given(void* memory) {
-  if (memory == nullptr) throw std::bad_alloc();
+void* given(void* memory, std::size_t bytes) {
+  if (memory == nullptr) throw vam::OutOfMemory(bytes);
   return memory;
 }
 
@@ -150,13 +177,13 @@ void* given(void* memory) {
 
 void* operator new(std::size_t bytes) {
   vam::admit(bytes);
-  return given(std::malloc(bytes == 0 ? 1 : bytes));
+  return given(std::malloc(bytes == 0 ? 1 : bytes), bytes);
 }
 
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   vam::admit(bytes);
   const auto unit = static_cast<std::size_t>(alignment);
-  return given(std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit));
+  return given(std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit), bytes);
 }
 
 void operator delete(void* memory) noexcept { std::free(memory); }

@@ -36,10 +36,12 @@ void require_memory(double bytes, const std::string& subject, const std::string&
 class OutOfMemory : public std::bad_alloc {
  public:
   OutOfMemory(std::uint64_t wanted, std::uint64_t has, std::uint64_t most) noexcept;
+  /// What the system refused, named from 1 MiB on; 0: what a library asked for, which is not known.
+  explicit OutOfMemory(std::uint64_t wanted) noexcept;
   [[nodiscard]] const char* what() const noexcept override { return text_.data(); }
 
  private:
-  std::array<char, 160> text_{};  // there may be no memory for more
+  std::array<char, 200> text_{};  // there may be no memory for more
 };
 
 }  // namespace vam

@@ -245,7 +245,7 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
     line = refused.what();
     fault = Fault::memory;
   } catch (const std::bad_alloc&) {
-    line = "out of memory";
+    line = OutOfMemory(0).what();
     fault = Fault::memory;
   } catch (const std::exception& error) {
     line = std::string("internal error: ") + error.what() + "; please report this";

@@ -56,10 +56,22 @@ if ! sanitized; then
   # The libraries that draw end the process where memory or a thread is refused.
   for mib in 160 200 220 230 240 260; do
     sh -c "ulimit -v $((mib * 1024)); exec vam-view part.vdb -o bounded.png" 2>bounded; status=$?
-    case "$status $(wc -l <bounded)" in '0 0' | '71 1') report 0 "a figure in $mib MiB of addresses: $status" ;;
+    case "$status $(grep -Ec '^vam-view: .*(raise|allow more|raise its limits?).*' bounded)" in '0 0' | '71 1') report 0 "a figure in $mib MiB of addresses: $status" ;;
       *) report 1 "a figure in $mib MiB of addresses: $status"; sed 's/^/# /' bounded ;;
     esac
   done
+  python3 -c '
+n = 40000
+print("OFF\n%d %d 0" % (4 * n, 4 * n))
+for i in range(n): print("0 0 %d\n1 0 %d\n0 1 %d\n0.2 0.2 %f" % (i, i, i, i + 0.5))
+for i in range(0, 4 * n, 4): print("3 %d %d %d\n3 %d %d %d\n3 %d %d %d\n3 %d %d %d" % (i, i + 2, i + 1, i, i + 1, i + 3, i + 1, i + 2, i + 3, i + 2, i, i + 3))' >many.off
+  for mib in $(seq 110 10 180); do
+    sh -c "ulimit -v $((mib * 1024)); exec vam-sdf many.off part.vdb --isovalue 0.5 --align none -o bounded.ply" >bounded 2>&1; status=$?
+    case "$status $(grep -v warning: bounded | grep -Ec '^vam-sdf: .*(MiB of addresses are in use, the limit is [0-9]+ MiB; raise it|limit of [0-9]+ MiB of addresses leaves; raise it|raise its limits?) .ulimit|shared libraries')" in '71 1' | '127 1') ;;
+      *) odd=$((odd + 1)); echo "# $mib MiB: $status"; sed 's/^/# /' bounded ;;
+    esac
+  done
+  is 'a deviation in 110 to 180 MiB of addresses is refused with the limit' $odd 0
   # Threads of the libraries throw where nobody catches. The reader of volumes takes what it cannot have for damage.
   small_printer >small.toml
   vam-optimize --printer small.toml part.vdb --method fbp --angles 24 -o light.exr
@@ -71,7 +83,7 @@ if ! sanitized; then
     esac
   done
   is 'a dose in 72 to 100 MiB of addresses is computed or refused in one line' $odd 0
-  rm -f bounded* small.toml light.exr
+  rm -f bounded* small.toml light.exr many.off
 fi
 # Few open files: all of it or one line with the remedy, and figures are the same.
 if ! sanitized; then
@@ -135,6 +147,10 @@ fails 65 'stdin: not a mesh of a known format' sh -c 'timeout 60 yes | vam-slice
 for device in zero urandom; do
   fails 66 "/dev/$device: is a device that never ends" vam-slice /dev/$device -o x.vdb
   fails 66 'stdin: is a device that never ends' sh -c "vam-sdf box.off - -o x.ply </dev/$device"
+  for tool in vam-convert 'vam-convert --voxel 1 -o x.vdb' vam-check; do
+    fails 66 "stdin: is a device that never ends; name a file" sh -c "$tool - </dev/$device"
+    fails 66 "/dev/$device: is a device that never ends; name a file" $tool /dev/$device
+  done
 done
 
 # Bytes after the last image of a stack, of one with seals and of one that is parsed in a child, in a file and a pipe.

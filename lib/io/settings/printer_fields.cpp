@@ -22,7 +22,9 @@ Slot at(Printer& printer) {
   return &(printer.*Section.*Member);
 }
 
-constexpr double huge = 1e300;
+// No lamp and no resin comes near; what is beyond would leave the range of floats in a product.
+constexpr double most_mw_cm2 = 1e9;
+constexpr double most_mj_cm3 = 1e9;
 
 std::vector<std::string> schemes_of(const auto& table) {
   std::vector<std::string> schemes;
@@ -42,8 +44,8 @@ const std::vector<PrinterField> fields{
     {"projector", "telecentric", at<&Printer::projector, &Projector::telecentric>, "parallel chief rays; replaces throw_ratio"},
     {"projector", "telecentric_columns", at<&Printer::projector, &Projector::telecentric_columns>, "parallel chief rays seen along the rotation axis only"},
     {"projector", "telecentric_rows", at<&Printer::projector, &Projector::telecentric_rows>, "horizontal chief rays: parallel seen from the side only"},
-    {"projector", "min_intensity_mw_cm2", at<&Printer::projector, &Projector::min_intensity_mw_cm2>, "intensity at grey 0: black level", 0, huge},
-    {"projector", "max_intensity_mw_cm2", at<&Printer::projector, &Projector::max_intensity_mw_cm2>, "intensity at full grey", 0, huge, true},
+    {"projector", "min_intensity_mw_cm2", at<&Printer::projector, &Projector::min_intensity_mw_cm2>, "intensity at grey 0: black level", 0, most_mw_cm2},
+    {"projector", "max_intensity_mw_cm2", at<&Printer::projector, &Projector::max_intensity_mw_cm2>, "intensity at full grey", 0, most_mw_cm2, true},
     {"projector", "response", at<&Printer::projector, &Projector::response>, "response table: CSV file \"grey,intensity\", relative to this file; empty: linear"},
     {"projector", "bits", at<&Printer::projector, &Projector::bits>, "number of grey levels = 2^bits", 1, 16, false, {"1", "2", "4", "8", "10", "16"}},
     {"projector", "fps", at<&Printer::projector, &Projector::fps>, "frames per second", 0, 1e6, true},
@@ -61,7 +63,7 @@ const std::vector<PrinterField> fields{
     {"resin", "name", at<&Printer::resin, &Resin::name>, "name, for information only"},
     {"resin", "index", at<&Printer::resin, &Resin::index>, "refractive index at the projector's wavelength", 1, 4},
     {"resin", "absorption_per_mm", at<&Printer::resin, &Resin::absorption_per_mm>, "absorption coefficient, natural logarithm (base e)", 0, 1e6},
-    {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at the gelation threshold", 0, huge, true},
+    {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at the gelation threshold", 0, most_mj_cm3, true},
     {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 10},
     {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "diffusion coefficient of the dose (radicals and inhibitor)", 0, 0.1},
     {"stage", "device", at<&Printer::stage, &PrinterStage::device>, comment_on(model::stage_schemes), 0, 0, false, {}, schemes_of(model::stage_schemes)},
@@ -95,12 +97,8 @@ const std::vector<PrinterField> fields{
 
 std::string number_objection(const PrinterField& field, double value) {
   if (value >= field.low && value <= field.high && !(field.open_low && value == field.low)) return "";
-  const std::string got = format_number(value);
-  if (field.high < huge) {
-    return got + " is not between " + format_number(field.low) + (field.open_low ? " (excluded) and " : " and ") +
-           format_number(field.high);
-  }
-  return got + (field.open_low ? " is not above " : " is below ") + format_number(field.low);
+  return format_number(value) + " is not between " + format_number(field.low) +
+         (field.open_low ? " (excluded) and " : " and ") + format_number(field.high);
 }
 
 std::string word_objection(const PrinterField& field, const std::string& word) {

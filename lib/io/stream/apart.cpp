@@ -2,6 +2,7 @@
 #include "io/stream/apart.hpp"
 
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,8 +30,18 @@ constexpr std::size_t line_limit = 4096;
 constexpr double least_bytes = 1 << 24;  // for the smallest file
 constexpr const char* remedy = "close other programs";
 
-// What the child was refused.
-Error out_of_memory(const Foreign& source, const ResourceBounds& bounds) {
+// The limit of addresses of this process, in bytes; 0 where there is none.
+std::uint64_t most_addresses() {
+  rlimit most{};
+  return getrlimit(RLIMIT_AS, &most) == 0 && most.rlim_cur != RLIM_INFINITY ? most.rlim_cur : 0;
+}
+
+// What the child was refused. `limit` of the system where it is lower than the bound, else 0.
+Error out_of_memory(const Foreign& source, const ResourceBounds& bounds, std::uint64_t limit) {
+  if (limit > 0) {
+    return {Fault::memory, source.name + ": requires more memory than the limit of " + std::to_string(limit >> 20U) +
+                               " MiB of addresses leaves; raise it (ulimit -v)"};
+  }
   const std::string all =
       source.name + ": requires more than " + in_gib(static_cast<double>(bounds.memory_bytes)) + " of memory, ";
   if (source.bytes == 0) return {Fault::data, all + "all that is left; it is damaged"};
@@ -93,8 +104,9 @@ void send_verdict(int socket, int fault, const std::string& line) {
                             const std::function<void(Sender&)>& parse, int parent) {
   int fault = 0;
   std::string line;
+  std::uint64_t limit = most_addresses();  // which can no longer be asked for when the child is confined
   try {
-    confine(bounds, parent, {slots.socket, source.descriptor});
+    if (confine(bounds, parent, {slots.socket, source.descriptor})) limit = 0;
     Sender sender(slots);
     parse(sender);
     sender.flush();
@@ -102,7 +114,7 @@ void send_verdict(int socket, int fault, const std::string& line) {
     fault = static_cast<int>(error.fault);
     line = error.what();
   } catch (const std::bad_alloc&) {
-    const Error refused = out_of_memory(source, bounds);
+    const Error refused = out_of_memory(source, bounds, limit);
     fault = static_cast<int>(refused.fault);
     line = refused.what();
   } catch (const std::exception& error) {

@@ -32,11 +32,12 @@ std::uint64_t address_space() {
   return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-void limit(int resource, rlim_t most) {
+// False where there is a lower limit already.
+bool limit(int resource, rlim_t most) {
   rlimit now{};
-  if (getrlimit(static_cast<__rlimit_resource>(resource), &now) != 0) return;
+  if (getrlimit(static_cast<__rlimit_resource>(resource), &now) != 0) return false;
   const rlimit lower{std::min(now.rlim_cur, most), now.rlim_max};
-  (void)setrlimit(static_cast<__rlimit_resource>(resource), &lower);
+  return setrlimit(static_cast<__rlimit_resource>(resource), &lower) == 0 && lower.rlim_cur == most;
 }
 
 // Interrupts are the parent's to answer; the child dies with it.
@@ -97,15 +98,17 @@ ResourceBounds bounds_of(std::uint64_t file_bytes, std::uint64_t unpacked_bytes)
   return {std::min(wanted, left), 10 + unpacked / (64 * mib), left < wanted};
 }
 
-void confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept) {
+bool confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);
   reset_signals();
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, bounds.cpu_s);
-  if (const std::uint64_t now = address_space(); now > 0) limit(RLIMIT_AS, now + bounds.memory_bytes);
+  (void)limit(RLIMIT_CORE, 0);
+  (void)limit(RLIMIT_CPU, bounds.cpu_s);
+  const std::uint64_t now = address_space();
+  const bool ours = now > 0 && limit(RLIMIT_AS, now + bounds.memory_bytes);
   close_others(kept);
   filter_calls();
+  return ours;
 }
 
 }  // namespace vam::io

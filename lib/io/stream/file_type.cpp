@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/system_error.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/private/endless.hpp"
 #include "io/stream/signature.hpp"
 
 namespace vam::io {
@@ -43,6 +44,7 @@ std::string pipe_head(int descriptor) {
 std::string stdin_head() {
   struct stat about {};
   if (fstat(STDIN_FILENO, &about) != 0) return "";
+  require_end(about, input_name("-"));
   if (S_ISFIFO(about.st_mode)) return pipe_head(STDIN_FILENO);
   std::string head(look, '\0');
   const off_t here = lseek(STDIN_FILENO, 0, SEEK_CUR);
@@ -52,9 +54,9 @@ std::string stdin_head() {
 }
 
 std::string file_head(const std::string& path) {
-  std::error_code ignored;
-  const auto about = std::filesystem::status(path, ignored);
-  if (std::filesystem::exists(about) && !std::filesystem::is_regular_file(about)) {  // a look would take its bytes
+  struct stat about {};
+  if (stat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode)) {  // a look would take its bytes
+    require_end(about, path);
     throw Error{Fault::no_input, path + ": is not a regular file; give it on standard input"};
   }
   std::ifstream stream(path, std::ios::binary);

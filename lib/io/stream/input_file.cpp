@@ -14,6 +14,7 @@
 #include "base/system_error.hpp"
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/private/endless.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -33,6 +34,10 @@ bool never_ends(const struct stat& about) {
 
 }  // namespace
 
+void require_end(const struct stat& about, const std::string& name) {
+  if (never_ends(about)) throw Error{Fault::no_input, name + ": is a device that never ends; name a file"};
+}
+
 InputFile::InputFile(const std::string& path, Content content) : name_(input_name(path)) {
   descriptor_ = path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
   struct stat about = {};
@@ -44,7 +49,7 @@ InputFile::InputFile(const std::string& path, Content content) : name_(input_nam
   const bool terminal = isatty(descriptor_) == 1;
   if (S_ISDIR(about.st_mode) || never_ends(about) || (terminal && content == Content::binary)) {
     if (descriptor_ > STDIN_FILENO) close(descriptor_);
-    if (never_ends(about)) throw Error{Fault::no_input, name_ + ": is a device that never ends; name a file"};
+    require_end(about, name_);
     if (!terminal) throw Error{Fault::no_input, name_ + ": is a directory; name a file in it"};
     throw Error{Fault::usage, name_ + ": is a terminal and the input is binary; name a file or use a pipe"};
   }

@@ -2,6 +2,7 @@
 #include "base/memory.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include <memory>
 #include <string>
@@ -71,6 +72,20 @@ TEST_CASE("a large allocation beyond the bound throws before it is made") {
     CHECK(line.ends_with("--memory allows 1 GiB"));
   }
   CHECK_THROWS_AS(std::make_unique<char[]>(std::size_t{1} << 62), OutOfMemory);
+}
+
+TEST_CASE("what the system refuses is told with its limit, and how to raise it") {
+  CHECK(std::string(vam::OutOfMemory(0).what()).find("; end other programs") != std::string::npos);
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
+  rlimit most = before;
+  most.rlim_cur = std::uint64_t{1} << 50;
+  REQUIRE(setrlimit(RLIMIT_AS, &most) == 0);
+  const std::string unknown = vam::OutOfMemory(0).what(), known = vam::OutOfMemory(std::uint64_t{5} << 20).what();
+  REQUIRE(setrlimit(RLIMIT_AS, &before) == 0);
+  CHECK(unknown.starts_with("no memory is left: "));
+  CHECK(known.starts_with("needs 5 MiB of memory more: "));
+  CHECK(known.ends_with(" MiB of addresses are in use, the limit is 1.074e+09 MiB; raise it (ulimit -v)"));
 }
 
 TEST_CASE("small allocations are counted, and memory that was freed is not") {

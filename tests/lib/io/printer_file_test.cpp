@@ -105,6 +105,11 @@ TEST_CASE("wrong types and impossible values name file and line") {
   CHECK(has(refusal("vial = 3\n"), "must be a section"));
   CHECK(has(refusal("[vial]\nradius_mm = -1\n"), "p.toml:2: vial.radius_mm: -1 is not between 0"));
   CHECK(has(refusal("[vial]\nradius_mm = nan\n"), "nan is not between"));
+  for (const std::string beyond : {"1e30", "1e300", "inf"}) {  // one for which every product is finite, or none
+    CHECK(
+        has(refusal("[projector]\nmax_intensity_mw_cm2 = " + beyond + "\n"), " is not between 0 (excluded) and 1e+09"));
+    CHECK(has(refusal("[resin]\ncritical_dose_mj_cm3 = " + beyond + "\n"), " is not between 0 (excluded) and 1e+09"));
+  }
   CHECK(has(refusal("[projector]\nbits = 3\n"), "'3' is not one of 1, 2, 4, 8, 10, 16"));
   CHECK(has(refusal("[projector]\norientation = \"up\"\n"), "not one of normal"));
   CHECK(has(refusal("[vial\n"), "p.toml:1: not TOML"));

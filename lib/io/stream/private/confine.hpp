@@ -18,7 +18,8 @@ struct ResourceBounds {
 
 /// Makes the calling process, a fresh child, end with its parent, gives it the bounds and takes away every descriptor
 /// but `kept`, every signal handler and, where the kernel has seccomp, every system call that is not needed to compute,
-/// to allocate, and to read and write these descriptors; they fail with EPERM then.
-void confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept);
+/// to allocate, and to read and write these descriptors; they fail with EPERM then. False where a lower limit of
+/// addresses was in force.
+[[nodiscard]] bool confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept);
 
 }  // namespace vam::io
