@@ -20,7 +20,7 @@ struct VideoFormat {
   std::string comment;  // goes into the file's metadata
   bool colour = false;  // H.264 of RgbImages
   // Of one that is read:
-  bool checksums = false;      // its container has some, and all are right
+  bool checksums = false;                     // its container has some, and all are right
   std::optional<Digest> seal = std::nullopt;  // of the decoded levels, to which reading to the end holds them
 };
 
