@@ -191,6 +191,11 @@ App& App::usual(const std::vector<std::string>& flags) {
   return *this;
 }
 
+App& App::brief(const std::string& text) {
+  state_->current_group().options.back().brief = text;
+  return *this;
+}
+
 App& App::required() {
   Option& option = state_->current_group().options.back();
   option.required = true;

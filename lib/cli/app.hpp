@@ -90,6 +90,8 @@ class App {
   App& when_left_out(const std::string& number);
   /// Of the options declared so far, --help shows these and those that are required; --help=all shows all.
   App& usual(const std::vector<std::string>& flags);
+  /// What --help says of the option declared last, instead of its first sentence, where --help=all says more.
+  App& brief(const std::string& text);
   /// The option declared last must be given; or where that other one is not.
   App& required();
   App& required_without(const std::string& flag);

@@ -47,31 +47,52 @@ std::string first_sentence(const std::string& text) {
   return text;
 }
 
-/// In short: what an option is for, its words and its default.
-Option shortened(Option option) {
+/// In short: what an option is for, its words and its default, or what its tool says instead.
+std::string brief_text(Option option) {
+  if (!option.brief.empty()) return option.brief;
   option.help = first_sentence(option.help);
   option.range_text.clear();
   option.needs.clear();
-  return option;
+  return join(details(option), " ");
 }
 
-std::string help_text(const Group& group, bool brief) {
+std::string words_of(const Option& option) {
+  return join(split(option.flag, ','), ", ") + (option.value_name.empty() ? "" : " " + value_words(option));
+}
+
+std::string help_text(const Group& group) {
   std::string text = group.title + ":\n";
-  for (const auto& option : group.options) {
-    text += "  " + join(split(option.flag, ','), ", ");
-    if (!option.value_name.empty()) text += " " + value_words(option);
-    text += "\n" + wrap(join(details(brief ? shortened(option) : option), " "), width, indent);
-  }
+  for (const auto& option : group.options)
+    text += "  " + words_of(option) + "\n" + wrap(join(details(option), " "), width, indent);
   return text;
 }
 
-/// The usual options, and how many are left out.
-std::vector<Group> usual_groups(std::vector<Group> groups, std::size_t& hidden) {
-  for (Group& group : groups) {
-    hidden += std::erase_if(group.options, [](const Option& option) { return !option.usual; });
+/// Side by side, where the words leave room for it.
+std::string brief_entry(const std::string& words, const std::string& text) {
+  constexpr std::size_t column = 24;
+  const std::string wrapped = wrap(text, width, column);
+  const std::size_t used = 2 + words.size();
+  return "  " + words + (used + 2 > column ? "\n" + wrapped : wrapped.substr(used));
+}
+
+std::string names_of_all() {
+  std::vector<std::string> names;
+  for (const Option& option : options_of_all()) names.push_back(words_of(option));
+  return join(names, "; ");
+}
+
+/// The usual options as one list, and how many are left out.
+std::string usual_text(const Declaration& tool) {
+  std::string text = "Options:\n";
+  std::size_t hidden = 0;
+  for (const Group& group : tool.groups) {
+    for (const Option& option : group.options) {
+      if (option.usual) text += brief_entry(words_of(option), brief_text(option));
+      if (!option.usual) ++hidden;
+    }
   }
-  std::erase_if(groups, [](const Group& group) { return group.options.empty(); });
-  return groups;
+  return text + "\n" + std::to_string(hidden) + " more options, and all of each: " + tool.manual.name +
+         " --help=all\n" + "Common options: " + names_of_all() + ";\n";
 }
 
 }  // namespace
@@ -171,17 +192,18 @@ std::string help_text(const Declaration& tool, bool all) {
     text += "  " + nested.manual.name + "\n" + wrap(nested.manual.summary, width, indent);
   }
   if (!tool.subcommands.empty()) text += "\n";
+  const bool whole = all || !has_usual(tool);
   for (const auto& positional : tool.positionals) {
-    text += "  " + positional.value_name + "\n" + wrap(details(positional), width, indent);
+    text += whole ? "  " + positional.value_name + "\n" + wrap(details(positional), width, indent)
+                  : brief_entry(positional.value_name, details(positional));
   }
   if (!tool.positionals.empty()) text += "\n";
-  std::size_t hidden = 0;
-  const bool whole = all || !has_usual(tool);
-  for (const auto& group : whole ? tool.groups : usual_groups(tool.groups, hidden))
-    text += help_text(group, !whole) + "\n";
-  if (hidden > 0)
-    text += std::to_string(hidden) + " more options, and all of each: " + tool.manual.name + " --help=all\n\n";
-  text += help_text(Group{"Common options", options_of_all()}, !whole);
+  if (whole) {
+    for (const Group& group : tool.groups) text += help_text(group) + "\n";
+    text += help_text(Group{"Common options", options_of_all()});
+  } else {
+    text += usual_text(tool);
+  }
   text += "  -h, --help; --version; --man (the manual page); --completion bash|zsh|fish\n";
   return text;
 }

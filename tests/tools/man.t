@@ -13,6 +13,9 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   complaints=$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')
   is "$tool: mandoc -Tlint is silent" "$complaints" ""
   ok "$tool: --help" "$tool" --help
+  "$tool" --help >"$tool.help"
+  lines=$(wc -l <"$tool.help")
+  ! grep -q -- '--help=all$' "$tool.help" || holds "$tool: what is usual is told in short" "$lines <= 56"
   ok "$tool: --version" "$tool" --version
   grep -q "$tool" "$VAM_SOURCE/README.md"; report $? "$tool: in README"
   for shell in bash zsh fish; do "$tool" --completion $shell >"$tool.$shell" || report 1 "$tool: --completion $shell"; done

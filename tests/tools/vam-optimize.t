@@ -267,6 +267,8 @@ holds "no light is better than the bound" "$(value proved.json certificate.least
 ok "its weights are a volume to look at" vam-view proof.vdb -o proof.png
 fails 65 "certificate" vam-optimize --weights proof.vdb part.vdb -o out.exr
 fails 64 "vam-optimize --help=all lists all" vam-optimize --threshold 3 part.vdb
+is 'the help fits on a screen, with a dozen options' \
+  "$(vam-optimize --help | awk '/^  -/ && !/--version/ { n++ } END { print (NR <= 30), (n <= 14) }')" '1 1'
 fails 64 'certify: does not apply to --grey-target' vam-optimize --grey-target --certify p.vdb part.vdb -o out.exr
 fails 64 'p.exr' vam-optimize --certify p.exr part.vdb -o out.exr
 

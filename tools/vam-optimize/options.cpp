@@ -94,13 +94,14 @@ void declare_constraints(cli::App& app, Options& options) {
 void declare_stopping(cli::App& app, Options& options) {
   app.group("Stopping criteria");
   app.option("--iterations", "N", options.iterations, {0, 1000000}, "Maximum number of iterations.");
-  app.default_is(default_iterations()).not_in_job();
+  app.default_is(default_iterations()).not_in_job().brief("Maximum number of iterations.");
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
                  join(optimize::SliceFigures::names(), ", ") + ".");
   app.default_is(std::string(optimize::automatic_until) +
                  " with --method auto, with --shortest or without --iterations; else no condition")
-      .not_in_job();
+      .not_in_job()
+      .brief("Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'.");
   app.option(
       "--patience", "N", options.limits.patience, {0, 1000000},
       "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it. Where no goal is met, "
@@ -128,6 +129,7 @@ void declare_stopping(cli::App& app, Options& options) {
              "File for the state of a run that is interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from "
              "it with bit-identical results; target, printer and all options that affect the result must be the same. "
              "Removed on completion.");
+  app.brief("Keep an interrupted run here, and resume from it.");
   app.not_in_job().writes();
   app.option("--trace", "FILE", options.trace,
              "Write the figures of merit after every iteration as CSV; the result may be that of an earlier one than "
@@ -163,6 +165,7 @@ void declare_duration(cli::App& app, Options& options) {
              "--max-intensity from resin.critical_dose_mj_cm3, resin.absorption_per_mm and "
              "projector.max_intensity_mw_cm2, and --diffusion-time. (vam-project --turns sets the number of turns "
              "shown.)");
+  app.brief("Turns in which the print must be complete.");
   app.flag(
       "--shortest", options.shortest,
       readers("--max-intensity") +
@@ -172,6 +175,7 @@ void declare_duration(cli::App& app, Options& options) {
           std::to_string(optimize::shortest_raising.next) +
           " iterations without success. auto searches on its coarsest voxels, which takes up to twice as long as a "
           "run; other methods take several times as long.");
+  app.brief("Find the shortest print that meets --until.");
   app.option("--tradeoff", "FILE", options.tradeoff,
              readers("--max-intensity") +
                  "write the Pareto front of print duration and process window, as CSV or as a figure (.png, .pdf or "
@@ -211,6 +215,7 @@ void declare_tolerances(cli::App& app, Options& options) {
                  "calibration records (axis and radius from edges, angle from latency, psf from beam); tolerances that "
                  "are also given (calibration,lamp=3%) take precedence. The report contains the figures of merit at "
                  "each tolerance.");
+  app.brief("Print well also if the printer deviates by these, e.g. 'axis=0.5px,lamp=3%'.");
   app.option(
       "--yield-printers", "N", options.yield_printers, {0, 100000},
       "Number of random printers for the yield of --robust, each quantity distributed uniformly within its tolerance.");
@@ -260,8 +265,9 @@ void declare(cli::App& app, Options& options) {
   app.choice("--geometry", options.geometry, {"vial", "parallel"},
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
              "beam, which gives a virtual sinogram for vam-resample in a third of the time.");
+  app.brief("Beam: vial (refracted) or parallel. Default: vial.");
   app.option("--angles", "N", options.angles, {1, 100000}, "Number of stage angles over 360 degrees.");
-  app.default_is("those of --init, else 360");
+  app.default_is("those of --init, else 360").brief("Number of stage angles over 360 degrees. Default: 360.");
   app.option("--detector-bins", "N", options.bins, {1, 65536},
              "Number of detector bins of a parallel beam, each one voxel wide.");
   app.default_is("as many as cover the writable circle").was("--columns");

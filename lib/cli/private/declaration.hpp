@@ -37,7 +37,8 @@ struct Option {
   bool writes = false;                                    // names a file that is written
   std::vector<std::string> endings = {};                  // of which its name has one; empty: any
   bool any_name = false;                                  // or it has none that says another format
-  bool usual = false;                                     // --help shows it where others need --help=all
+  bool usual = false;                                     // --help shows it where others need --help=all,
+  std::string brief = {};                                 // in these words; empty: in those of its first sentence
 };
 
 struct Group {

@@ -70,7 +70,7 @@ TEST_CASE("--help shows the usual options, --help=all all") {
     return written_to(stdout, [&] { CHECK(tool.run({word}) == 0); });
   };
   const std::string some = help(true, "--help");
-  CHECK(some.find("  --voxel MM\n") != std::string::npos);
+  CHECK(some.find("\n  --voxel MM            ") != std::string::npos);
   CHECK(some.find("--angles") == std::string::npos);
   CHECK(some.find("\n4 more options, and all of each: vam-demo --help=all\n") != std::string::npos);
   CHECK(some.find("--quiet") != std::string::npos);
