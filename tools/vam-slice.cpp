@@ -53,6 +53,17 @@ void warn_of_size(const cli::App& app, const Options& options, const solid::Part
     warn(thin);
 }
 
+/// For a part that is too large.
+solid::PlacementAdvice advice_for(const cli::App& app, const Options& options, const solid::Part& part,
+                                  const solid::Writable& room) {
+  solid::PlacementAdvice advice = slice_tool::advice(options);
+  if (!part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit")) return advice;
+  const solid::Point size = part.extent.box.size();
+  const std::string unit = solid::finer_unit(std::max({size[0], size[1], size[2] / options.placement.stretch_z}), room);
+  if (!unit.empty()) advice.unit = unit + " --unit states it; else ";
+  return advice;
+}
+
 void warn_of_insert_size(const cli::App& app, const Options& options, const solid::Part& insert,
                          const solid::Writable& room) {
   if (!insert.repair || app.given("--insert-unit") || app.given("--insert-scale")) return;
@@ -89,6 +100,8 @@ model::Grid grid_of(const Options& options, const model::Printer& printer, const
 
 void run(const cli::App& app, Options& options) {
   check(app, options);
+  options.unit_given = app.given("--unit");
+  options.insert_unit_given = app.given("--insert-unit");
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
@@ -103,7 +116,8 @@ void run(const cli::App& app, Options& options) {
   const double lift_mm = slice_tool::lift_mm(options, printer, part, room);
   part = solid::lifted(std::move(part), lift_mm);
   if (insert) insert = solid::lifted(std::move(*insert), lift_mm);
-  solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject, advice(options));
+  solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject,
+                          advice_for(app, options, part, room));
   const model::Grid grid = grid_of(options, printer, part, insert, room);
   solid::FillSummary content;
   std::optional<io::SparseVolume> opaque;

@@ -131,7 +131,7 @@ fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost view
 
 fails 64 'have no angles; give their angular step by --view-step' vam-ost views -o x.vdb
 fails 64 'mesh: requires --isovalue or --resin' vam-ost views --view-step 6 --mesh p.ply -o x.vdb
-fails 64 "'p.off' must end in .ply or .stl or .obj" vam-ost views --view-step 6 --isovalue 1 --mesh p.off -o x.vdb
+fails 64 "'p.off' must end in .3mf or .ply or .stl or .obj" vam-ost views --view-step 6 --isovalue 1 --mesh p.off -o x.vdb
 fails 64 'volume-step: requires --live' vam-ost views --view-step 6 --volume-step 90 -o x.vdb
 fails 64 'until: requires --target' vam-ost views --view-step 6 --live --isovalue 1 --until 'iou>=0.5'
 fails 64 'report: describes one volume' vam-ost views --view-step 6 --live -o x --report x.json

@@ -60,10 +60,21 @@ is "all of the part cures" "$(json at.json cured_part)" 1.0
 
 quiet "the print as a mesh" vam-score --grid target part.vdb --mesh print.ply
 is "a PLY with faces" "$(head -c 400 print.ply | grep -ac 'element face')" 1
-for ending in stl obj; do
+for ending in stl obj 3mf; do
   quiet "the same as $ending" vam-score --grid target part.vdb --mesh print.$ending
   holds "is the same surface" "$(vam-sdf print.$ending print.ply --align none --report apart.json 2>/dev/null; json apart.json print_to_design.max_abs_mm) < 1e-5"
 done
+is 'the 3MF is a package of sound parts, its model in mm' "$(python3 - <<'PY'
+import xml.etree.ElementTree, zipfile
+with zipfile.ZipFile("print.3mf") as package:
+    print(package.testzip(), *package.namelist(), end=" ")
+    model = [xml.etree.ElementTree.fromstring(package.read(name)) for name in package.namelist()][-1]
+core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+points = sum(1 for _ in model.iter(core + "vertex"))
+corners = [int(t.get(v)) for t in model.iter(core + "triangle") for v in ("v1", "v2", "v3")]
+print(model.tag == core + "model", model.get("unit"), max(corners) == points - 1, min(corners))
+PY
+)" 'None [Content_Types].xml _rels/.rels 3D/3dmodel.model True millimeter True 0'
 is "OBJ counts corners from 1" "$(head -n 3 print.obj | cut -d' ' -f1 | tr -d '\n')" '#vv'
 fails 64 'points are written as .ply' vam-score --grid target part.vdb --mesh points.obj --ply-as points
 quiet "the print as points" vam-score --grid target part.vdb --mesh points.ply --ply-as points
@@ -130,7 +141,7 @@ fails 74 'full' vam-score --grid target part.vdb --mesh /dev/full
 fails 65 'part.vdb' vam-score --grid target part.vdb --sinogram part.vdb
 
 fails 64 'require: is empty' vam-score part.vdb --target part.vdb --require ''
-fails 64 "'print.off' must end in .ply" vam-score part.vdb --target part.vdb --mesh print.off
+fails 64 "'print.off' must end in .3mf or .ply" vam-score part.vdb --target part.vdb --mesh print.off
 
 # Void in the corners of the volume is judged too, up to the writable radius; where that ends is told.
 python3 - "$VAM_SOURCE/scripts" <<'PY'

@@ -105,6 +105,27 @@ says() {  # says REGEX COMMAND...: succeeds with one warning that matches
 says 'metres.obj: no voxel .*is its unit m[?]' vam-slice metres.obj --voxel 0.1 -o out.vdb
 says 'inches.obj: the part is only 0.6 mm large; is its unit cm or in[?]' \
   vam-slice inches.obj --voxel 0.1 -o out.vdb
+awk '$1 == "v" { print "v", $2 * 3000, $3 * 3000, $4 * 3000; next } { print }' quads.obj >microns.obj
+fails 65 'microns.obj: 6000 x .* is its unit um[?] --unit states it; else give --scale' \
+  vam-slice microns.obj --voxel 0.1 -o out.vdb
+ok 'which it is' vam-slice microns.obj --unit um --voxel 0.1 -o out.vdb
+fails 65 '^vam-slice: quads.obj: 200 x 200 x 200 mm, .*\); give --scale' vam-slice quads.obj --scale 100 --voxel 0.1 -o out.vdb
+python3 - <<'PY'
+import zipfile
+lines = open("quads.obj").read().split("\n")
+v = [l.split()[1:] for l in lines if l.startswith("v")]
+f = [[int(i) - 1 for i in l.split()[1:]] for l in lines if l.startswith("f")]
+with zipfile.ZipFile("inch.3mf", "w") as out:
+    out.writestr("3D/3dmodel.model", '<model unit="inch" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
+        '<resources><object id="1"><mesh><vertices>' + "".join('<vertex x="%s" y="%s" z="%s"/>' % tuple(p) for p in v) +
+        "</vertices><triangles>" + "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % t for q in f
+        for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))) + '</triangles></mesh></object></resources><build><item objectid="1"/></build></model>')
+PY
+volume 64 vam-slice inch.3mf --scale 0.078740157480315 --voxel 0.25
+fails 64 '--unit: inch.3mf states its unit, as 3MF files do; omit --unit, or give --scale' \
+  vam-slice inch.3mf --unit in --voxel 0.25 -o out.vdb
+fails 64 '--insert-unit: inch.3mf states its unit, .*give --insert-scale' \
+  vam-slice quads.obj --insert inch.3mf --insert-unit in --voxel 0.25 -o out.vdb
 quiet "a requested size causes no warning" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb
 says 'no voxel .*covered to 0.33 at most.; voxels of' \
   vam-slice --shape box:x=4,y=4,z=0.1 --stretch-z 1 --voxel 0.15 -o out.vdb

@@ -26,7 +26,8 @@ void declare_grey(cli::App& app, Options& options) {
 
 void declare_print(cli::App& app, Options& options) {
   app.group("Print");
-  app.option("--mesh", "FILE", options.print, "Write the print in mm, as PLY, STL or OBJ by the ending of the name.")
+  app.option("--mesh", "FILE", options.print,
+             "Write the print in mm, as PLY, STL, OBJ or 3MF by the ending of the name.")
       .was("--print")
       .writes_as(io::written_mesh_endings());
   app.choice("--ply-as", options.print_as, {"mesh", "points"},

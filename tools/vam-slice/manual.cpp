@@ -44,6 +44,7 @@ std::vector<std::string> limits() {
       "quarters free, which are printed shut.",
       "Slices of meshes and shapes begin where a row of the projector does (projector.axis_row), so that voxels "
       "that are one or several pixels high coincide with rows.",
+      "3MF files state their unit, which is converted to mm; --unit and --insert-unit are refused for them.",
       "An insert keeps the size of its file, in mm or --insert-unit; one smaller than a tenth of the writable width "
       "causes a warning with the probable unit. Its origin coincides with that of PART's file and "
       "it is rotated with PART, so that the parts of an assembly stay together as long as PART is not scaled; "

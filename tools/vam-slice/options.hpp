@@ -20,6 +20,8 @@ struct Options {
   std::string insert;
   std::string insert_shape;
   std::string insert_unit = "mm";
+  bool unit_given = false;
+  bool insert_unit_given = false;
   double insert_scale = 1;
   std::vector<double> insert_rotate_deg;
   std::vector<double> insert_at_mm;

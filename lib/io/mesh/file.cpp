@@ -83,10 +83,11 @@ std::string bytes_of(const std::string& path) {
   return without_mark(std::move(bytes));
 }
 
-// The format of a name that is written; standard output is the first one.
+// The format of a name that is written.
 const MeshFormat& format_of_output(const std::string& path) {
   for (const MeshFormat& format : mesh_formats()) {
-    if (format.write != nullptr && (path == "-" || path.ends_with(format.extension))) return format;
+    if (format.write != nullptr && (path == "-" ? ".ply" == format.extension : path.ends_with(format.extension)))
+      return format;
   }
   throw Error{Fault::usage, path + ": unsupported output format; use " + join(written_mesh_endings(), " or ")};
 }
@@ -218,6 +219,7 @@ ColouredMesh read_coloured_mesh(const std::string& path, const std::string& othe
       {name, bytes.size()}, [&](Sender& out) { send_mesh(parsed(bytes, name, others), out); },
       [&](Receiver& in) { made = received(in); });
   check_indices(made, name);
+  made.in_mm = is_3mf(bytes);
   return made;
 }
 

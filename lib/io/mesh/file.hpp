@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mesh files: STL, OBJ, PLY, OFF and 3MF in; STL, OBJ and PLY out.
+// Mesh files: STL, OBJ, PLY, OFF and 3MF in; STL, OBJ, PLY and 3MF out.
 #pragma once
 
 #include <array>
@@ -24,6 +24,7 @@ struct ColouredMesh {
   model::TriangleSoup mesh;
   std::vector<std::array<std::uint8_t, 3>> colours;  // one a point, or none
   std::vector<float> uncertainty;                    // the same
+  bool in_mm = false;                                // the file states its unit, which was converted
 };
 [[nodiscard]] ColouredMesh read_coloured_mesh(const std::string& path, const std::string& others = "");
 

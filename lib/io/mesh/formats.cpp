@@ -45,8 +45,6 @@ bool is_off(const std::string& bytes) {
   return false;
 }
 
-bool is_3mf(const std::string& bytes) { return bytes.starts_with("PK\3\4"); }
-
 bool is_ply(const std::string& bytes) { return starts_with_word(bytes, "ply"); }
 
 // ASCII STL; some programs write it in capitals.
@@ -84,6 +82,8 @@ void write_obj(const std::string& path, const model::TriangleSoup& mesh, const s
 
 }  // namespace
 
+bool is_3mf(const std::string& bytes) { return bytes.starts_with("PK\3\4"); }
+
 void require_all_read(std::uint64_t promised, std::uint64_t found) {
   if (found <= promised) return;
   throw MeshProblem{"the header states " + std::to_string(promised) + " faces but the file has " +
@@ -104,7 +104,7 @@ void give_up(const char* format, const PolygonSoup& soup) {
 
 const std::vector<MeshFormat>& mesh_formats() {
   static const std::vector<MeshFormat> formats{
-      {".3mf", "3MF", is_3mf, parse_3mf, nullptr},         {".ply", "PLY", is_ply, parse_ply, write_plain_ply},
+      {".3mf", "3MF", is_3mf, parse_3mf, write_3mf},       {".ply", "PLY", is_ply, parse_ply, write_plain_ply},
       {".stl", "STL", is_stl, parse_stl, write_plain_stl}, {".off", "OFF", is_off, parse_off, nullptr},
       {".obj", "OBJ", is_obj, parse_obj, write_obj},
   };

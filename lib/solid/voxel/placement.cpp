@@ -198,7 +198,8 @@ void require_writable(const PlacedExtent& part, const Writable& room, double vox
   const Point mm = part.box.size();
   const Point middle = part.box.centre();
   const bool aside = std::hypot(middle[0], middle[1]) > room.radius_mm;
-  const std::string remedy = (aside ? advice.off_axis : "") + smaller(advice, fitting_factor(part, room, voxel_mm));
+  const std::string remedy =
+      advice.unit + (aside ? advice.off_axis : "") + smaller(advice, fitting_factor(part, room, voxel_mm));
   require_radius(part.radius_mm, room, voxel_mm,
                  subject + ": " + format_number(mm[0], 4) + " x " + format_number(mm[1], 4) + " x " +
                      format_number(mm[2] / advice.stretch_z, 4) + " mm, reaches",

@@ -94,6 +94,7 @@ struct PlacementAdvice {
   double value = 1;                          // its value in force
   double stretch_z = 1;                      // of the part, undone in the size that is reported
   std::string or_fit;                        // " or ...": what else fits it
+  std::string unit;                          // "...; ": for a file in another unit
   std::string off_axis;                      // "...; ": for a part beside the axis
   std::string beyond;                        // ", ... allows it": beyond the writable radius
   std::string too_high = "move it along z";  // for a part that fits at another height

@@ -77,6 +77,14 @@ std::string unit_doubt(const std::string& subject, const std::string& body, doub
                       : subject + ": the " + body + " is only " + format_number(largest_mm, 3) + " mm large" + unit;
 }
 
+std::string finer_unit(double largest_mm, const Writable& room) {
+  for (const auto& [name, mm] : units) {
+    const double widths = largest_mm * mm / (2 * room.radius_mm);
+    if (mm < 1 && widths > 0.05 && widths < 1.5) return std::string("is its unit ") + name + "?";
+  }
+  return "";
+}
+
 std::string gap_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
                       double stretch_z) {
   const model::LostGaps& lost = unresolved.lost_gaps;

@@ -19,9 +19,13 @@ namespace vam::solid {
 [[nodiscard]] std::string unit_doubt(const std::string& subject, const std::string& body, double largest_mm,
                                      const Writable& room);
 
+/// "is its unit um?" of a body too large when read in mm: the units in which it would be between a twentieth of the
+/// writable width and one and a half. Else empty.
+[[nodiscard]] std::string finer_unit(double largest_mm, const Writable& room);
+
 /// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
-/// is less than a tenth as large as the writable width. `unit_known`: the user has stated what a unit of the file is, or
-/// how large the part.
+/// is less than a tenth as large as the writable width. `unit_known`: the user has stated what a unit of the file is,
+/// or how large the part.
 [[nodiscard]] std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid,
                                      double stretch_z, const Writable& room, bool unit_known);
 

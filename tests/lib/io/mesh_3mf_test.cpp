@@ -68,6 +68,26 @@ TEST_CASE(
   CHECK(high == doctest::Approx(3));
 }
 
+TEST_CASE("3MF is written in mm, the same bytes for the same mesh, and comes back point by point") {
+  const scratch::Folder folder;
+  vam::model::TriangleSoup mesh = box();
+  mesh.points[0][0] += 1.0 / 3;
+  vam::model::TriangleSoup flat = mesh;
+  flat.triangles.push_back({1, 1, 2});  // 3MF has no such triangle
+  const std::vector<std::string> comments{"a <tag> & \"more\""};
+  vam::io::write_mesh(folder / "a.3mf", mesh, comments);
+  vam::io::write_mesh(folder / "b.3mf", flat, comments);
+  CHECK(scratch::slurp(folder / "a.3mf") == scratch::slurp(folder / "b.3mf"));
+  const vam::io::ColouredMesh back = vam::io::read_coloured_mesh(folder / "a.3mf");
+  CHECK(back.in_mm);
+  CHECK(back.mesh.triangles == mesh.triangles);
+  REQUIRE(back.mesh.points.size() == mesh.points.size());
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      CHECK(std::abs(back.mesh.points[i][axis] - mesh.points[i][axis]) < 1e-8);  // nine digits
+  }
+}
+
 TEST_CASE("3MF: supports are not printed, alone, as items or as components") {
   const scratch::Folder folder;
   const auto typed = [](int id, const std::string& type) {

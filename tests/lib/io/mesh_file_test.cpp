@@ -100,8 +100,8 @@ TEST_CASE("the ending of an output's name chooses its format, and one that is on
     const std::string path = folder / ("box" + format.extension);
     CAPTURE(path);
     if (format.write == nullptr) {
-      CHECK(
-          has(error_of([&] { vam::io::write_mesh(path, box(), {}); }, vam::Fault::usage), "use .ply or .stl or .obj"));
+      CHECK(has(error_of([&] { vam::io::write_mesh(path, box(), {}); }, vam::Fault::usage),
+                "use .3mf or .ply or .stl or .obj"));
       continue;
     }
     vam::io::write_mesh(path, box(), {"a comment"});

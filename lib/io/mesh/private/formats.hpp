@@ -75,5 +75,9 @@ struct MeshFormat {
 /// throw, a component loop, more than 2^25 triangles, 2^26 vertices or 2^20 objects in all, or more than fit in the
 /// memory of the child for a file of its size, a beam lattice.
 [[nodiscard]] PolygonSoup parse_3mf(const std::string& bytes);
+/// A zip archive.
+[[nodiscard]] bool is_3mf(const std::string& bytes);
+/// In mm; the same bytes for the same mesh. Triangles that use a point twice are left out, as the format has none.
+void write_3mf(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments);
 
 }  // namespace vam::io
