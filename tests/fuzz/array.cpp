@@ -30,7 +30,8 @@ void read_bare(const std::string& file) {
     return step;
   };
   Bytes bytes(read, "array");
-  const auto head = file.starts_with(io::arrays::nrrd_magic)  ? take_nrrd_head(bytes)
+  std::vector<double> voxel_mm;
+  const auto head = file.starts_with(io::arrays::nrrd_magic)  ? take_nrrd_head(bytes, voxel_mm)
                     : file.starts_with(io::arrays::npy_magic) ? take_npy_head(bytes)
                                                               : take_mrc_head(bytes);
   read_all({head, std::move(bytes), {2, 0, 1}});

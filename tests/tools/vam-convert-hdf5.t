@@ -132,7 +132,10 @@ refused lzf 65 'bad.h5: /lzf has 0 dimensions; 2 or 3'
 refused name 65 'bad.h5: /name holds strings, not numbers'
 refused records 65 'bad.h5: /records holds records of several fields'
 refused complex 65 'bad.h5: /complex holds records of several fields'
-refused packed 65 'bad.h5: /packed is packed by lzf, which is not read; pack it by h5repack'
+refused packed 65 'bad.h5: /packed is packed by lzf, which is not read; unpack a copy in Python, by h5py: cp bad.h5 plain.h5'
+vam-convert bad.h5 --array packed --voxel 1 -o x.vdb 2>&1 | sed 's/.*by h5py: //; s/python3/\/usr\/bin\/python3/' >unpack.sh
+ok 'the command unpacks it' sh unpack.sh
+ok 'and it is read' sh -c 'vam-convert plain.h5 --array packed --voxel 1 --stretch-z 1 -o plain.vdb'
 refused virtual 65 'bad.h5: /virtual has its values in other files'
 refused far 64 'but no dataset is called far, or it is in another file'
 refused no 64 'bad.h5: holds /complex \(records of several fields\), /deep \(1 x 2 x 3 x 4\), .*, but no dataset is called no'

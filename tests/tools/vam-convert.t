@@ -136,6 +136,29 @@ vam-view part.vdb --export part.nrrd
 vam-convert part.vdb -o part.npy
 vam-convert part.nrrd --voxel 0.5 | vam-convert >back.npy
 same 'a volume by way of NRRD' part.npy back.npy
+nrrd() {  # nrrd REGEX SPACINGS: says it of --voxel 0.5, or nothing where it is empty
+  LC_ALL=C sed "s/^space directions.*/$2/" part.nrrd >stated.nrrd
+  ok "stated voxels: $1" sh -c 'vam-convert stated.nrrd --voxel 0.5 --stretch-z 1 -o stated.vdb 2>said'
+  if [ -z "$1" ]; then is 'in silence' "$(cat said)" ''; else ok 'and says so' grep -Eq "$1" said; fi
+}
+nrrd '' 'space directions: (0.5,0,0) (0,0.3,0.4) (0,0,-0.5)'
+nrrd '' 'spacings: 0.5 0.5 nan'
+nrrd '' 'spacings: 500 500 500\nunits: "um" "um" "um"'
+nrrd '' 'spacings: 7 7 7\nunits: "s" "s" "s"'
+nrrd 'stated.nrrd: states voxels of 0.25 mm, and is read with --voxel 0.5; give --voxel 0.25' \
+  'space directions: (0.25,0,0) (0,0.25,0) (0,0,0.25)'
+nrrd 'states voxels of 0.5 x 0.5 x 1 mm, and is read with --voxel 0.5; voxels must be cubes' 'spacings: 0.5 0.5 1'
+nrrd 'states voxels of 50 mm, ' 'spacings: 5 5 5\nunits: "cm" "cm" "cm"'
+{ printf 'RIFF\210\023\0\0AVI LIST'; head -c 5000 /dev/zero; } >film.avi
+{ printf 'GIF89a'; head -c 500 /dev/zero; } >film.gif
+for kind in 'avi an AVI video' 'gif a GIF image'; do
+  film=film.${kind%% *} kind=${kind#* }
+  fails 65 "$film: is $kind, not an array .*; convert it without loss: ffmpeg -i" vam-convert $film --voxel 1 -o x.vdb
+  fails 65 "$film: is $kind, not a mesh; .*ffmpeg" vam-slice $film -o x.vdb
+  fails 65 "$film: is $kind; a volume .* is needed; .*ffmpeg" vam-view $film -o x.png
+  fails 65 "$film: is $kind, not a volume, mesh" vam-report $film -o x.html
+  is "$film by vam-check" "$(vam-check $film)" "$film: $kind, unsealed"
+done
 
 # No beginning of a file is taken for the file, and none crashes.
 statuses() {  # statuses FILE: of all its beginnings

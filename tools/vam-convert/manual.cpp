@@ -25,7 +25,11 @@ cli::Manual manual() {
        "order xaz. Values are unchanged unless --full-scale is given. Python objects (pickles) are refused. "
        "Of NRRD, MRC and TIFF files the values are read (x the fastest axis, pages as z, and as of every array the "
        "rows of a page from the lowest y up) and voxel size and place are "
-       "given by options; NRRD values must be in the same file, raw or gzip, TIFF pages grey and in strips.",
+       "given by options; where the header of an NRRD file states other voxels than --voxel (spacings, space "
+       "directions), a "
+       "warning states both. What MRC and TIFF files state is not compared, as many programs leave it at 1 or at the "
+       "resolution of a screen. "
+       "NRRD values must be in the same file, raw or gzip, TIFF pages grey and in strips.",
        "A volume is taken as it lies. The print of a target is lower than its volume by the vertical magnification of "
        "the projector, for which vam-slice stretches its parts; for arrays --stretch-z does so, and without it a "
        "warning states the factor (1.04 for the default printer). --stretch-z 1 is for arrays that are stretched "
@@ -39,7 +43,9 @@ cli::Manual manual() {
        "stage angles (theta, rotation_angle, in degrees, or in radians where their attribute units says so) give the "
        "step and the first angle, unless --view-step is given; each must lie within a tenth of a step of even ones. "
        "Flat and dark fields are not divided out. MATLAB stores the axes in reverse order. Values in other files "
-       "(external links, virtual datasets) and filters of plugins are refused.",
+       "(external links, virtual datasets) and filters of plugins (LZF of h5py, Blosc) are refused, the latter with "
+       "the "
+       "command that unpacks a copy.",
        "Projections of other programs do not state their geometry, which is therefore given by options: the column "
        "pitch at the axis (--pixel), the stage angle between projections (--view-step), the column of the axis "
        "(--axis-column), the row of z = 0 (--axis-row) and the orientation of the images (--orientation). With "

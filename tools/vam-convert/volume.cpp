@@ -106,10 +106,26 @@ std::string height_doubt(const Options& options) {
 
 }  // namespace
 
+/// Of a file that states its voxels, as NRRD does: both, where they differ.
+std::string voxel_doubt(const Options& options, const std::vector<double>& stated_mm) {
+  constexpr double least = 1e-3;
+  const double voxel_mm = *options.voxel_mm;
+  const auto differs = [&](double mm) { return std::abs(mm / voxel_mm - 1) > least; };
+  if (std::none_of(stated_mm.begin(), stated_mm.end(), differs)) return "";
+  std::vector<std::string> edges;
+  for (const double mm : stated_mm) edges.push_back(format_number(mm, 4));
+  const bool cubes = stated_mm.front() == stated_mm.back() && stated_mm.front() == stated_mm[stated_mm.size() / 2];
+  return io::input_name(options.input) + ": states voxels of " + (cubes ? edges.front() : join(edges, " x ")) +
+         " mm, and is read with --voxel " + format_number(voxel_mm, 4) +
+         (cubes ? "; give --voxel " + edges.front() + " unless its header is wrong"
+                : "; voxels must be cubes: resample it if its header is right");
+}
+
 void make_volume(const cli::App& app, const Options& options, std::optional<io::FileType> type) {
   constexpr int slab = 8;
   const std::string doubt = height_doubt(options);  // now, as the printer file may be refused
   const auto in = open_source(options, type, "zyx");
+  const std::string edges = voxel_doubt(options, in->views().voxel_mm);
   const double stretch_z = options.stretch_z.value_or(1);
   const model::Grid grid = grid_of(options, in->size(), stretch_z);
   require_voxels(options.input, grid);
@@ -135,6 +151,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   if (options.stretch_z) volume.metadata["vam:stretch_z"] = format_number(stretch_z, 9);
   io::write_volume(options.output, volume);
   if (!doubt.empty()) warn(doubt);
+  if (!edges.empty()) warn(edges);
 }
 
 }  // namespace vam::convert_tool

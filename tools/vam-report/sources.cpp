@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "base/error.hpp"
@@ -12,6 +13,7 @@
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
+#include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::report_tool {
@@ -37,6 +39,14 @@ bool is_png(const std::string& path) {
 bool is_mesh_ending(const std::string& ending) {
   constexpr std::array<const char*, 5> known{".ply", ".stl", ".off", ".obj", ".3mf"};
   return std::find(known.begin(), known.end(), ending) != known.end();
+}
+
+std::string beginning(const std::string& path) {
+  std::string head(512, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
 }
 
 /// False if a report cannot show the file.
@@ -95,8 +105,9 @@ Sources gather(const std::vector<std::string>& paths) {
     if (fs::is_directory(path)) {
       add_folder(sources, path);
     } else if (!add(sources, path)) {
-      throw Error{Fault::data, path +
-                                   ": is not a volume, mesh, stack, video, report (JSON), trace (CSV of vam-optimize "
+      const std::string foreign = io::foreign_format(beginning(path));
+      throw Error{Fault::data, path + (foreign.empty() ? ": is not" : ": is " + foreign + ", not") +
+                                   " a volume, mesh, stack, video, report (JSON), trace (CSV of vam-optimize "
                                    "--trace) or image (PNG)"};
     }
   }

@@ -83,6 +83,8 @@ void send(arrays::Parser parser, Sender& out, const StatedViews& views = {}) {
   pass(Put{out}, views);
   out.put(std::uint64_t{views.angles_deg.size()});
   for (const double angle : views.angles_deg) out.put(angle);
+  out.put(std::uint64_t{views.voxel_mm.size()});
+  for (const double edge : views.voxel_mm) out.put(edge);
   out.flush();
   Image image;
   for (std::size_t k = 0; k < parser.size()[0]; ++k) {
@@ -117,10 +119,11 @@ struct ArrayReader::State {
 
   [[noreturn]] void refuse(std::string_view head) const {
     const std::string foreign = foreign_format(head);
-    throw Error{Fault::data, file.name() + ": " +
-                                 (head.empty()      ? "is empty"
-                                  : foreign.empty() ? std::string("is not ") + known_formats
-                                                    : "is " + foreign + ", not " + known_formats)};
+    throw Error{Fault::data,
+                file.name() + ": " +
+                    (head.empty()      ? "is empty"
+                     : foreign.empty() ? std::string("is not ") + known_formats
+                                       : "is " + foreign + ", not " + known_formats + foreign_remedy(head))};
   }
 
   void parse(const ArrayOptions& options, Sender& out) {
@@ -143,10 +146,11 @@ struct ArrayReader::State {
     }
     if (format == Format::hdf5) return parse_hdf5(options, out);
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); }, file.name());
+    StatedViews stated;
     const arrays::Head head = format == Format::npy    ? take_npy_head(front)
-                              : format == Format::nrrd ? take_nrrd_head(front)
+                              : format == Format::nrrd ? take_nrrd_head(front, stated.voxel_mm)
                                                        : take_mrc_head(front);
-    send({head, std::move(front), options.axes}, out);
+    send({head, std::move(front), options.axes}, out, stated);
   }
 
   void parse_hdf5(const ArrayOptions& options, Sender& out) {
@@ -170,6 +174,7 @@ struct ArrayReader::State {
     }
     pass(Get{in}, views);
     for (auto left = in.get_count(most_angles); left > 0; --left) views.angles_deg.push_back(in.get<double>());
+    for (auto left = in.get_count(3); left > 0; --left) views.voxel_mm.push_back(in.get<double>());
   }
 
   InputFile file;

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/printable.hpp"
+#include "base/text.hpp"
 
 namespace vam::io::arrays {
 
@@ -126,15 +129,67 @@ void require_plain(const Bytes& bytes, const Fields& fields) {
   }
 }
 
+/// "(0.5,0,0) none (0,0,2)" or "0.5 nan 2": the lengths; nan for what is none.
+std::vector<double> lengths_of(const std::string& text) {
+  std::vector<double> lengths;
+  for (std::size_t at = 0; at < text.size();) {
+    const bool vector = text[at] == '(';
+    const std::size_t end = std::min(text.find(vector ? ')' : ' ', at), text.size());
+    double squares = 0;
+    for (const std::string& number : split(text.substr(at + (vector ? 1 : 0), end - at - (vector ? 1 : 0)), ',')) {
+      const auto value = parse_number(number.substr(std::min(number.find_first_not_of(' '), number.size())));
+      squares += value ? *value * *value : std::nan("");
+    }
+    lengths.push_back(std::sqrt(squares));
+    at = std::min(text.find_first_not_of(' ', end + (vector ? 1 : 0)), text.size());
+  }
+  return lengths;
+}
+
+/// The words in quotes.
+std::vector<std::string> quoted(const std::string& text) {
+  const std::vector<std::string> pieces = split(text, '"');
+  std::vector<std::string> words;
+  for (std::size_t i = 1; i < pieces.size(); i += 2) words.push_back(pieces[i]);
+  return words;
+}
+
+/// nan for a unit that is no length.
+double mm_of(const std::string& unit) {
+  constexpr std::pair<const char*, double> units[] = {
+      {"", 1},           {"mm", 1},        {"millimeter", 1}, {"millimetre", 1}, {"um", 1e-3}, {"\u00b5m", 1e-3},
+      {"\u03bcm", 1e-3}, {"micron", 1e-3}, {"nm", 1e-6},      {"cm", 10},        {"m", 1000},  {"in", 25.4}};
+  for (const auto& [name, mm] : units) {
+    if (unit == name) return mm;
+  }
+  return std::nan("");
+}
+
+std::vector<double> stated_mm(const Fields& fields, std::size_t axes) {
+  const auto text = [&](const char* name) {
+    const auto found = fields.find(name);
+    return found == fields.end() ? std::string() : found->second;
+  };
+  const bool spaced = fields.count("spacings") != 0;
+  std::vector<double> lengths = lengths_of(text(spaced ? "spacings" : "space directions"));
+  const std::vector<std::string> units = quoted(text(spaced ? "units" : "space units"));
+  if (lengths.size() != axes) return {};
+  for (std::size_t i = 0; i < axes; ++i) lengths[i] *= mm_of(i < units.size() ? units[i] : "");
+  const bool all = std::all_of(lengths.begin(), lengths.end(), [](double mm) { return std::isfinite(mm) && mm > 0; });
+  return all ? lengths : std::vector<double>{};
+}
+
 }  // namespace
 
-Head take_nrrd_head(Bytes& bytes) {
+Head take_nrrd_head(Bytes& bytes, std::vector<double>& voxel_mm) {
   if (!bytes.line().starts_with(nrrd_magic)) bytes.fail("is no NRRD volume");
   const Fields fields = take_fields(bytes);
   require_plain(bytes, fields);
   Head head;
   set_type(bytes, field(bytes, fields, "type"), head);
-  set_shape(bytes, shape_of(bytes, field(bytes, fields, "sizes")), head);
+  const std::vector<std::uint64_t> shape = shape_of(bytes, field(bytes, fields, "sizes"));
+  set_shape(bytes, shape, head);
+  voxel_mm = stated_mm(fields, shape.size());
   head.big_endian = head.bytes > 1 && field(bytes, fields, "endian") == "big";
   const std::string& encoding = field(bytes, fields, "encoding");
   if (encoding == "gzip" || encoding == "gz") {

@@ -2,9 +2,11 @@
 #include "io/hdf5/hdf5_array.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <numeric>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,9 +24,29 @@ namespace {
 using hdf5::api;
 using hdf5::Handle;
 
-/// Throws Fault::data, beginning with `subject`, for values that are in other files or packed by no known filter.
-void require_packing(hid_t properties, const std::string& subject) {
+/// Names that a shell and Python take as they are; else a word for them.
+std::string pasted(const std::string& name, const char* word) {
+  const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("/._-+").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  return plain ? name : word;
+}
+
+/// What unpacks a dataset: Python knows LZF, and other filters by a package of it. h5repack knows neither.
+std::string unpacking(H5Z_filter_t filter, const std::string& name, const std::string& path) {
+  constexpr H5Z_filter_t lzf = 32000;
+  const std::string file = pasted(name, "FILE");
+  const std::string data = "\"" + pasted(path, "DATASET") + "\"";
+  return std::string("; unpack a copy in Python, by h5py") + (filter == lzf ? "" : " and hdf5plugin") + ": cp " + file +
+         " plain.h5 && python3 -c 'import h5py" + (filter == lzf ? "" : ", hdf5plugin") +
+         "; f = h5py.File(\"plain.h5\", \"a\"); v = f[" + data + "][()]; a = dict(f[" + data + "].attrs); del f[" +
+         data + "]; f[" + data + "] = v; f[" + data + "].attrs.update(a)'";
+}
+
+/// Throws Fault::data for values that are in other files or packed by no known filter.
+void require_packing(hid_t properties, const std::string& name, const std::string& path) {
   const auto& h5 = api();
+  const std::string subject = name + ": " + printable(path);
   if (h5.H5Pget_layout(properties) == H5D_VIRTUAL || h5.H5Pget_external_count(properties) > 0) {
     throw Error{Fault::data, subject + " has its values in other files; copy them into one"};
   }
@@ -32,12 +54,13 @@ void require_packing(hid_t properties, const std::string& subject) {
     unsigned flags = 0;
     unsigned configuration = 0;
     std::size_t values = 0;
-    std::array<char, 64> name{};
+    std::array<char, 64> title{};
     const H5Z_filter_t filter = h5.H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values, nullptr,
-                                                  name.size() - 1, name.data(), &configuration);
+                                                  title.size() - 1, title.data(), &configuration);
     if (filter >= 0 && h5.H5Zfilter_avail(filter) > 0) continue;
-    const std::string which = name[0] == '\0' ? "filter " + std::to_string(filter) : printable(name.data());
-    throw Error{Fault::data, subject + " is packed by " + which + ", which is not read; pack it by h5repack -f GZIP=1"};
+    const std::string which = title[0] == '\0' ? "filter " + std::to_string(filter) : printable(title.data());
+    throw Error{Fault::data,
+                subject + " is packed by " + which + ", which is not read" + unpacking(filter, name, path)};
   }
 }
 
@@ -69,7 +92,7 @@ struct Hdf5Array::State {
     if (!about.holds.empty()) throw Error{Fault::data, subject + " holds " + about.holds + ", not numbers"};
     const auto shape = hdf5::three_axes(about.shape, subject);
     const Handle properties(api().H5Dget_create_plist(dataset.id()));
-    require_packing(properties.id(), subject);
+    require_packing(properties.id(), name, path);
     require_written(dataset.id(), subject);
 
     hdf5::Order order;

@@ -18,6 +18,7 @@
 #include "io/stream/input_name.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/seal.hpp"
+#include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 
@@ -96,7 +97,8 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
     throw Error{Fault::data, name + ": is damaged: no longer JSON; write it again"};
   }
   if (!has_printer_section(text) && !path.ends_with(".toml")) {
-    return {{"file of another kind", require_text_seal(text, name), "", {}}};
+    const std::string foreign = foreign_format(text);
+    return {{foreign.empty() ? "file of another kind" : foreign, require_text_seal(text, name), "", {}}};
   }
   const bool sealed = require_text_seal(text, name);
   (void)parse_printer(text, name);  // one that the tools wrote has a mark at its end, which a cut loses

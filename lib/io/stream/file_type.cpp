@@ -21,7 +21,7 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::size_t look = 8;
+constexpr std::size_t look = 16;
 
 // tee(2) copies what waits in one pipe into another and leaves it where it is.
 std::string pipe_head(int descriptor) {

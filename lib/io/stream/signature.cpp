@@ -19,6 +19,8 @@ struct Signature {
 constexpr const char* by_convert = "; vam-convert makes a volume or a stack of it";
 constexpr const char* by_numpy = "; save it as a NumPy or HDF5 array, which vam-convert reads";
 constexpr const char* in_folder = "; put the images into a folder of their own, and give that";
+constexpr const char* as_png = "; save it as PNG, numbered with the others in a folder, and give that";
+constexpr const char* by_ffmpeg = "; convert it without loss: ffmpeg -i FILE -c:v ffv1 FILE.mkv";
 constexpr const char* by_export = "; export it as 3MF or STL";
 constexpr const char* unpack = "; unpack it";
 
@@ -30,8 +32,8 @@ constexpr Signature signatures[] = {
     {0, "MM\0*"sv, "a TIFF image", in_folder},
     {0, "II+\0"sv, "a TIFF image", in_folder},
     {0, "\x89PNG\r\n"sv, "a PNG image", in_folder},
-    {0, "\xff\xd8\xff"sv, "a JPEG image", in_folder},
-    {0, "GIF8"sv, "a GIF image", in_folder},
+    {0, "\xff\xd8\xff"sv, "a JPEG image", as_png},
+    {0, "GIF8"sv, "a GIF image", by_ffmpeg},
     {0, "\x89HDF\r\n"sv, "an HDF5 file", by_convert},
     {0, "CDF\x01"sv, "a NetCDF file", by_numpy},
     {0, "NRRD000"sv, "an NRRD volume", by_convert},
@@ -55,6 +57,8 @@ constexpr Signature signatures[] = {
     {257, "ustar"sv, "a tar archive", unpack},
     {0, "PK\3\4"sv, "a zip archive", unpack},
     {0, "\x1a\x45\xdf\xa3"sv, "a Matroska video"},
+    {8, "AVI LIST"sv, "an AVI video", by_ffmpeg},
+    {8, "WEBP"sv, "a WebP image", as_png},
     {4, "ftyp"sv, "an MP4 video"},
     {0, "%PDF"sv, "a PDF document"},
     {0, "\xff\xfe"sv, "text of 16 bits a character; save it as ASCII or UTF-8"},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "io/array/private/array_bytes.hpp"
 #include "io/array/private/array_head.hpp"
@@ -12,7 +13,9 @@ namespace vam::io::arrays {
 inline constexpr std::string_view nrrd_magic = "NRRD000";
 
 /// The bytes that follow are the values, unpacked where they are packed. Throws Fault::data: not such a file, a field
-/// that is missing or not understood, values in another file, text or bzip2, other than scalars.
-[[nodiscard]] Head take_nrrd_head(Bytes& bytes);
+/// that is missing or not understood, values in another file, text or bzip2, other than scalars. voxel_mm: the edges
+/// that it states (spacings or space directions), along its own axes, the fastest first; in mm where it names no unit.
+/// Empty where it states none for every axis, or in a unit that is no length.
+[[nodiscard]] Head take_nrrd_head(Bytes& bytes, std::vector<double>& voxel_mm);
 
 }  // namespace vam::io::arrays
