@@ -118,7 +118,9 @@ void show_volume(Options options, const std::string& history) {
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
     const Judged with = judged(options, volume);
-    const plot::Plot plot = plot::dose_histogram(volume, with.target, with.how.circle, options.view);
+    const std::optional<io::SparseVolume> insert = insert_for(options, volume);
+    const plot::Plot plot =
+        plot::dose_histogram(volume, with.target, with.how.circle, options.view, insert ? &*insert : nullptr);
     return plot::save(options.output, plot::draw(plot), history, options.dpi);
   }
   if (is_movie(options)) return write_movie(options, volume, history);

@@ -14,19 +14,29 @@ namespace {
 
 using model::Label;
 
-/// One pass over both volumes, slab by slab; visit(dose, label) for part and void inside the circle.
+/// What is looked at, on one grid; insert may be null.
+struct Volumes {
+  const io::SparseVolume& dose;
+  const io::SparseVolume& target;
+  const io::SparseVolume* insert;
+};
+
+/// One pass over the volumes, slab by slab; visit(dose, label) for part and void inside the circle that are no insert.
 template <class Visit>
-void for_each_voxel(const io::SparseVolume& dose, const io::SparseVolume& target, const model::Circle& circle,
-                    const Visit& visit) {
+void for_each_voxel(const Volumes& volumes, const model::Circle& circle, const Visit& visit) {
+  const auto& [dose, target, insert] = volumes;
   const model::Grid& grid = dose.grid();
   constexpr int slab = 8;
   std::vector<float> doses(grid.slice_size() * slab);
   std::vector<float> covered(grid.slice_size() * slab);
+  std::vector<float> opaque(insert == nullptr ? 0 : grid.slice_size() * slab);
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
     dose.read_slices(k, count, doses.data());
     target.read_slices(k, count, covered.data());
+    if (insert != nullptr) insert->read_slices(k, count, opaque.data());
     for (std::size_t i = 0; i < grid.slice_size() * static_cast<std::size_t>(count); ++i) {
+      if (insert != nullptr && model::half_covered(opaque[i])) continue;
       const Label label = model::label_of(covered[i]);
       const auto in_slice = static_cast<int>(i % grid.slice_size());
       const bool counts =
@@ -40,10 +50,9 @@ struct Sides {
   views::Extremes inside, outside;
 };
 
-Sides extremes_of(const io::SparseVolume& dose, const io::SparseVolume& target, const model::Circle& circle,
-                  const std::string& name) {
+Sides extremes_of(const Volumes& volumes, const model::Circle& circle, const std::string& name) {
   Sides sides;
-  for_each_voxel(dose, target, circle,
+  for_each_voxel(volumes, circle,
                  [&](float value, Label label) { (label == Label::part ? sides.inside : sides.outside).add(value); });
   if (!(sides.inside.high >= sides.inside.low)) {
     throw Error{Fault::data, name + ": the target has no whole voxel inside the part"};
@@ -57,15 +66,17 @@ Sides extremes_of(const io::SparseVolume& dose, const io::SparseVolume& target, 
 }  // namespace
 
 Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target, const model::Circle& circle,
-                    const ViewOptions& options) {
+                    const ViewOptions& options, const io::SparseVolume* insert) {
   require_same_voxels(dose.grid(), target.grid(), options.name, "compute the dose on this target");
-  const auto [inner, outer] = extremes_of(dose, target, circle, options.name);
+  if (insert != nullptr) require_same_voxels(dose.grid(), insert->grid(), options.name, "slice both together");
+  const Volumes volumes{dose, target, insert};
+  const auto [inner, outer] = extremes_of(volumes, circle, options.name);
   const double low = options.low.value_or(std::min({0.0, inner.low, outer.low}));
   const double high = options.high.value_or(std::max(inner.high, outer.high));
   constexpr int bins = 120;
   HistogramBuilder inside(low, high, bins);
   HistogramBuilder outside(low, high, bins);
-  for_each_voxel(dose, target, circle, [&](float value, Label label) {
+  for_each_voxel(volumes, circle, [&](float value, Label label) {
     (label == Label::part ? inside : outside).add(static_cast<double>(value));
   });
   Plot plot;
@@ -74,7 +85,8 @@ Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target
   plot.y = {"voxels inside, and outside (%)", 0, 0, true};
   const auto bars_out = outside.done();
   const auto bars_in = inside.done();
-  plot.series = {{"outside the part", bars_out.edges, bars_out.percent, paint::blue, SeriesStyle::bars},
+  plot.series = {{insert == nullptr ? "outside the part" : "outside part and insert", bars_out.edges, bars_out.percent,
+                  paint::blue, SeriesStyle::bars},
                  {"inside the part", bars_in.edges, bars_in.percent, paint::vermilion, SeriesStyle::bars}};
   plot.markers = {{inner.low, "minimum inside " + format_number(inner.low, 4), paint::vermilion},
                   {outer.high, "maximum outside " + format_number(outer.high, 4), paint::blue}};

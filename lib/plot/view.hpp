@@ -39,8 +39,8 @@ struct ViewOptions {
 [[nodiscard]] ImageFigure view_images(io::ImageSource& images, const ViewOptions& options);
 
 /// What prints where the dose reaches the threshold: cured as wanted, missing, overcured. Voxels that the surface cuts
-/// are right either way; void outside the writable circle is shown, but does not count. An insert is hatched. Throws
-/// Fault::data when the grids differ.
+/// are right either way; void outside the writable circle is shown, but does not count. An insert is hatched, and
+/// does not count. Throws Fault::data when the grids differ.
 [[nodiscard]] ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
                                     const model::Circle& circle, const ViewOptions& options,
                                     const io::SparseVolume* insert = nullptr);
@@ -54,9 +54,11 @@ void require_same_voxels(const model::Grid& grid, const model::Grid& other, cons
                          const std::string& remedy);
 
 /// Shares of the voxels inside and outside the part over the dose [OST22 fig S6 c, f, i], with the lowest dose inside
-/// and the highest outside. Voxels that the surface cuts, and those outside the writable circle, are left out. Throws
-/// Fault::data when the grids differ, or there is no voxel inside or outside.
+/// and the highest outside. Voxels that the surface cuts, those outside the writable circle, and those
+/// that an insert on the same grid covers at least half, which are no resin, are left out. Throws Fault::data when the
+/// grids differ, or there is no voxel inside or outside.
 [[nodiscard]] Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target,
-                                  const model::Circle& circle, const ViewOptions& options);
+                                  const model::Circle& circle, const ViewOptions& options,
+                                  const io::SparseVolume* insert = nullptr);
 
 }  // namespace vam::plot

@@ -55,6 +55,8 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
   const std::vector<Image> parts = planes(target, options.plane, sections.indices);
   ImageFigure figure;
   Counts counts;
+  std::vector<Image> hidden;
+  if (insert != nullptr) hidden = planes(*insert, options.plane, sections.indices);
   for (std::size_t n = 0; n < doses.size(); ++n) {
     RgbImage picture(doses[n].width, doses[n].height);
     for (int y = 0; y < picture.height; ++y) {
@@ -63,6 +65,7 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
         const Cure cure = cure_of(doses[n](x, y), label, threshold);
         picture(x, y) = colours[cure];
         const auto [i, j] = plane_column(dose.grid(), options.plane, sections.indices[n], x, y);
+        if (!hidden.empty() && model::half_covered(hidden[n](x, y))) continue;
         if (label == model::Label::part || circle.contains(i, j)) counts.add(label, cure);
       }
     }
@@ -72,7 +75,6 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
   const auto lines = outlines(target, dose.grid(), options.plane, sections.places_mm);
   for (std::size_t n = 0; n < lines.size(); ++n) figure.panels[n].outline = lines[n];
   if (insert != nullptr) {
-    std::vector<Image> hidden = planes(*insert, options.plane, sections.indices);
     for (std::size_t n = 0; n < hidden.size(); ++n) figure.panels[n].hatched = std::move(hidden[n]);
     figure.hatched_name = "insert";
   }
@@ -82,7 +84,11 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
       {Mark::patch, colours[cured], "cured"},
       {Mark::patch, colours[missing], with_share("missing", counts.missing, counts.part, "part")},
       {Mark::patch, colours[overcured], with_share("overcured", counts.overcured, counts.outside, "void")},
-      {Mark::none, {}, "voxels that the surface cuts, and void beyond the writable circle, are not counted"}};
+      {Mark::none,
+       {},
+       insert == nullptr ? "voxels that the surface cuts, and void beyond the writable circle, are not counted"
+                         : "voxels that the surface cuts, the insert, and void beyond the writable circle are not "
+                           "counted"}};
   figure.title = options.title.value_or(options.name + ": cured at " + format_number(threshold, 4) + " " + dose.units +
                                         views::sections_text(sections, options.plane));
   return figure;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sections of a volume.
+#include <algorithm>
 #include <utility>
 
 #include "plot/private/insert_sections.hpp"
@@ -25,7 +26,12 @@ void add_insert(ImageFigure& figure, const io::SparseVolume& insert, Plane plane
     figure.panels[n].hatched = std::move(hidden[n].coverage);
     figure.panels[n].shaded = std::move(hidden[n].shadow);
   }
-  figure.hatched_name = "insert; orange: its shadow, by the fraction of stage angles";
+  figure.hatched_name = "insert";
+  const auto is_shaded = [](const Panel& panel) {
+    return std::any_of(panel.shaded.values.begin(), panel.shaded.values.end(), [](float share) { return share > 0; });
+  };
+  if (!std::any_of(figure.panels.begin(), figure.panels.end(), is_shaded)) return;
+  figure.legend.push_back({Mark::patch, paint::orange, "its shadow, deeper where it hides more stage angles"});
 }
 
 }  // namespace

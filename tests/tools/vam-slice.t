@@ -190,6 +190,12 @@ fails 64 'cube.stl: give either PART or --shape' $cutting -o x.vdb --cut-insert 
 quiet "with a clearance" $cutting --cut-insert 0.25 --report report.json -o insert.vdb
 # The faces move by one voxel, the edges by 0.59 of a voxel's square for the 0.79 of a quarter of a circle.
 holds "the clearance is subtracted, too" "($(json report.json volume_mm3) - (144 - 4 * (6.25 - 4 * 0.414 * 0.25^2)))^2 < 0.05^2"
+is "and is free" "$(json report.json insert.clearance_shut)" 0.0
+says 'the clearance of 0.1 mm is too narrow for the voxels: on [0-9]+ % of the lines from the insert to the part no voxel is three quarters free, and resin cures there; voxels of 0.05 mm resolve it' \
+  $cutting --cut-insert 0.1 --report report.json -o insert.vdb
+holds "all around" "$(json report.json insert.clearance_shut) > 0.9"
+quiet "the voxels that are named resolve it" vam-slice --shape box:x=3,y=3,z=1 --insert-shape cylinder:diameter=1.03,height=4 \
+  --cut-insert 0.1 --voxel 0.05 -o insert.vdb
 says 'overlaps the part by 16 mm3; --cut-insert subtracts it' $cutting -o insert.vdb
 says 'metres.obj: the insert is only 0.02 mm large; is its unit m[?]; --insert-unit states it' \
   vam-slice cube.stl --insert metres.obj --cut-insert --voxel 0.25 -o insert.vdb

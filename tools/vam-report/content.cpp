@@ -41,7 +41,8 @@ std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printe
 
 std::string verdict(const Judged& judged) {
   const score::Verdict verdict = judged.score.verdict();
-  return "<p class=\"verdict " + std::string(score::prints(verdict) && !score::is_unresolved(verdict) ? "good" : "bad") + "\">" +
+  return "<p class=\"verdict " +
+         std::string(score::prints(verdict) && !score::is_unresolved(verdict) ? "good" : "bad") + "\">" +
          page_text(score::words(verdict)) + "</p>\n";
 }
 
@@ -84,7 +85,7 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
   };
   show(sources.stacks, io::FileType::stack);
   show(sources.videos, io::FileType::video);
-  if (judged) made += histogram(*volumes.find("dose"), *volumes.find("target"), judged->how);
+  if (judged) made += histogram(volumes, judged->how);
   for (const std::string& trace : sources.traces) made += convergence(trace);
   return made + images(sources.images) + "</div>\n";
 }

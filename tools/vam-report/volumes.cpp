@@ -17,8 +17,14 @@ namespace {
 
 constexpr int shown_px = 400;
 
-std::string sections(const io::SparseVolume& volume, const std::string& file, const io::SparseVolume* target,
-                     plot::Plane plane, int count) {
+/// What is drawn into the sections of a volume; null for none.
+struct Within {
+  const io::SparseVolume* target = nullptr;
+  const io::SparseVolume* insert = nullptr;
+};
+
+std::string sections(const io::SparseVolume& volume, const std::string& file, const Within& within, plot::Plane plane,
+                     int count) {
   plot::ViewOptions options;
   options.name = file;
   options.plane = plane;
@@ -27,7 +33,8 @@ std::string sections(const io::SparseVolume& volume, const std::string& file, co
   options.stretch_z = tool::stretch_z(volume.metadata);
   const plot::PlaneAxes axes = plot::plane_axes(plane);
   const std::string title = volume.name() + ", sections across " + axes.across;
-  return series(title, frames_of(plot::view_volume(volume, target, options)), file + ": grid '" + volume.name() + "'.");
+  return series(title, frames_of(plot::view_volume(volume, within.target, options, within.insert)),
+                file + ": grid '" + volume.name() + "'.");
 }
 
 }  // namespace
@@ -51,8 +58,9 @@ Volumes read_volumes(const std::vector<std::string>& paths) {
   }
   const io::SparseVolume* dose = all.find("dose");
   if (dose == nullptr) return all;
-  for (std::size_t i = 0; i < all.grids.size(); ++i) {
-    if (all.grids[i].name() == "target") {
+  for (const char* name : {"target", "insert"}) {
+    for (std::size_t i = 0; i < all.grids.size(); ++i) {
+      if (all.grids[i].name() != name) continue;
       all.grids[i].extend_to(dose->grid(), all.files[i]);
       break;
     }
@@ -64,20 +72,28 @@ std::string section_views(const Volumes& volumes, int count) {
   std::string views;
   for (std::size_t n = 0; n < volumes.grids.size(); ++n) {
     const io::SparseVolume& volume = volumes.grids[n];
-    const io::SparseVolume* target = volume.name() == "dose" ? volumes.find("target") : nullptr;
-    views += sections(volume, volumes.files[n], target, plot::Plane::axial, count);
-    views += sections(volume, volumes.files[n], target, plot::Plane::coronal, (count + 1) / 2);
+    Within within;
+    if (volume.name() == "dose") within.target = volumes.find("target");
+    const io::SparseVolume* insert = volumes.find("insert");
+    const bool around = volume.name() == "dose" || volume.name() == "target";
+    if (around && insert != nullptr && insert->grid() == volume.grid()) within.insert = insert;
+    views += sections(volume, volumes.files[n], within, plot::Plane::axial, count);
+    views += sections(volume, volumes.files[n], within, plot::Plane::coronal, (count + 1) / 2);
   }
   return views;
 }
 
-std::string histogram(const io::SparseVolume& dose, const io::SparseVolume& target, const score::ScoreOptions& how) {
+std::string histogram(const Volumes& volumes, const score::ScoreOptions& how) {
+  const io::SparseVolume& dose = *volumes.find("dose");
+  const io::SparseVolume* insert = volumes.find("insert");
   plot::ViewOptions options;
   options.name = "dose";
   return plot::page_figure(
       "Dose in part and void",
-      plot::page_plot(plot::dose_histogram(dose, target, how.circle, options), "histogram of the dose"),
-      "If the distributions overlap, no threshold separates part and void. Voxels that the surface cuts are excluded.");
+      plot::page_plot(plot::dose_histogram(dose, *volumes.find("target"), how.circle, options, insert),
+                      "histogram of the dose"),
+      "If the distributions overlap, no threshold separates part and void. Voxels that the surface cuts are excluded" +
+          std::string(insert == nullptr ? "." : ", and those of the insert, which are no resin."));
 }
 
 }  // namespace vam::report_tool

@@ -18,15 +18,14 @@ struct Volumes {
   [[nodiscard]] const io::SparseVolume* find(const std::string& name) const;
 };
 
-/// The target takes the dose's grid, with void around. Throws what read_volumes throws; Fault::data where the voxels
-/// of target and dose lie elsewhere.
+/// Target and insert take the dose's grid, with void around. Throws what read_volumes throws; Fault::data where the
+/// voxels of target and dose lie elsewhere.
 [[nodiscard]] Volumes read_volumes(const std::vector<std::string>& paths);
 
-/// HTML: axial, coronal and sagittal sections of every grid, the dose with the target's outline.
+/// HTML: axial and coronal sections of every grid, the dose with the target's outline, both with the insert.
 [[nodiscard]] std::string section_views(const Volumes& volumes, int count);
 
-/// HTML: the shares of part and void over the dose.
-[[nodiscard]] std::string histogram(const io::SparseVolume& dose, const io::SparseVolume& target,
-                                    const score::ScoreOptions& how);
+/// HTML: the shares of part and void over the dose; both must be there.
+[[nodiscard]] std::string histogram(const Volumes& volumes, const score::ScoreOptions& how);
 
 }  // namespace vam::report_tool

@@ -49,7 +49,10 @@ std::vector<std::string> limits() {
       "causes a warning with the probable unit. Its origin coincides with that of PART's file and "
       "it is rotated with PART, so that the parts of an assembly stay together as long as PART is not scaled; "
       "--insert-at, --insert-rotate and --insert-scale override this. An insert that misses the part, or overlaps it, "
-      "causes a warning; --cut-insert subtracts it from the part with a clearance. The report contains its size, its "
+      "causes a warning; --cut-insert subtracts it from the part with a clearance. A clearance below a voxel is in the "
+      "coverage of the voxels, but they leave no room that stays free of light: where no voxel between insert and part "
+      "is three quarters free a warning states on which share of the lines between them (clearance_shut in the "
+      "report); a clearance of two voxels is free wherever it lies. The report contains its size, its "
       "centre and the number of its voxels in contact with the part.",
       "Within the writable radius resin is lit from all stage angles, beyond it from some. A part that extends beyond "
       "it is refused unless --extent resin is given; vam-optimize then uses the available rays and constrains the "
@@ -67,9 +70,9 @@ std::vector<std::pair<std::string, std::string>> examples() {
            "vam-slice --shape cone:bottom=8,height=6 --voxel 0.13 --place auto -o cone.vdb"},
           {"A handle to be printed around the shaft of a screwdriver:",
            "vam-slice --shape handle --insert-shape screwdriver --voxel 0.13 -o handle.vdb"},
-          {"A block around a steel pin of 3 mm diameter, with 0.05 mm clearance, 2 mm off the axis:",
+          {"A block around a steel pin of 3 mm diameter, with 0.2 mm clearance, 2 mm off the axis:",
            "vam-slice --shape box:x=8,y=6,z=5 --insert-shape cylinder:diameter=3,height=12 --insert-at 2,0,0 "
-           "--cut-insert 0.05 --voxel 0.1 -o block.vdb"}};
+           "--cut-insert 0.2 --voxel 0.1 -o block.vdb"}};
 }
 
 std::vector<std::string> notes() {

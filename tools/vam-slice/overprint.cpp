@@ -13,6 +13,8 @@ namespace vam::slice_tool {
 
 namespace {
 
+constexpr double most_shut = 0.02;  // of the lines: those at edges of the insert, which voxels round
+
 std::string mm(const solid::Point& p, double stretch_z) {
   return "(" + format_number(p[0], 3) + ", " + format_number(p[1], 3) + ", " + format_number(p[2] / stretch_z, 3) + ")";
 }
@@ -31,6 +33,12 @@ void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Optio
   } else if (!options.clearance_mm && fit.overlap()) {
     warn(placed.subject + ": overlaps the part by " + format_number(fit.shared_mm3(stretch_z), 3) +
          " mm3; --cut-insert subtracts it");
+  } else if (options.clearance_mm.value_or(0) > 0 && fit.shut_share() > most_shut) {
+    warn(placed.subject + ": the clearance of " + format_number(*options.clearance_mm, 3) +
+         " mm is too narrow for the voxels: on " + format_number(100 * fit.shut_share(), 3) +
+         " % of the lines from the insert to the part no voxel is three quarters free, and resin cures there; voxels "
+         "of " +
+         format_number(0.5 * *options.clearance_mm, 2) + " mm resolve it");
   }
 }
 
@@ -60,7 +68,10 @@ Json insert_figures(const io::SparseVolume& target, const io::SparseVolume& inse
   const solid::Point middle = placed.extent.box.centre();
   figures["size_mm"] = {size[0], size[1], size[2] / stretch_z};
   figures["middle_mm"] = {middle[0], middle[1], middle[2] / stretch_z};
-  if (options.clearance_mm) figures["clearance_mm"] = *options.clearance_mm;
+  if (options.clearance_mm) {
+    figures["clearance_mm"] = *options.clearance_mm;
+    figures["clearance_shut"] = *options.clearance_mm > 0 ? fit.shut_share() : 0;
+  }
   return figures;
 }
 

@@ -32,7 +32,9 @@ cli::Manual manual() {
        "that ends in .csv and begins with the names of its columns is drawn, too: up to four columns over the first "
        "one. A unit in which all of their names end, as in open_mm,closed_mm, is stated at the axis.",
        "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
-       "orange, more saturated with the number of angles (for a horizontal parallel beam).",
+       "orange, more saturated with the number of angles (for a horizontal parallel beam). Its voxels are no resin, "
+       "and "
+       "count neither in --dose-histogram nor in the shares of --cure-map.",
        "Coverage and intensity are shown in grey; dose and other quantities in viridis, which is perceptually uniform; "
        "signed values in blue, white and red, with zero in the middle. The colours end where one pixel in 1000 is "
        "beyond; the legend states how many are, and the extreme. Sinograms are cropped to the columns that are lit. "

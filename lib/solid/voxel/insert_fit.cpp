@@ -8,6 +8,7 @@
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
+#include "model/dose_metrics.hpp"
 
 namespace vam::solid {
 
@@ -90,6 +91,36 @@ void InsertFit::add(const float* part, const float* insert) {
   if (has_insert) ++slices_;
   if (has_insert && has_part) ++common_slices_;
   std::copy_n(part, last_part_.size(), last_part_.begin());
+  follow_lines(part, insert);
+}
+
+void InsertFit::follow(Line& line, float part, float insert) {
+  constexpr float enough = 0.75F;
+  if (!model::half_covered(part) && !model::half_covered(insert)) {
+    line.steps = static_cast<std::uint8_t>(std::min(line.steps + 1, 255));
+    line.free = line.free || 1 - part - insert >= enough;
+    return;
+  }
+  const Line::Met here = model::half_covered(insert) ? Line::Met::insert : Line::Met::part;
+  if (line.met != Line::Met::nothing && line.met != here && line.steps <= reach_) {
+    ++lines_;
+    if (!line.free) ++shut_;
+  }
+  line = {here, 0, false};
+}
+
+void InsertFit::follow_lines(const float* part, const float* insert) {
+  upwards_.resize(grid_.slice_size());
+  std::vector<Line> along_y(static_cast<std::size_t>(grid_.nx));
+  for (int j = 0; j < grid_.ny; ++j) {
+    Line along_x;
+    for (int i = 0; i < grid_.nx; ++i) {
+      const std::size_t at = place(grid_, i, j);
+      follow(along_x, part[at], insert[at]);
+      follow(along_y[static_cast<std::size_t>(i)], part[at], insert[at]);
+      follow(upwards_[at], part[at], insert[at]);
+    }
+  }
 }
 
 bool InsertFit::touches(const float* part, int i, int j) const {

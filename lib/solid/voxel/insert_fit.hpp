@@ -50,10 +50,24 @@ class InsertFit {
   [[nodiscard]] double shared_mm3(double stretch_z) const;
   /// They share room: more than a thousandth of the insert, to which the coverage of curved shapes is exact.
   [[nodiscard]] bool overlap() const { return shared_ > 1e-3 * insert_; }
+  /// Of the lines along x, y and z that lead from the insert to the part within reach: the share on which no voxel is
+  /// three quarters free, so that the room between them is printed shut.
+  [[nodiscard]] double shut_share() const {
+    return lines_ > 0 ? static_cast<double>(shut_) / static_cast<double>(lines_) : 0;
+  }
   /// insert: volume_mm3, slices, slices_of_part, contact_voxels, shared_mm3.
   [[nodiscard]] Json figures(double stretch_z) const;
 
  private:
+  /// What was met last on a line of voxels, and since.
+  struct Line {
+    enum class Met : std::uint8_t { nothing, part, insert };
+    Met met = Met::nothing;
+    std::uint8_t steps = 0;
+    bool free = false;
+  };
+  void follow(Line& line, float part, float insert);
+  void follow_lines(const float* part, const float* insert);
   [[nodiscard]] double mm3(double voxels, double stretch_z) const;
 
   [[nodiscard]] bool touches(const float* part, int i, int j) const;
@@ -61,7 +75,10 @@ class InsertFit {
   model::Grid grid_;
   int reach_;                     // voxels between those that touch
   std::vector<float> last_part_;  // the slice below
-  double insert_ = 0;             // volumes in voxels
+  std::vector<Line> upwards_;     // one a column
+  std::int64_t lines_ = 0;
+  std::int64_t shut_ = 0;
+  double insert_ = 0;  // volumes in voxels
   double shared_ = 0;
   std::int64_t contact_ = 0;
   int slices_ = 0;

@@ -203,6 +203,18 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   CHECK(plot.markers[0].words == "minimum inside 0.9");
   CHECK(plot.markers[1].words == "maximum outside 0.2");
   keep(draw(plot).image(), "dose-histogram.png");
+  SparseVolume insert("insert", grid);  // it absorbs no dose, and is no void
+  std::vector<float> opaque(grid.size(), 0.0F);
+  for (std::size_t i = 0; i < opaque.size(); ++i) {
+    if (covered[i] < 0.001F && i % 40 == 20) opaque[i] = 1, doses[i] = 3.0F;
+  }
+  insert.write_slices(0, grid.nz, opaque.data());
+  dose.write_slices(0, grid.nz, doses.data());
+  const Plot without = dose_histogram(dose, target, circle, options, &insert);
+  CHECK(without.x.high == doctest::Approx(0.9));
+  CHECK(without.series[0].y == plot.series[0].y);
+  CHECK(without.series[0].name == "outside part and insert");
+  CHECK(dose_histogram(dose, target, circle, options).x.high == doctest::Approx(3));
   const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
   CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),
             "has 40 x 40 x 40 voxels of 0.25 mm from (-4.875, -4.875, -4.875), but the other volume has "
@@ -357,6 +369,9 @@ TEST_CASE("an insert is hatched, and hides what is behind it from the angles tha
   SparseVolume target = ball(grid);
   const ImageFigure figure = view_volume(target, nullptr, {}, &insert);
   CHECK(figure.panels[0].hatched(40, 40) == 1);
-  CHECK(!figure.hatched_name.empty());
+  CHECK(figure.hatched_name == "insert");
+  REQUIRE(figure.legend.size() == 1);
+  CHECK(figure.legend[0].mark == Mark::patch);
+  CHECK(figure.legend[0].words.starts_with("its shadow"));
   keep(draw(figure).image(), "insert.png");
 }

@@ -32,3 +32,21 @@ TEST_CASE("an insert's slices are read once each, and grow by the clearance alon
   CHECK(at(4, 4) == 1);
   CHECK(at(6, 4) == 2.5 - std::sqrt(5.0));
 }
+
+TEST_CASE("a gap is shut on the lines on which no voxel is three quarters free") {
+  const model::Grid grid = model::centred_grid(9, 9, 3, 0.1);
+  const auto shut =
+      [&](float in_gap) {  // a column in the middle, the part two voxels away on one side, at the other far
+        std::vector<float> part(grid.slice_size(), 0.0F);
+        std::vector<float> insert(grid.slice_size(), 0.0F);
+        insert[4 * 9 + 4] = 1;
+        part[4 * 9 + 5] = in_gap;
+        part[4 * 9 + 6] = part[0 * 9 + 4] = 1;
+        part[5 * 9 + 4] = 1;  // touches along y: shut, whatever the gap
+        solid::InsertFit fit(grid, 0.1);
+        for (int k = 0; k < 3; ++k) fit.add(part.data(), insert.data());
+        return fit.shut_share();
+      };
+  CHECK(shut(0.2F) == 0.5);
+  CHECK(shut(0.3F) == 1);
+}
