@@ -130,6 +130,37 @@ fails 65 'mesh.stl: is not an array \(NumPy, HDF5, NRRD, MRC, TIFF\)' vam-conver
 : >empty.npy
 fails 65 'empty.npy: is empty' vam-convert empty.npy --voxel 1 -o x.vdb
 
+# Patterns of Dr.TVAM: an EXR file an angle, of intensities, the top row first.
+mkdir patterns
+python3 - <<'PY'
+import struct
+def attribute(name, kind, data):
+    return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
+w, h, n = 4, 3, 8
+box = struct.pack("<4i", 0, 0, w - 1, h - 1)
+value = lambda a, y, x: 50.0 * a + 10 * y + x
+for a in range(n):
+    head = struct.pack("<2i", 20000630, 2) + attribute(b"channels", b"chlist", b"Y\0" + struct.pack("<4i", 2, 0, 1, 1) + b"\0") \
+        + attribute(b"compression", b"compression", b"\0") + attribute(b"dataWindow", b"box2i", box) \
+        + attribute(b"displayWindow", b"box2i", box) + attribute(b"lineOrder", b"lineOrder", b"\0") \
+        + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) \
+        + attribute(b"screenWindowCenter", b"v2f", bytes(8)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
+    chunks = [struct.pack("<2i4f", y, 4 * w, *[value(a, y, x) for x in range(w)]) for y in range(h)]
+    first = len(head) + 8 * h
+    table = b"".join(struct.pack("<Q", first + y * len(chunks[0])) for y in range(h))
+    open("patterns/%04d.exr" % a, "wb").write(head + table + b"".join(chunks))
+header = "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, %d), }" % (n, h, w)
+header += " " * (117 - len(header)) + "\n"
+open("patterns.npy", "wb").write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode()
+    + b"".join(struct.pack("<f", value(a, h - 1 - y, x)) for a in range(n) for y in range(h) for x in range(w)))
+PY
+for how in 'parallel --pixel 0.1' 'vial --axis-column 1.5 --set projector.response=[[0,0],[0.5,0.2],[1,1]]'; do
+  vam-convert patterns --geometry $how -o exr.exr
+  vam-convert patterns.npy --axes azx --geometry $how -o npy.exr 2>/dev/null
+  for kind in exr npy; do vam-convert $kind.exr -o $kind.npy; done
+  same "the same as their array: $how" exr.npy npy.npy
+done
+
 # A volume goes out as NRRD and comes back.
 vam-slice --shape disc-grid --voxel 0.5 -o part.vdb
 vam-view part.vdb --export part.nrrd

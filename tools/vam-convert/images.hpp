@@ -24,6 +24,8 @@ class Images {
   virtual bool next(Image& image) = 0;
   /// Do they show the projector's image, one a stage angle, row 0 at the top?
   [[nodiscard]] virtual bool are_frames() const = 0;
+  /// Are the values grey levels, not intensities?
+  [[nodiscard]] virtual bool are_grey() const { return false; }
   /// What is stated about projections, in an array's file or beside the frames.
   [[nodiscard]] virtual const io::StatedViews& views() const = 0;
 };

@@ -75,7 +75,7 @@ const std::vector<std::string> projection_flags{"--geometry",  "--pixel",       
 
 void declare(cli::App& app, Options& options) {
   app.positional("FILE", options.input,
-                 "Array (.npy, .npz, HDF5, NRRD, MRC, TIFF of several pages), folder of numbered images (PNG, TIFF), "
+                 "Array (.npy, .npz, HDF5, NRRD, MRC, TIFF of several pages), folder of numbered images (PNG, TIFF, EXR), "
                  "video (MKV, MP4), volume (VDB) or stack (EXR).")
       .reads();
   cli::add_output(app, options.output);

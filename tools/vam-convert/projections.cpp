@@ -152,7 +152,7 @@ Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
 }
 
 model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Plan& plan,
-                         const Heights& heights, bool frames) {
+                         const Heights& heights, bool grey) {
   model::StackInfo info;
   const bool projector = options.in_vial();
   info.space = projector ? model::Space::projector : model::Space::virtual_;
@@ -164,9 +164,9 @@ model::StackInfo info_of(const cli::App& app, const Options& options, const mode
   info.z_start_mm = heights.z0_mm;
   info.angle_start_deg = plan.start_deg;
   info.angle_step_deg = 360.0 / plan.per_turn;
-  info.units = frames && options.units == "relative" ? "fraction of full intensity" : options.units;
+  info.units = grey && options.units == "relative" ? "fraction of full intensity" : options.units;
   info.history = {app.history()};
-  if (frames && options.units == "relative") info.extra["vam:full_scale"] = "1";
+  if (grey && options.units == "relative") info.extra["vam:full_scale"] = "1";
   if (projector) info.extra["vam:printer"] = io::printer_settings(printer);
   return info;
 }
@@ -234,6 +234,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
                       const model::Printer& printer) {
   auto images = open_source(options, type, "zax");
   const bool frames = images->are_frames();
+  const bool grey = images->are_grey();
   if (!frames && options.orientation != "normal") {
     throw Error{Fault::usage, "--orientation: is for images and videos; give the array's --axes, or turn it in NumPy"};
   }
@@ -249,7 +250,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   if (like) warn_of_dark(options, own, like->grid());
   Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
   const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
-  io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, frames), options.stack);
+  io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, grey), options.stack);
   Image slice;
   float least = 0;
   Progress progress("converting", heights.count);

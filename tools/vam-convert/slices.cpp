@@ -46,7 +46,7 @@ Slices::~Slices() = default;
 io::ArraySize Slices::size() const { return size_; }
 
 void Slices::collect(const Options& options, const model::Printer& printer) {
-  const std::vector<float> table = intensities(options, printer);
+  const std::vector<float> table = images_->are_grey() ? intensities(options, printer) : std::vector<float>{};
   Image frame;
   while (images_->next(frame)) {
     optics::orient(frame, options.orientation);

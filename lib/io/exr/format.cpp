@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/printable.hpp"
 #include "io/exr/private/rows.hpp"
 
 namespace vam::io::exr {
@@ -196,6 +197,41 @@ void decode(const Imf::Header& layout, const Chunks& chunks, Image& image) {
   pixels.insert(channel, float_slice(image.values.data(), window));
   input.setFrameBuffer(pixels);
   input.readPixels(window.min.y, window.max.y);
+}
+
+namespace {
+
+std::string only_channel(const Imf::Header& header) {
+  std::string names;
+  std::size_t count = 0;
+  for (auto one = header.channels().begin(); one != header.channels().end(); ++one, ++count) {
+    if (one.name() == std::string(channel)) return channel;
+    names += (count == 0 ? "" : ", ") + printable(one.name());
+  }
+  if (count == 1) return header.channels().begin().name();
+  throw std::runtime_error("has the channels " + names + "; one of intensity is read (Y)");
+}
+
+}  // namespace
+
+Image decode_single(const std::string& bytes) {
+  MemoryReader stream(bytes);
+  Imf::InputFile file(stream, 0);
+  const Imf::Header& header = file.header();
+  const Imath::Box2i window = header.dataWindow();
+  if (window != header.displayWindow()) throw std::runtime_error("has pixels for a part of its image only");
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  if (width > max_side || height > max_side || width * height > max_pixels) {
+    throw std::runtime_error("has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, too many");
+  }
+  const std::string name = only_channel(header);
+  Image image(static_cast<int>(width), static_cast<int>(height));
+  Imf::FrameBuffer pixels;
+  pixels.insert(name, float_slice(image.values.data(), window));
+  file.setFrameBuffer(pixels);
+  file.readPixels(window.min.y, window.max.y);
+  return image;
 }
 
 }  // namespace vam::io::exr

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "io/exr/single_image.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/video.hpp"
@@ -69,6 +71,7 @@ class VideoSource : public ImageSource {
     ++taken_;
     return true;
   }
+  [[nodiscard]] bool is_grey() const override { return true; }
   [[nodiscard]] bool is_sealed() const override { return reader_.format().seal.has_value(); }
   [[nodiscard]] std::string seal() const override {
     constexpr std::size_t head = 5, digits = 16;
@@ -151,11 +154,46 @@ class FolderSource : public ImageSource {
     image = fractions(levels);
     return true;
   }
+  [[nodiscard]] bool is_grey() const override { return true; }
 
  private:
   ImageFolder folder_;
   std::vector<model::ImageInfo> index_;
   std::map<std::string, CaptureRecord> captured_;
+  model::StackInfo info_;
+  int taken_ = 0;
+};
+
+/// One image a file, as Dr.TVAM writes its patterns: 0000.exr, 0001.exr, ...
+class ExrFolderSource : public ImageSource {
+ public:
+  explicit ExrFolderSource(const std::string& path)
+      : folder_(path, false, FolderOf::exr),
+        index_(read_frame_index(path, folder_)),
+        first_(read_exr_image(folder_.path(0))) {
+    info_ = frames_of(first_.width, first_.height, folder_.count());
+    info_.units = "relative";
+    if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
+  }
+  [[nodiscard]] const model::StackInfo& info() const override { return info_; }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
+  bool next(Image& image, model::ImageInfo& about) override {
+    if (taken_ == folder_.count()) return false;
+    about = index_.empty() ? model::ImageInfo{} : index_[taken_];
+    const std::string& path = folder_.path(taken_);
+    image = taken_ == 0 ? std::move(first_) : read_exr_image(path);
+    if (image.width != info_.width || image.height != info_.height) {
+      throw Error{Fault::data, path + ": has " + size_text(image.width, image.height) +
+                                   " pixels, but those before have " + size_text(info_.width, info_.height)};
+    }
+    ++taken_;
+    return true;
+  }
+
+ private:
+  ImageFolder folder_;
+  std::vector<model::ImageInfo> index_;
+  Image first_;
   model::StackInfo info_;
   int taken_ = 0;
 };
@@ -166,6 +204,7 @@ std::unique_ptr<ImageSource> open_images(const std::string& path, FileType type)
   if (type == FileType::video && path == "-")
     throw Error{Fault::usage, "stdin: a video is read from a file only; name it"};
   if (type == FileType::video) return std::make_unique<VideoSource>(path);
+  if (type == FileType::images && is_exr_folder(path)) return std::make_unique<ExrFolderSource>(path);
   if (type == FileType::images) return std::make_unique<FolderSource>(path);
   return std::make_unique<StackSource>(path);
 }

@@ -12,8 +12,8 @@
 
 namespace vam::io {
 
-/// Images one after the other. Of a video or a folder the values are grey as a fraction of full, and the pitches in
-/// info are 0.
+/// Images one after the other. Of a video or a folder the values are grey as a fraction of full, of a folder of EXR
+/// images intensities as they are, and the pitches in info are 0.
 class ImageSource {
  public:
   ImageSource() = default;
@@ -24,6 +24,8 @@ class ImageSource {
   /// The facts of every image, where they are known before the first is read; else empty.
   [[nodiscard]] virtual const std::vector<model::ImageInfo>& about() const = 0;
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
+  /// Are the values grey levels, which a projector's response makes intensities of?
+  [[nodiscard]] virtual bool is_grey() const { return false; }
   /// Whether all of it has hashes of what was written, to which reading holds it.
   [[nodiscard]] virtual bool is_sealed() const { return false; }
   /// The first 16 digits of that of a video; empty for others.

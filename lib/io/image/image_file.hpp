@@ -33,12 +33,18 @@ void write_png(const std::string& path, const RgbImage& image, const ImageText& 
 /// Writes a grey TIFF, 8 bits where 8 are enough and 16 otherwise (10 bits spread over 16). "-" is stdout.
 void write_tiff(const std::string& path, const GreyImage& image);
 
-/// The numbered images of a folder (.png, .tif, .tiff) in the order of their numbers, so that 2 comes before 10.
+/// Of which files a folder is read: grey images (.png, .tif, .tiff), or images of intensity (.exr).
+enum class FolderOf { grey, exr };
+
+/// Has the folder EXR images, and no grey ones?
+[[nodiscard]] bool is_exr_folder(const std::string& folder);
+
+/// The numbered images of a folder in the order of their numbers, so that 2 comes before 10.
 class ImageFolder {
  public:
   /// `gaps`: numbers may be missing. Throws Error: no_input (no such folder), data (no image in it, a number twice, or
   /// missing where it must not).
-  explicit ImageFolder(const std::string& folder, bool gaps = false);
+  explicit ImageFolder(const std::string& folder, bool gaps = false, FolderOf of = FolderOf::grey);
 
   [[nodiscard]] int count() const { return count_of(paths_); }
   [[nodiscard]] const std::string& path(int index) const { return paths_[index]; }
@@ -47,7 +53,7 @@ class ImageFolder {
   /// The number of the first image.
   [[nodiscard]] long first_number() const { return first_number_; }
 
-  /// Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a
+  /// Of grey images. Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a
   /// time.
   [[nodiscard]] GreyImage read(int index);
 

@@ -16,9 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_image_file(const fs::path& path) {
+bool is_image_file(const fs::path& path, FolderOf of) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (of == FolderOf::exr) return extension == ".exr";
   return extension == ".png" || extension == ".tif" || extension == ".tiff";
 }
 
@@ -68,11 +69,21 @@ void require_no_gaps(const std::vector<Numbered>& images) {
 
 }  // namespace
 
-ImageFolder::ImageFolder(const std::string& folder, bool gaps) {
+bool is_exr_folder(const std::string& folder) {
+  bool found = false;
+  std::error_code problem;
+  for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
+    if (is_image_file(entry->path(), FolderOf::grey)) return false;
+    found = found || is_image_file(entry->path(), FolderOf::exr);
+  }
+  return found;
+}
+
+ImageFolder::ImageFolder(const std::string& folder, bool gaps, FolderOf of) {
   std::error_code problem;
   std::vector<Numbered> images;
   for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
-    if (is_image_file(entry->path())) images.push_back({number_of(entry->path()), entry->path()});
+    if (is_image_file(entry->path(), of)) images.push_back({number_of(entry->path()), entry->path()});
   }
   if (problem) throw system_error(Fault::no_input, folder + ": cannot read the folder", problem.value());
   if (images.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF image in the folder"};

@@ -2,8 +2,13 @@
 // Frames of videos, folders and stacks, read in the same way.
 #include "io/image/any_frames.hpp"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <vector>
 
 #include "fault_of.hpp"
@@ -43,6 +48,62 @@ std::vector<model::ImageInfo> facts_of(ImageSource& source) {
 }
 
 }  // namespace
+
+namespace {
+
+/// As OpenEXR writes it by default (ZIP), all channels alike.
+void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channels) {
+  Imf::Header header(image.width, image.height);
+  Imf::FrameBuffer pixels;
+  for (const std::string& name : channels) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, image.values.data(), header.dataWindow()));
+  }
+  Imf::OutputFile file(path.c_str(), header);
+  file.setFrameBuffer(pixels);
+  file.writePixels(image.height);
+}
+
+}  // namespace
+
+TEST_CASE("a folder of EXR images, as Dr.TVAM writes its patterns: intensities as they are") {
+  const scratch::Folder folder;
+  const std::string path = folder / "patterns";
+  std::filesystem::create_directory(path);
+  std::vector<Image> written;
+  for (int i = 0; i < 12; ++i) {
+    Image image(3, 2);
+    for (std::size_t p = 0; p < image.size(); ++p)
+      image.values[p] = 100.0F * static_cast<float>(i) + 0.1F * static_cast<float>(p);
+    write_exr(path + "/" + std::string(i < 10 ? "000" : "00") + std::to_string(i) + ".exr", image, {"Y"});
+    written.push_back(image);
+  }
+  const auto source = open_images(path, FileType::images);
+  CHECK_FALSE(source->is_grey());
+  CHECK(source->info().count == 12);
+  CHECK(source->info().units == "relative");
+  Image image;
+  for (model::ImageInfo about; const Image& want : written) {
+    REQUIRE(source->next(image, about));
+    CHECK(image.values == want.values);
+  }
+  const auto refused = [&](const Image& last, const std::vector<std::string>& channels) {
+    write_exr(path + "/0011.exr", last, channels);
+    return error_of(
+        [&] {
+          const auto again = open_images(path, FileType::images);
+          for (model::ImageInfo about; again->next(image, about);) continue;
+        },
+        Fault::data);
+  };
+  CHECK(has(refused(Image(3, 3), {"Y"}), "0011.exr: has 3 x 3 pixels, but those before have 3 x 2"));
+  CHECK(has(refused(Image(3, 2), {"R", "G", "B"}), "0011.exr: has the channels B, G, R; one of intensity is read"));
+  Image endless(3, 2);
+  endless.values[1] = std::numeric_limits<float>::infinity();
+  CHECK(has(refused(endless, {"Z"}), "0011.exr: has a pixel that is not a finite number"));
+  write_png(path + "/0.png", flat(3));
+  CHECK(open_images(path, FileType::images)->info().count == 1);  // grey images go before
+}
 
 TEST_CASE("a folder of images: fractions of full, with times and angles where vam-project left them") {
   const scratch::Folder folder;

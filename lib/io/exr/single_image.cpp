@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/exr/single_image.hpp"
+
+#include <cstdint>
+#include <exception>
+
+#include "base/error.hpp"
+#include "base/printable.hpp"
+#include "io/exr/private/format.hpp"
+#include "io/stream/apart.hpp"
+#include "io/stream/finite.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+Image decoded(const std::string& bytes, const std::string& name) {
+  try {
+    return exr::decode_single(bytes);
+  } catch (const std::exception& problem) {
+    throw Error{Fault::data, name + ": " + printable(problem.what())};
+  }
+}
+
+}  // namespace
+
+Image read_exr_image(const std::string& path) {
+  const std::string bytes = read_all(path, Content::binary, std::uint64_t{1} << 30);
+  if (bytes.size() < 4 || exr::number_at<std::int32_t>(bytes, 0) != exr::magic) {
+    throw Error{Fault::data, path + ": is no EXR image"};
+  }
+  Image image;
+  read_apart(
+      {path, bytes.size(), -1, std::uint64_t{exr::max_pixels} * 8},
+      [&](Sender& out) {
+        const Image read = decoded(bytes, path);
+        out.put(std::uint64_t{static_cast<std::uint64_t>(read.width)});
+        out.put(std::uint64_t{static_cast<std::uint64_t>(read.height)});
+        out.put(read.values.data(), read.values.size() * sizeof(float));
+      },
+      [&](Receiver& in) {
+        const auto width = in.get_count(exr::max_side);
+        const auto height = in.get_count(width == 0 ? 0 : exr::max_pixels / width);
+        image = Image(static_cast<int>(width), static_cast<int>(height));
+        in.get(image.values.data(), image.values.size() * sizeof(float));
+      });
+  if (image.values.empty()) throw Error{Fault::data, path + ": is damaged: its reader failed"};
+  if (!all_finite(image.values.data(), image.size())) {
+    throw Error{Fault::data, path + ": has a pixel that is not a finite number"};
+  }
+  return image;
+}
+
+}  // namespace vam::io
