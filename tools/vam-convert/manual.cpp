@@ -56,9 +56,9 @@ cli::Manual manual() {
        "follows their rays through bath, glass and resin.",
        "A folder of EXR images, numbered in the order of the stage angles (patterns/0000.exr, 0001.exr, ... of Dr.TVAM), "
        "is read as other folders are, but its values are intensities, not grey levels: from channel Y, or the only "
-       "one, unchanged unless --full-scale is given. Dr.TVAM's pixel_size is --pixel, in its units of length, and the "
-       "angles of its n_patterns are even over 360 degrees: no --view-step is needed. Compare the direction of the turn "
-       "with a part that is not symmetric; --view-step -360/N reverses it.",
+       "one, unchanged unless --full-scale is given. Dr.TVAM's pixel_size is --pixel; patterns that are even "
+       "over one turn need no --view-step. Compare the direction of the turn with a part that is not symmetric; "
+       "--view-step -360/N reverses it.",
        "Grey values of images are fractions of full grey. They are used as intensity, or with --geometry vial "
        "converted by projector.response. Colour images and videos are read as luma (0.299 red, 0.587 green, 0.114 "
        "blue): "
