@@ -54,7 +54,8 @@ cli::Manual manual() {
        "images of the projector of the printer file, shifted so that the axis is at projector.axis_column, and "
        "vam-dose "
        "follows their rays through bath, glass and resin.",
-       "A folder of EXR images, numbered in the order of the stage angles (patterns/0000.exr, 0001.exr, ... of Dr.TVAM), "
+       "A folder of EXR images, numbered in the order of the stage angles (patterns/0000.exr, 0001.exr, ... of "
+       "Dr.TVAM), "
        "is read as other folders are, but its values are intensities, not grey levels: from channel Y, or the only "
        "one, unchanged unless --full-scale is given. Dr.TVAM's pixel_size is --pixel; patterns that are even "
        "over one turn need no --view-step. Compare the direction of the turn with a part that is not symmetric; "

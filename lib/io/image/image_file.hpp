@@ -53,8 +53,8 @@ class ImageFolder {
   /// The number of the first image.
   [[nodiscard]] long first_number() const { return first_number_; }
 
-  /// Of grey images. Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a
-  /// time.
+  /// Of grey images. Throws as read_image does, and Fault::data when the image has not the size of the first one. One
+  /// thread at a time.
   [[nodiscard]] GreyImage read(int index);
 
  private:

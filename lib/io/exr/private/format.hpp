@@ -74,8 +74,8 @@ struct Chunks {
 /// Fills image, already of the layout's width and height, from channel Y. Throws what OpenEXR throws.
 void decode(const Imf::Header& layout, const Chunks& chunks, Image& image);
 
-/// The only image of a whole file, from channel Y or its only one, row 0 at the top. Throws std::runtime_error, to stand
-/// behind the file's name: several channels without Y, sides beyond the limits; what OpenEXR throws.
+/// The only image of a whole file, from channel Y or its only one, row 0 at the top. Throws std::runtime_error, to
+/// stand behind the file's name: several channels without Y, sides beyond the limits; what OpenEXR throws.
 [[nodiscard]] Image decode_single(const std::string& bytes);
 
 }  // namespace vam::io::exr
