@@ -105,7 +105,8 @@ Sources gather(const std::vector<std::string>& paths) {
     if (fs::is_directory(path)) {
       add_folder(sources, path);
     } else if (!add(sources, path)) {
-      const std::string foreign = io::foreign_format(beginning(path));
+      const std::string head = beginning(path);
+      const std::string foreign = head.starts_with('{') ? "" : io::foreign_format(head);  // JSON, but no report
       throw Error{Fault::data, path + (foreign.empty() ? ": is not" : ": is " + foreign + ", not") +
                                    " a volume, mesh, stack, video, report (JSON), trace (CSV of vam-optimize "
                                    "--trace) or image (PNG)"};

@@ -97,7 +97,7 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
     throw Error{Fault::data, name + ": is damaged: no longer JSON; write it again"};
   }
   if (!has_printer_section(text) && !path.ends_with(".toml")) {
-    const std::string foreign = foreign_format(text);
+    const std::string foreign = text.front() == '{' ? "" : foreign_format(text);
     return {{foreign.empty() ? "file of another kind" : foreign, require_text_seal(text, name), "", {}}};
   }
   const bool sealed = require_text_seal(text, name);
