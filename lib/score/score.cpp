@@ -66,7 +66,11 @@ bool is_of_exposure(const std::string& figure) {
 }
 
 Score::Score(const ScoreOptions& options, int width, int height)
-    : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold), unresolved_(width, height) {
+    : options_(options),
+      width_(width),
+      whole_(options.threshold),
+      with_cut_(options.threshold),
+      unresolved_(width, height) {
   const model::Circle& at = options.circle;
   rim_px_ = 0.5 + std::min({at.axis_x, at.axis_y, width - 1 - at.axis_x, height - 1 - at.axis_y});
   inside_.reserve(width * static_cast<std::size_t>(height));

@@ -27,8 +27,8 @@ struct Verdict {
 /// Much of the part is in walls or gaps that the voxels are too coarse for.
 [[nodiscard]] bool is_unresolved(const Verdict& verdict);
 
-/// "may print" if too much is not judged, else "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
-/// by the surface: process window -0.31, VER 0.004; duration 360 s".
+/// "may print" if too much is not judged, else "will print: process window +0.065 of the largest dose, VER 0 (412345
+/// voxels); including the 43492 voxels cut by the surface: process window -0.31, VER 0.004; duration 360 s".
 [[nodiscard]] std::string words(const Verdict& verdict);
 
 /// verdict, and with_surface: ver, pw, iou and the number of voxels.

@@ -29,10 +29,10 @@ namespace vam::optimize_tool {
 
 namespace {
 
-constexpr int least_voxels = 24;       // a side of the part
-constexpr int least_of_slow = 7;       // of one whose finer voxels take long
-constexpr double most_updates = 2e8;   // voxels x angles: a projection of those takes 0.1 s
-constexpr double hopeless = 0.5;       // not resolved, relative to the part
+constexpr int least_voxels = 24;      // a side of the part
+constexpr int least_of_slow = 7;      // of one whose finer voxels take long
+constexpr double most_updates = 2e8;  // voxels x angles: a projection of those takes 0.1 s
+constexpr double hopeless = 0.5;      // not resolved, relative to the part
 constexpr int least_iterations = 4, most_iterations = 16;
 constexpr int proof_iterations = 40;
 constexpr double proof_updates = 4e8;  // voxels x angles x iterations

@@ -30,7 +30,8 @@ cli::Manual manual() {
            "way, are " +
            deviations +
            " (as in --robust of vam-optimize): the smaller process window of the two is stated, as a fraction of the "
-           "largest dose. Windows at the printer's resolution differ, of most parts they are wider. vam-optimize has the last word.",
+           "largest dose. Windows at the printer's resolution differ, of most parts they are wider. vam-optimize has "
+           "the last word.",
        "Walls and gaps that are lost even at the printer's pixels cause a warning, as in vam-slice, for parts of up to "
        "16 "
        "million voxels.",

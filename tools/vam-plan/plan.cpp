@@ -155,7 +155,8 @@ void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
   plan.wall_resolution = std::max(1, static_cast<int>(by));
   const Filled fine = filled(part, plan.wall_resolution * plan.grid.voxel_mm);
-  if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0) warn_of_resolution(part.subject, fine, plan.stretch_z);
+  if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0)
+    warn_of_resolution(part.subject, fine, plan.stretch_z);
   const solid::Walls walls = solid::walls(fine.volume, plan.stretch_z);
   plan.sharp_edges = walls.sharp_edges;
   plan.wall_voxels = walls.thinnest_voxels;

@@ -43,7 +43,7 @@ struct Plan {
   bool sharp_edges = false;           // thinner than what prints
   int wall_resolution = 1;            // in voxels
   int coarseness = 0;                 // pixels per voxel of the estimate; 0: none is wanted
-  model::Unresolved unjudged;      // walls and gaps too thin for the voxels of the estimate
+  model::Unresolved unjudged;         // walls and gaps too thin for the voxels of the estimate
   bool all_judged = true;             // they are hardly more than rounded edges
   double unjudged_low_mm = 0;         // heights in the print of most of them
   double unjudged_high_mm = 0;

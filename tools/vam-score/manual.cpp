@@ -38,8 +38,10 @@ std::vector<std::string> description() {
       "Voxels that the part's surface cuts (0 < coverage < 1) are scored only with --surface.",
       "With --grey-target, the option of vam-optimize, the target is a dose for every voxel, E = |x - f| the error of "
       "a "
-      "voxel. A dose in mJ/cm3 is divided by what vam-dose states a relative dose of 1 to be (dose_unit of the report), "
-      "unless the target is in mJ/cm3, too. VER is the fraction of voxels with E > EPSILON (--band), PW = - max (E - EPSILON), IPDR = max E, CV the "
+      "voxel. A dose in mJ/cm3 is divided by what vam-dose states a relative dose of 1 to be (dose_unit of the "
+      "report), "
+      "unless the target is in mJ/cm3, too. VER is the fraction of voxels with E > EPSILON (--band), PW = - max (E - "
+      "EPSILON), IPDR = max E, CV the "
       "root mean square of E, IoU = 1 - VER; bias is the mean of x - f in the part, which a longer or shorter exposure "
       "changes. A target that seems grey causes a warning without this option. --void states the constraint on the "
       "void; with --void below, E of a void voxel is the amount by "

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/unresolved.hpp"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "base/index.hpp"
+#include "model/unresolved.hpp"
 
 using namespace vam;
 using namespace vam::model;
