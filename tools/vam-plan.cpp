@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   plan_tool::Options options;
   declare(app, options);
   return app.run(argc, argv, [&] {
+    options.unit_given = app.given("--unit");
     options.unit_known = app.given("--unit") || app.given("--scale");
     run(options);
   });

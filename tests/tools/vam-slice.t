@@ -124,6 +124,7 @@ PY
 volume 64 vam-slice inch.3mf --scale 0.078740157480315 --voxel 0.25
 fails 64 '--unit: inch.3mf states its unit, as 3MF files do; omit --unit, or give --scale' \
   vam-slice inch.3mf --unit in --voxel 0.25 -o out.vdb
+fails 64 '--unit: inch.3mf states its unit' vam-plan inch.3mf --unit in --no-preview
 fails 64 '--insert-unit: inch.3mf states its unit, .*give --insert-scale' \
   vam-slice quads.obj --insert inch.3mf --insert-unit in --voxel 0.25 -o out.vdb
 quiet "a requested size causes no warning" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb

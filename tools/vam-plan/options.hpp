@@ -15,6 +15,7 @@ struct Options {
   std::string unit = "mm";
   std::string up = "z";
   double scale = 1;
+  bool unit_given = false;
   bool unit_known = false;  // it or the scale is given
   bool no_preview = false;
   std::string report;

@@ -10,8 +10,8 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
-#include "io/mesh/file.hpp"
 #include "io/stream/input_name.hpp"
+#include "mesh_in_unit.hpp"
 #include "model/coarser.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
@@ -49,7 +49,7 @@ class Source {
  public:
   explicit Source(const Options& options)
       : options_(options), subject_(options.shape.empty() ? io::input_name(options.input) : "shape " + options.shape) {
-    if (options.shape.empty()) mesh_ = io::read_mesh(options.input);
+    if (options.shape.empty()) mesh_ = tool::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale");
   }
   [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] solid::Part part(const model::Printer& printer, double factor) const {

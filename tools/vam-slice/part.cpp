@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "io/image/image_file.hpp"
-#include "io/mesh/file.hpp"
 #include "io/stream/input_name.hpp"
+#include "mesh_in_unit.hpp"
 #include "solid/voxel/size_doubt.hpp"
 
 namespace vam::slice_tool {
@@ -35,20 +35,9 @@ solid::Part image_part(const Options& options) {
   return solid::image_part(std::move(stack), options.input, options.voxel_mm.value(), options.placement.stretch_z);
 }
 
-/// A unit on the command line would be multiplied by that of the file.
-model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std::string& flag,
-                                 const std::string& scale) {
-  io::ColouredMesh read = io::read_coloured_mesh(path);
-  if (given && read.in_mm) {
-    throw Error{Fault::usage, flag + ": " + io::input_name(path) + " states its unit, as 3MF files do; omit " + flag +
-                                  ", or give " + scale + " to change the size"};
-  }
-  return std::move(read.mesh);
-}
-
 solid::Part mesh_part(const Options& options, const solid::Writable& room, Correction& correction) {
   model::TriangleSoup mesh =
-      corrected(mesh_in_unit(options.input, options.unit_given, "--unit", "--scale"), options, correction);
+      corrected(tool::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale"), options, correction);
   const std::string subject = io::input_name(options.input);
   const solid::Affine map = solid::place(mesh, options.placement, room, subject);
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));
@@ -94,7 +83,7 @@ solid::Placement insert_placement(const Options& options, const solid::Part& par
 std::optional<solid::Part> insert_of(const Options& options, const solid::Part& part, const solid::Writable& room) {
   if (!options.insert.empty()) {
     model::TriangleSoup mesh =
-        mesh_in_unit(options.insert, options.insert_unit_given, "--insert-unit", "--insert-scale");
+        tool::mesh_in_unit(options.insert, options.insert_unit_given, "--insert-unit", "--insert-scale");
     const solid::Affine map = solid::place(mesh, insert_placement(options, part), room, options.insert);
     return solid::mesh_part(std::move(mesh), options.insert, map, solid::FillMode::automatic);
   }
