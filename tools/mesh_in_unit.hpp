@@ -11,8 +11,8 @@
 
 namespace vam::tool {
 
-/// Throws Fault::usage where `flag` is given for a file that states its unit, by which that of the command line would be
-/// multiplied; `scale` is the option to change the size.
+/// Throws Fault::usage where `flag` is given for a file that states its unit, by which that of the command line would
+/// be multiplied; `scale` is the option to change the size.
 inline model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std::string& flag,
                                         const std::string& scale) {
   io::ColouredMesh read = io::read_coloured_mesh(path);
