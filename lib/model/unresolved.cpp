@@ -12,7 +12,7 @@ namespace vam::model {
 namespace {
 
 constexpr float half = 0.5F;
-constexpr float shut = 0.25F;              // covered by no more is free enough for a gap
+constexpr float shut = 0.249F;             // covered by no more, with rounding, is free enough for a gap
 constexpr float touching = 1 - 1 / 64.0F;  // covered by more is no gap
 
 /// One voxel of the middle one of three slices, nullptr where there is none.
@@ -63,6 +63,14 @@ void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
 }
 
 }  // namespace
+
+bool Unresolved::shuts_gaps() const {
+  constexpr double least = 1;  // voxels
+  constexpr double least_a_slice = 0.1;
+  constexpr float least_width = 0.05F;  // voxels
+  return lost_gaps.voxels >= least && lost_gaps.voxels >= least_a_slice * (lost_gaps.end - lost_gaps.first) &&
+         lost_gaps.widest >= least_width;
+}
 
 /// Of the middle one of three slices.
 UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What of a part its voxels are too coarse for. No voxel shows whether it prints where none nearby is wholly part, or
 // wholly void. Of that, walls that have no voxel that is half covered are surely not printed, and gaps that have none
-// that is three quarters free are surely printed shut.
+// that is more than three quarters free are surely printed shut.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ struct LostWalls {
   int end = 0;
 };
 
-/// Free shares of voxels that are free by less than three quarters, and so are their 26 neighbours. Shares below 1/64,
+/// Free shares of voxels that are free by three quarters or less, and so are their 26 neighbours. Shares below 1/64,
 /// as of shells that nearly touch, are no gap, and beyond the grid all is free.
 struct LostGaps {
   double voxels = 0;  // sum of free shares
@@ -42,10 +42,15 @@ struct Unresolved {
   [[nodiscard]] double part_share() const { return whole > 0 ? part / whole : 0; }
   [[nodiscard]] double gap_share() const { return whole > 0 ? gaps / whole : 0; }
   [[nodiscard]] double share() const { return part_share() + gap_share(); }
-};
+  [[nodiscard]] double lost_share() const { return whole > 0 ? lost_walls.voxels / whole : 0; }
 
-/// Rounded edges and tips are less of a part; with more of it, a verdict on the voxels is none on the part.
-inline constexpr double much_unresolved = 0.02;
+  /// Rounded edges and tips are less of a part; with more of it, a verdict on the voxels is none on the part.
+  [[nodiscard]] bool is_much() const { return share() > 0.02; }
+  /// Walls will be missing in the print: more than specks.
+  [[nodiscard]] bool loses_walls() const { return lost_share() > 1e-3; }
+  /// Gaps will be shut in the print: more than tips of grooves and corners between struts.
+  [[nodiscard]] bool shuts_gaps() const;
+};
 
 /// Finds it slice by slice, from the lowest up.
 class UnresolvedFinder {

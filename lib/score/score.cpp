@@ -199,7 +199,7 @@ Json Score::figures() const {
 
 Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
-  Verdict verdict{whole_.metrics(), with_cut_.metrics(), {}, {}, unresolved().share()};
+  Verdict verdict{whole_.metrics(), with_cut_.metrics(), {}, {}, unresolved()};
   if (std::isfinite(duration_s)) verdict.seconds = duration_s;
   return verdict;
 }

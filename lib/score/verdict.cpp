@@ -3,7 +3,6 @@
 
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "model/unresolved.hpp"
 
 namespace vam::score {
 
@@ -18,15 +17,37 @@ bool holds_threshold(const Verdict& verdict) {
   return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
 }
 
+std::string answer(const Verdict& verdict) {
+  const model::Unresolved& un = verdict.unresolved;
+  if (!prints(verdict)) return "will not print";
+  if (un.loses_walls() || un.shuts_gaps()) return "will not print as designed";
+  return un.is_much() ? "may print" : "will print";
+}
+
+std::string unjudged(const model::Unresolved& un) {
+  const auto percent = [](double share) { return format_number(100 * share, 3) + " % of the part"; };
+  std::string text;
+  if (un.loses_walls())
+    text += "; " + percent(un.lost_share()) + " is in walls too thin for the voxels and will be missing";
+  if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
+  if (un.is_much())
+    text += "; walls and gaps too thin for the voxels are not judged: " + percent(un.share()) +
+            "; smaller voxels resolve them";
+  return text;
+}
+
 }  // namespace
 
 bool prints(const Verdict& verdict) { return verdict.whole.pw > 0 && holds_threshold(verdict); }
 
-bool is_unresolved(const Verdict& verdict) { return verdict.unresolved > model::much_unresolved; }
+bool is_whole(const Verdict& verdict) {
+  const model::Unresolved& un = verdict.unresolved;
+  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much();
+}
 
 std::string words(const Verdict& verdict) {
   const std::int64_t cut = voxels(verdict.with_cut) - voxels(verdict.whole);
-  std::string line = !prints(verdict) ? "will not print" : is_unresolved(verdict) ? "may print" : "will print";
+  std::string line = answer(verdict);
   if (!holds_threshold(verdict)) {
     line += " at the threshold of " + format_number(*verdict.threshold, 3) + " (void up to " +
             format_number(verdict.whole.max_void, 3) + ", part at least " + format_number(verdict.whole.min_part, 3) +
@@ -38,10 +59,7 @@ std::string words(const Verdict& verdict) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);
   }
-  if (is_unresolved(verdict)) {
-    line += "; walls and gaps too thin for the voxels are not judged: " + format_number(100 * verdict.unresolved, 2) +
-            " % of the part; smaller voxels resolve them";
-  }
+  line += unjudged(verdict.unresolved);
   if (verdict.seconds) line += "; duration " + format_number(*verdict.seconds, 4) + " s";
   return line;
 }

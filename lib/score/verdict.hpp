@@ -9,6 +9,7 @@
 
 #include "base/json_fwd.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/unresolved.hpp"
 
 namespace vam::score {
 
@@ -18,16 +19,17 @@ struct Verdict {
   model::DoseMetrics with_cut;    // with those that the surface cuts, as part from half coverage on, else as void
   std::optional<double> seconds;  // of the print; none: the resin is not known
   std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
-  double unresolved = 0;  // walls and gaps that the voxels are too coarse for, and no figure judges, by the part
+  model::Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
 };
 
 /// The threshold, or some threshold if none is given, prints all voxels that are wholly in part or void.
 [[nodiscard]] bool prints(const Verdict& verdict);
 
-/// Much of the part is in walls or gaps that the voxels are too coarse for.
-[[nodiscard]] bool is_unresolved(const Verdict& verdict);
+/// No walls will be missing, no gaps shut, and all but little of the part is judged.
+[[nodiscard]] bool is_whole(const Verdict& verdict);
 
-/// "may print" if too much is not judged, else "will print: process window +0.065 of the largest dose, VER 0 (412345
+/// "will not print as designed" where walls will be missing or gaps shut, "may print" if too much is not judged, else
+/// "will print: process window +0.065 of the largest dose, VER 0 (412345
 /// voxels); including the 43492 voxels cut by the surface: process window -0.31, VER 0.004; duration 360 s".
 [[nodiscard]] std::string words(const Verdict& verdict);
 

@@ -209,6 +209,11 @@ fails 74 'No space left' sh -c 'vam-check part.vdb >/dev/full'
 fails 65 'a.off' vam-check --seal a.off
 fails 65 'b.vdb: is a volume \(OpenVDB\), not a printer file' vam-check --seal b.vdb
 mkfifo fifo
+# Videos of other programs that begin later, or leave frames out, are whole.
+ffmpeg -v error -f lavfi -i testsrc=size=64x48:rate=16:duration=2 -pix_fmt gray -c:v ffv1 -output_ts_offset 1.5 late.mkv
+ffmpeg -v error -f lavfi -i testsrc=size=64x48:rate=16:duration=2 -vf "select='not(eq(mod(n,5),3))'" -vsync vfr -pix_fmt gray -c:v ffv1 fewer.mkv
+for name in late fewer; do is "a video that is $name" "$(vam-check $name.mkv)" "$name.mkv: video, unsealed; its checksums hold"; done
+
 fails 66 'fifo: is not a regular file; give it on standard input' vam-check fifo
 
 done_testing

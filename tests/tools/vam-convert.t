@@ -87,6 +87,8 @@ data = open("one.npz", "rb").read()
 open("long.npz", "wb").write(data + b"x")
 open("twice.npz", "wb").write(data + b"PK\5\6" + bytes(5))
 with zipfile.ZipFile("noted.npz", "w") as z: z.write("a.npy", "dose.npy"); z.comment = b"by hand PK\5\6" + bytes(40)'
+cat one.npz one.npz >pair.npz
+fails 65 "pair.npz: the .npz archive begins at byte $(wc -c <one.npz) only" vam-convert pair.npz --voxel 1 -o x.vdb
 for name in long twice; do
   fails 65 "$name.npz: trailing data after the end of the .npz archive, from byte $(wc -c <one.npz) on; save it again" vam-convert $name.npz --voxel 1 -o x.vdb
 done

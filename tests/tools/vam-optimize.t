@@ -282,6 +282,9 @@ vam-optimize --preview --report foil.json foil.vdb >foil.txt
 is "walls too thin to be seen are no silent yes" "$(value foil.json prints)" unsure
 holds "their share is reported" "$(value foil.json unresolved_part) > 0.9"
 ok "and the reason is stated" grep -q '^verdict .*may not print: .* walls or gaps too thin' foil.txt
+vam-slice --shape ladder --voxel 0.3 -o rungs.vdb 2>.log/rungs
+vam-optimize --preview --angles 60 --report rungs.json rungs.vdb >rungs.txt
+is "nor are walls too thin for the target's own voxels" "$(value rungs.json prints) $(grep -c 'may not print: .* too thin for the target.s voxels' rungs.txt)" 'unsure 1'
 vam-slice --shape box:x=2,y=2,z=8 -o tall.vdb
 vam-optimize --preview --report tall.json tall.vdb >tall.txt
 holds "of a thin part, too, where the resin around it is large" "$(value tall.json voxel_mm) >= 0.2"

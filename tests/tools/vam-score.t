@@ -30,6 +30,7 @@ is "the verdict has the window of --surface" "$(json all.json pw)" "$(json perfe
 } >plates.off
 vam-slice plates.off --voxel 0.1 --stretch-z 1 -o plates.vdb 2>sliced
 ok "a slit that no voxel resolves" sh -c 'vam-score --grid target plates.vdb 2>scored >table'
+ok "is no print as designed" grep -q '^verdict  *will not print as designed: .*gaps too narrow for the voxels will be shut' table
 is "is warned of as in vam-slice" "$(sed 's/^vam-score/vam-slice/; s/plates.vdb/plates.off/; s/; they are not judged//' scored)" "$(cat sliced)"
 is "with its width" "$(grep -c 'gaps of 0.05 mm are too narrow .*; they are not judged$' scored)" 1
 
@@ -41,12 +42,21 @@ is "with its width" "$(grep -c 'gaps of 0.05 mm are too narrow .*; they are not 
   box 3 4 1 | awk 'NF == 4 { print; far = far $1 " " $2 + 8 " " $3 + 8 " " $4 + 8 "\n" } END { printf "%s", far }'
 } >wall.off
 vam-slice wall.off --voxel 0.2 --stretch-z 1 -o wall.vdb 2>sliced
-ok "a wall of which no voxel is wholly inside" grep -q 'wall.off: 2[0-9]* % of the part is in walls or gaps too thin for the voxels' sliced
+ok "a wall of which no voxel is wholly inside" grep -q 'wall.off: 2[0-9.]* % of the part is in walls or gaps too thin for the voxels' sliced
 ok "may print" sh -c 'vam-score --grid target wall.vdb | grep -q "^verdict  *may print: .*; walls and gaps too thin for the voxels are not judged: 2[0-9.]* % of the part; smaller voxels"'
 vam-score --grid target wall.vdb --require 'pw>0,unresolved_part<=0.02' >table 2>why
 is "can be required to be judged" "$?" 1
 ok "with its share" grep -q '^vam-score: unresolved_part = 0.2[0-9]*, but unresolved_part<=0.02 is required$' why
 vam-optimize --angles 30 --iterations 5 wall.vdb -o wall.exr --report wall.json 2>&1
+# A fin that straddles two voxels, none of which is half covered, and a slot that leaves three quarters of one free.
+{
+  printf 'OFF\n16 24 0\n'
+  box 4 4 1 | awk 'NR > 2 && NF == 3 { print $1, $2, $3 }'
+  box 0.1 4 1.5 | awk 'NR > 2 && NF == 3 { print $1, $2, $3 + 1 }'
+  box 4 4 1 | awk 'NF == 4 { print; far = far $1 " " $2 + 8 " " $3 + 8 " " $4 + 8 "\n" } END { printf "%s", far }'
+} >fin.off
+vam-slice fin.off --voxel 0.2 --stretch-z 1 --no-centre --place 0 -o fin.vdb 2>.log/fin
+ok "a wall that will be missing" sh -c 'vam-score --grid target fin.vdb | grep -q "^verdict  *will not print as designed: .*; [0-9.]* % of the part is in walls too thin for the voxels and will be missing"'
 json wall.json verdict >said
 ok "vam-optimize says the same" grep -q 'print.* not judged: 2[0-9.]* % of the part' said
 

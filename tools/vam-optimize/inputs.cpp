@@ -46,6 +46,10 @@ Inputs read(const Options& options) {
       in.tolerance.push_back(std::move(volume));
   }
   if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice writes one"};
+  if (options.demands.grey && in.target.front().units != "relative") {
+    throw Error{Fault::data, options.input + ": is in " + in.target.front().units +
+                                 ", but projections have relative doses; divide it by the dose that is to be 1"};
+  }
   if (!options.demands.grey) tool::warn_of_grey(in.target.front(), options.input);
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
   if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));

@@ -46,7 +46,7 @@ struct Level {
   Inputs own;            // none at the target's own resolution
   const Inputs* finest;  // the target's own
   Scene scene = {};
-  model::Unresolved unresolved = {};  // of the coarser ones, once it is asked for
+  model::Unresolved unresolved = {};  // of its own voxels, once it is asked for
 
   [[nodiscard]] const Inputs& in() const { return own.target.empty() ? *finest : own; }
   [[nodiscard]] double updates() const { return static_cast<double>(scene.grid.size()) * options.angles; }
@@ -69,6 +69,7 @@ bool can_be_coarser(const Level& level) {
 Level level_of(const model::Printer& printer, const Inputs& in, const Options& options) {
   std::vector<Level> levels;
   levels.push_back({1, printer, options, {}, &in, make_scene(in.target.front(), printer, options)});
+  levels.front().unresolved = tool::unresolved(in.target.front());
   while (levels.back().pixels < 4) {
     if (!can_be_coarser(levels.back())) break;
     levels.push_back(coarser(levels.back()));
@@ -76,7 +77,7 @@ Level level_of(const model::Printer& printer, const Inputs& in, const Options& o
   for (; levels.size() > 1; levels.pop_back()) {
     Level& level = levels.back();
     level.unresolved = tool::unresolved(level.own.target.front());
-    if (level.unresolved.share() <= model::much_unresolved || !is_quick(levels[levels.size() - 2])) break;
+    if (!level.unresolved.is_much() || !is_quick(levels[levels.size() - 2])) break;
   }
   return std::move(levels.back());
 }
@@ -122,6 +123,21 @@ std::string unseen(const Level& level) {
          ", most at z = " + mm(model::vertical_magnification(level.printer) * grid.z_mm(level.unresolved.slice));
 }
 
+/// Walls and gaps that the target's own voxels lose.
+std::vector<std::string> lost(const model::Unresolved& target) {
+  std::vector<std::string> doubts;
+  if (target.loses_walls()) {
+    doubts.push_back(format_number(100 * target.lost_share(), 3) +
+                     " % of the part is in walls too thin for the target's voxels and will be missing");
+  }
+  if (target.shuts_gaps()) doubts.emplace_back("gaps too narrow for the target's voxels will be shut");
+  if (target.is_much()) {
+    doubts.push_back(format_number(100 * target.share(), 3) +
+                     " % of the part are walls or gaps too thin for the target's voxels");
+  }
+  return doubts;
+}
+
 /// What is known of the print.
 struct Answer {
   const char* prints;  // yes, no, unsure
@@ -133,11 +149,12 @@ Answer unsure(const std::vector<std::string>& reasons) {
   return {"unsure", "may not print: " + join(reasons, "; "), reasons};
 }
 
-Answer answer_of(const Level& level, const model::DoseMetrics& doses, double least) {
+/// `target`: of its own voxels.
+Answer answer_of(const Level& level, const model::Unresolved& target, const model::DoseMetrics& doses, double least) {
   if (least >= 1) return {"no", "will not print, by any projections", {}};
   if (doses.pw < 0) return {"no", "will not print", {}};
-  std::vector<std::string> doubts;
-  if (level.unresolved.share() > model::much_unresolved) doubts.push_back(unseen(level));
+  std::vector<std::string> doubts = lost(target);
+  if (level.pixels > 1 && level.unresolved.is_much()) doubts.push_back(unseen(level));
   if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");
   return doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
 }
@@ -173,7 +190,7 @@ FromCoarser from_coarser(const Level& level) {
   return {least, start_of(std::move(found), coarse.scene, coarse.options, level.scene, level.options)};
 }
 
-Seen see(Level level) {
+Seen see(Level level, const model::Unresolved& target) {
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
   warn_of(level.scene, level.in().target.front(), level.options);
   const bool has_coarser = can_be_coarser(level);
@@ -183,7 +200,7 @@ Seen see(Level level) {
   optimize::require_light(outcome, io::input_name(level.options.input),
                           level.options.surface_margin_mm / level.in().grid().voxel_mm);
   const double least = outcome.certificate ? outcome.certificate->least : below.least;
-  Seen seen{answer_of(level, outcome.metrics, least), outcome.metrics, least};
+  Seen seen{answer_of(level, target, outcome.metrics, least), outcome.metrics, least};
   seen.place = place_of(outcome, level.scene);
   seen.plan = exposure_of(outcome.metrics, outcome.peak_intensity, level.printer, {}, level.options);
   seen.voxel_mm = level.scene.grid.voxel_mm;
@@ -239,7 +256,7 @@ Json report_of(const Seen& seen) {
 }  // namespace
 
 void preview(const model::Printer& printer, const Inputs& in, const Options& options) {
-  const Seen seen = see(level_of(printer, in, options));
+  const Seen seen = see(level_of(printer, in, options), tool::unresolved(in.target.front()));
   if (options.report != "-") io::write_text("-", table(seen));
   io::write_report(options.report, "vam-optimize-preview/1", report_of(seen));
 }

@@ -94,7 +94,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
       report.erase(key);
   } else {
     const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt,
-                                 fixed_threshold(options), tool::unresolved(target).share()};
+                                 fixed_threshold(options), tool::unresolved(target)};
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(

@@ -184,7 +184,7 @@ struct Coarse {
   [[nodiscard]] bool is_all_judged() const {
     constexpr double most_lost = 0.001;
     const double lost = unresolved().lost_walls.voxels + unresolved().lost_gaps.voxels;
-    return is_judged() && lost <= most_lost * unresolved().whole && unresolved().share() <= model::much_unresolved;
+    return is_judged() && lost <= most_lost * unresolved().whole && !unresolved().is_much();
   }
 };
 

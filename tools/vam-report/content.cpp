@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/printable.hpp"
 #include "base/progress.hpp"
+#include "grey_target.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/page.hpp"
@@ -34,6 +35,7 @@ std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printe
   const io::SparseVolume* dose = volumes.find("dose");
   const io::SparseVolume* target = volumes.find("target");
   if (dose == nullptr || target == nullptr) return std::nullopt;
+  tool::warn_of_grey(*target, target->name());
   score::ScoreOptions how;
   tool::settle_exposure(how, *dose, *target, printer);
   return Judged{how, tool::score_volumes(*dose, *target, how)};
@@ -41,9 +43,8 @@ std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printe
 
 std::string verdict(const Judged& judged) {
   const score::Verdict verdict = judged.score.verdict();
-  return "<p class=\"verdict " +
-         std::string(score::prints(verdict) && !score::is_unresolved(verdict) ? "good" : "bad") + "\">" +
-         page_text(score::words(verdict)) + "</p>\n";
+  return "<p class=\"verdict " + std::string(score::prints(verdict) && score::is_whole(verdict) ? "good" : "bad") +
+         "\">" + page_text(score::words(verdict)) + "</p>\n";
 }
 
 std::string images(const std::vector<std::string>& paths) {

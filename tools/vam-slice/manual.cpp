@@ -51,7 +51,8 @@ std::vector<std::string> limits() {
       "--insert-at, --insert-rotate and --insert-scale override this. An insert that misses the part, or overlaps it, "
       "causes a warning; --cut-insert subtracts it from the part with a clearance. A clearance below a voxel is in the "
       "coverage of the voxels, but they leave no room that stays free of light: where no voxel between insert and part "
-      "is three quarters free a warning states on which share of the lines between them (clearance_shut in the "
+      "is more than three quarters free a warning states on which share of the lines between them (clearance_shut in "
+      "the "
       "report); a clearance of two voxels is free wherever it lies. The report contains its size, its "
       "centre and the number of its voxels in contact with the part.",
       "Within the writable radius resin is lit from all stage angles, beyond it from some. A part that extends beyond "

@@ -36,7 +36,8 @@ void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Optio
   } else if (options.clearance_mm.value_or(0) > 0 && fit.shut_share() > most_shut) {
     warn(placed.subject + ": the clearance of " + format_number(*options.clearance_mm, 3) +
          " mm is too narrow for the voxels: on " + format_number(100 * fit.shut_share(), 3) +
-         " % of the lines from the insert to the part no voxel is three quarters free, and resin cures there; voxels "
+         " % of the lines from the insert to the part no voxel is more than three quarters free, and resin cures "
+         "there; voxels "
          "of " +
          format_number(0.5 * *options.clearance_mm, 2) + " mm resolve it");
   }

@@ -54,6 +54,10 @@ PackedArray::PackedArray(std::string_view bytes, const std::string& name, const 
     throw Error{Fault::data, file + ": trailing data after the end of the .npz archive, from byte " +
                                  std::to_string(bytes.size() - more) + " on; save it again with numpy.savez()"};
   }
+  if (const std::uint64_t more = bytes_before_zip(bytes); more > 0) {
+    throw Error{Fault::data, file + ": the .npz archive begins at byte " + std::to_string(more) +
+                                 " only; save it again with numpy.savez()"};
+  }
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, nullptr);
   if (source == nullptr) damaged(file);
   archive_.reset(zip_open_from_source(source, ZIP_RDONLY, nullptr));

@@ -91,6 +91,7 @@ struct VideoReader::State {
   av::Packet packet{av::api().av_packet_alloc()};
   std::int64_t announced = 0;  // frames; 0: not known
   std::int64_t packets = 0;
+  double end_s = 0;               // of the last one
   std::optional<VideoSeal> read;  // of the frames so far, where there is a seal
   bool held = false;              // to the seal
 
@@ -133,15 +134,27 @@ struct VideoReader::State {
     }
     if (status != AVERROR_EOF) check(status, "reading the video");
     if (status >= 0) check_packet();
-    if (status < 0 && announced > 0 && packets != announced) {
+    if (status < 0 && format.seal && announced > 0 && packets != announced) {
       throw Error{Fault::data, path + ": the video has " + std::to_string(packets) + " of " +
                                    std::to_string(announced) + " frames; write it again"};
     }
+    if (status < 0 && !format.seal) require_end();
     return status >= 0;
+  }
+
+  // Of other programs' videos, which may begin later than at 0 and leave frames out.
+  void require_end() const {
+    const auto missing = std::llround((static_cast<double>(container->duration) / AV_TIME_BASE - end_s) * format.fps);
+    if (announced == 0 || missing < 1) return;
+    throw Error{Fault::data, path + ": the video ends after " + std::to_string(packets) + " frames, " +
+                                 std::to_string(missing) + " before the end that it states; write it again"};
   }
 
   void check_packet() {
     ++packets;
+    const double tick_s = av_q2d(container->streams[stream]->time_base);
+    const double frame_s = std::max(1 / format.fps, static_cast<double>(packet->duration) * tick_s);
+    if (packet->pts != AV_NOPTS_VALUE) end_s = std::max(end_s, static_cast<double>(packet->pts) * tick_s + frame_s);
     if (codec->codec_id != AV_CODEC_ID_FFV1 || codec->extradata_size == 0) return;  // before version 3: no slices
     const auto size = static_cast<std::size_t>(packet->size);
     SliceState judged = judged_slices(packet->data, size, true);

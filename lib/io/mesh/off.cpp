@@ -21,13 +21,15 @@ class NumberLines {
   /// The numbers of the next line that has any, without its comment; none at the end, or where it has something else.
   const std::vector<double>& next() {
     numbers_.clear();
-    for (bool good = true; good && numbers_.empty() && !rest_.empty();) {
+    for (good_ = true; good_ && numbers_.empty() && !rest_.empty();) {
       const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-      good = take(rest_.substr(0, end));
+      good_ = take(rest_.substr(0, end));
       rest_.remove_prefix(std::min(end + 1, rest_.size()));
     }
     return numbers_;
   }
+  /// Nothing is left, and there was nothing else.
+  [[nodiscard]] bool ended() const { return good_ && numbers_.empty() && rest_.empty(); }
 
  private:
   bool take(std::string_view line) {
@@ -49,6 +51,7 @@ class NumberLines {
 
   std::string_view rest_;
   std::vector<double> numbers_;
+  bool good_ = true;
 };
 
 bool is_whole(double number, double most) { return number >= 0 && number <= most && std::floor(number) == number; }
@@ -95,6 +98,7 @@ PolygonSoup parse_off(const std::string& bytes) {
   std::uint64_t found = faces;
   for (std::vector<int> face; take_face(lines.next(), face);) ++found;
   require_all_read(faces, found);
+  if (!lines.ended()) throw MeshProblem{"trailing data after the last face; save it again"};
   return soup;
 }
 

@@ -35,6 +35,8 @@ ZipArchive::ZipArchive(std::string_view bytes) : left_(most_unpacked + most_rati
     throw MeshProblem{"trailing data after the end of the 3MF archive, from byte " +
                       std::to_string(bytes.size() - more) + " on; save it again"};
   }
+  if (const std::uint64_t more = bytes_before_zip(bytes); more > 0)
+    throw MeshProblem{"the 3MF archive begins at byte " + std::to_string(more) + " only; save it again"};
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);

@@ -51,7 +51,7 @@ class InsertFit {
   /// They share room: more than a thousandth of the insert, to which the coverage of curved shapes is exact.
   [[nodiscard]] bool overlap() const { return shared_ > 1e-3 * insert_; }
   /// Of the lines along x, y and z that lead from the insert to the part within reach: the share on which no voxel is
-  /// three quarters free, so that the room between them is printed shut.
+  /// more than three quarters free, so that the room between them is printed shut.
   [[nodiscard]] double shut_share() const {
     return lines_ > 0 ? static_cast<double>(shut_) / static_cast<double>(lines_) : 0;
   }

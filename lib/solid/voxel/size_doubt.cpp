@@ -11,11 +11,6 @@ namespace vam::solid {
 
 namespace {
 
-// Of gaps, in voxels: tips of grooves and corners between struts are less.
-constexpr double least_gap = 1;
-constexpr double least_a_slice = 0.1;
-constexpr float least_width = 0.05F;
-
 constexpr std::pair<const char*, double> units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"um", 1e-3}};
 
 /// "; is its unit m?"
@@ -39,9 +34,8 @@ std::string heights(int first, int end, const model::Grid& grid, double stretch_
 std::string wall_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
                        double stretch_z) {
   const model::LostWalls& lost = unresolved.lost_walls;
-  const double share = lost.voxels / unresolved.whole;
-  if (share <= 1e-3) return "";
-  return subject + ": " + format_number(100 * share, 2) +
+  if (!unresolved.loses_walls()) return "";
+  return subject + ": " + format_number(100 * unresolved.lost_share(), 2) +
          " % of the part is in walls too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is half covered, and they will not be printed; voxels of " +
          format_number(grid.voxel_mm * static_cast<double>(lost.most), 2) + " mm or thicker walls may help";
@@ -49,7 +43,7 @@ std::string wall_doubt(const std::string& subject, const model::Unresolved& unre
 
 std::string thin_doubt(const std::string& subject, const model::Unresolved& thin, const model::Grid& grid,
                        double stretch_z) {
-  return subject + ": " + format_number(100 * thin.share(), 2) +
+  return subject + ": " + format_number(100 * thin.share(), 3) +
          " % of the part is in walls or gaps too thin for the voxels: " +
          heights(thin.first, thin.end, grid, stretch_z) +
          " no voxel of theirs is wholly inside or outside, and whether they print is not judged; smaller voxels "
@@ -88,12 +82,11 @@ std::string finer_unit(double largest_mm, const Writable& room) {
 std::string gap_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
                       double stretch_z) {
   const model::LostGaps& lost = unresolved.lost_gaps;
-  if (lost.voxels < least_gap || lost.voxels < least_a_slice * (lost.end - lost.first) || lost.widest < least_width)
-    return "";
+  if (!unresolved.shuts_gaps()) return "";
   const double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
   return subject + ": gaps of " + format_number(gap_mm, 2) +
          " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
-         " no voxel of theirs is three quarters free, and they will be printed shut; voxels of " +
+         " no voxel of theirs is more than three quarters free, and they will be printed shut; voxels of " +
          format_number(0.5 * gap_mm, 2) + " mm resolve them";
 }
 
@@ -103,8 +96,7 @@ std::vector<std::string> resolution_doubts(const std::string& subject, const mod
   for (std::string doubt :
        {wall_doubt(subject, unresolved, grid, stretch_z), gap_doubt(subject, unresolved, grid, stretch_z)})
     if (!doubt.empty()) doubts.push_back(std::move(doubt));
-  if (doubts.empty() && unresolved.share() > model::much_unresolved)
-    doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
+  if (doubts.empty() && unresolved.is_much()) doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
   return doubts;
 }
 

@@ -317,6 +317,9 @@ TEST_CASE("faces beyond the count of a header are refused with both numbers") {
   const std::string zip = box_3mf("millimeter", "");
   CHECK(has(refusal(folder, zip + "x"), "trailing data after the end of the 3MF archive, from byte " +
                                             std::to_string(zip.size()) + " on; save it again"));
+  CHECK(has(refusal(folder, zip + zip), "the 3MF archive begins at byte " + std::to_string(zip.size()) + " only"));
+  for (const std::string& junk : {box_off(), std::string("end\n"), std::string("\0", 1)})
+    CHECK(has(refusal(folder, box_off() + junk), "trailing data after the last face; save it again"));
   std::string minus = box_ply();
   minus.replace(minus.find("vertex 8"), 8, "vertex -1");
   CHECK(has(refusal(folder, minus), "the PLY header states -1 vertex elements"));

@@ -58,11 +58,22 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
 // A dose that is the same everywhere has it: what prints the part prints the void, too.
 TEST_CASE("a window of width 0 does not print, and report and message agree") {
   Verdict thin = verdict();
-  thin.unresolved = 0.019;
+  thin.unresolved.whole = 1000;
+  thin.unresolved.part = 19;
   CHECK(words(thin) == words(verdict()));
-  thin.unresolved = 0.28;
+  thin.unresolved.gaps = 261;
   CHECK(words(thin).starts_with("may print: "));
   CHECK(words(thin).find("not judged: 28 % of the part; smaller voxels resolve them") != std::string::npos);
+  thin.unresolved.lost_walls.voxels = 14;
+  CHECK(words(thin).starts_with("will not print as designed: "));
+  CHECK(words(thin).find("; 1.4 % of the part is in walls too thin for the voxels and will be missing") !=
+        std::string::npos);
+  CHECK(!is_whole(thin));
+  Verdict slit = verdict();
+  slit.unresolved.lost_gaps = {40, 0.5F, 3, 9};
+  CHECK(words(slit).starts_with("will not print as designed: "));
+  CHECK(words(slit).find("gaps too narrow for the voxels will be shut") != std::string::npos);
+  CHECK(is_whole(verdict()));
   thin.whole.pw = -0.1;
   CHECK(words(thin).starts_with("will not print: "));
   Verdict edge = verdict();

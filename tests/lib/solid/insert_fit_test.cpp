@@ -33,7 +33,7 @@ TEST_CASE("an insert's slices are read once each, and grow by the clearance alon
   CHECK(at(6, 4) == 2.5 - std::sqrt(5.0));
 }
 
-TEST_CASE("a gap is shut on the lines on which no voxel is three quarters free") {
+TEST_CASE("a gap is shut on the lines on which no voxel is more than three quarters free") {
   const model::Grid grid = model::centred_grid(9, 9, 3, 0.1);
   const auto shut =
       [&](float in_gap) {  // a column in the middle, the part two voxels away on one side, at the other far
