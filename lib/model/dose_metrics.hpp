@@ -19,6 +19,8 @@ inline constexpr float coverage_rounding = 1e-3F;
 
 /// A voxel is of a body that covers at least half of it.
 [[nodiscard]] constexpr bool half_covered(float coverage) { return coverage >= 0.5F; }
+/// Coverage whose isosurface has voxels inside that are just half covered.
+inline constexpr double half_surface = 0.5 - 1e-6;
 
 [[nodiscard]] constexpr Label label_of(float coverage) {
   if (coverage >= 1.0F - coverage_rounding) return Label::part;

@@ -19,6 +19,7 @@ bool holds_threshold(const Verdict& verdict) {
 
 std::string answer(const Verdict& verdict) {
   const model::Unresolved& un = verdict.unresolved;
+  if (verdict.whole.part == 0) return "not judged, as no voxel is wholly inside the part";
   if (!prints(verdict)) return "will not print";
   if (un.loses_walls() || un.shuts_gaps()) return "will not print as designed";
   return un.is_much() ? "may print" : "will print";

@@ -8,6 +8,7 @@
 
 #include "base/text.hpp"
 #include "facts.hpp"
+#include "model/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "plot/page.hpp"
@@ -86,7 +87,7 @@ double colour_limit(std::vector<double> values, double least) {
 std::vector<Layer> layers_of(const io::SparseVolume& target, const std::optional<PrintedDose>& print, int by) {
   std::vector<Layer> layers(1);
   layers[0].name = "design";
-  layers[0].mesh = solid::isosurface(averaged(target, by), 0.5);
+  layers[0].mesh = solid::isosurface(averaged(target, by), model::half_surface);
   if (!print || layers[0].mesh.triangles.empty()) return layers;
   const model::Volume dose = averaged(*print->dose, by);
   Layer& design = layers[0];

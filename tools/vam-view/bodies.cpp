@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
+#include "model/dose_metrics.hpp"
 #include "plot/render.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/signed_distance.hpp"
@@ -59,7 +60,7 @@ plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, cons
 
 plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
                                const plot::ViewOptions& view) {
-  plot::Body part{surface_of(target, 0.5, target), {}};
+  plot::Body part{surface_of(target, model::half_surface, target), {}};
   plot::Body print{surface_of(dose, threshold, target), {}};
   if (part.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
   if (print.mesh.triangles.empty()) {

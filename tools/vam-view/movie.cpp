@@ -12,6 +12,7 @@
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "io/image/movie.hpp"
+#include "model/dose_metrics.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/render.hpp"
 #include "solid/mesh/geometry.hpp"
@@ -68,7 +69,11 @@ class Growth {
  public:
   Growth(const io::SparseVolume& dose, const io::SparseVolume& target, const Exposure& exposure,
          const plot::ViewOptions& view)
-      : dose_(dose), target_(target), exposure_(exposure), view_(view), part_{surface_of(target, 0.5, target), {}} {
+      : dose_(dose),
+        target_(target),
+        exposure_(exposure),
+        view_(view),
+        part_{surface_of(target, model::half_surface, target), {}} {
     if (part_.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
     const plot::Body print = print_after(1);
     if (print.mesh.triangles.empty()) {

@@ -69,6 +69,9 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   CHECK(words(thin).find("; 1.4 % of the part is in walls too thin for the voxels and will be missing") !=
         std::string::npos);
   CHECK(!is_whole(thin));
+  Verdict none = verdict();
+  none.whole.part = 0;
+  CHECK(words(none).starts_with("not judged, as no voxel is wholly inside the part: "));
   Verdict slit = verdict();
   slit.unresolved.lost_gaps = {40, 0.5F, 3, 9};
   CHECK(words(slit).starts_with("will not print as designed: "));
