@@ -38,7 +38,8 @@ cli::Manual manual() {
        "Of the run folder of a print every file is verified against its SHA256SUMS; files that were changed, that "
        "are lost or that are not in the list are named (all but resumed.json, which a resumption adds). Of a folder of "
        "vam-capture every line of the manifest is verified against the one above, and every image "
-       "against its line; images that are lost, exchanged or without a line are named.",
+       "against its line; images that are lost, exchanged or without a line are named; its manifest.jsonl stands for "
+       "the folder.",
        "For each file vam-check prints whether it is sealed, and the commands that produced it: for each command "
        "the seal of the file that it wrote, the command line, and the name of that file if it is among those "
        "checked. A dash replaces the seal of a file that was not sealed or came through a pipe.",

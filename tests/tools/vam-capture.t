@@ -162,6 +162,21 @@ again '000003.png: is not the image'
 is 'the other is named, too' "$(vam-check bad 2>&1 | grep -c 'bad/000004.png: is not the image') $(vam-check bad 2>&1 | grep -c '^bad: .*, damaged$')" '1 1'
 spoil; cp again/000002.png bad/000003.png; refused '000003.png: is not the image'
 spoil; cp bad/000003.png bad/000044.png; refused '000044.png: has no line in manifest.jsonl; restore the manifest, or remove'
+again '000044.png: has no line in manifest.jsonl; restore the manifest, or remove'
+cp bad/000003.png bad/000099.png; again '000044.png: has no line in manifest.jsonl, as 1 more images'
+for more in '{"frame":44,"file"' '\000\000\000\000'; do
+  spoil; printf "$more" >>bad/manifest.jsonl; refused 'manifest.jsonl: has [0-9]+ bytes of no whole line behind the end of the capture; remove them'
+done
+$take --speed 90 --view-step 9 --turns 1.1 -o bad/ 2>said
+is 'a capture says that it cuts them off' "$? $(grep -c 'warning: bad/manifest.jsonl: 4 bytes of no whole line' said)" '0 1'
+same 'and does so' bad/manifest.jsonl turn/manifest.jsonl
+spoil; : >bad/manifest.jsonl; touch -d '2001-01-01' bad/*.png
+again 'manifest.jsonl: is empty; restore the manifest, or capture again into another folder'
+is 'no image was overwritten' "$(find bad -name '*.png' -newermt 2002-01-01) $(wc -c <bad/manifest.jsonl)" ' 0'
+mkdir begun; : >begun/manifest.jsonl
+quiet 'without images it is a capture that was killed at once' $take --frames 2 -o begun/
+ok 'a manifest stands for its folder' sh -c 'vam-check turn/manifest.jsonl | grep -qx "turn/manifest.jsonl: capture folder of 44 images, sealed" && cd turn && vam-check manifest.jsonl'
+spoil; cp again/000002.png bad/000003.png; fails 65 'bad/000003.png: is not the image that was captured' vam-check bad/manifest.jsonl
 spoil; rm bad/000003.png
 fails 66 'bad/000003.png: is gone, but manifest.jsonl lists it; restore it, or repeat vam-capture' vam-ost bad -o no.vdb
 fails 65 'bad/000003.png: is gone' vam-check --fast bad

@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "base/fingerprint.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/system_error.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/capture_manifest.hpp"
@@ -74,7 +75,8 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
   }
   const std::string path = manifest_path(folder);
   const bool there = has_regular_file(path);
-  const bool again = there && fs::file_size(path) > 0;
+  // Without images an empty one is that of a capture that was killed before its first line.
+  const bool again = there && (fs::file_size(path) > 0 || !images_of(folder).empty());
   if (!again && !fs::is_empty(folder) && !there) {
     throw Error{Fault::no_output, folder + ": contains files of another kind; name another folder"};
   }
@@ -86,6 +88,10 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
                   folder + ": was captured with another setting (" + other + "); give another folder"};
     }
     require_images();
+    if (manifest_.ended && manifest_.cut_bytes > 0) {
+      warn(path + ": " + std::to_string(manifest_.cut_bytes) +
+           " bytes of no whole line behind the end of the capture are cut off");
+    }
     // What was being written when the capture before ended is no line.
     const std::string text = read_all(path);
     fs::resize_file(path, text.rfind('\n') + 1);
@@ -115,6 +121,9 @@ void CaptureFolder::require_images() {
       (void)read_captured(folder_, record);
     }
   }
+  unlisted_ = unlisted(manifest_, images_of(folder_));
+  // A capture that was killed between the image and its line leaves one, which this one takes again.
+  if (unlisted_.size() > 1) throw Error{Fault::data, without_line(folder_, unlisted_)};
 }
 
 bool CaptureFolder::has(long place) const {
@@ -139,6 +148,7 @@ void CaptureFolder::keep(CaptureRecord record, const GreyImage& levels) {
   write_line(to_line(record));
   manifest_.frames[record.place] = record;
   gone_.erase(record.place);
+  unlisted_.erase(name);
 }
 
 void CaptureFolder::dropped(long first, long last) {
@@ -147,9 +157,11 @@ void CaptureFolder::dropped(long first, long last) {
 }
 
 void CaptureFolder::end() {
-  if (manifest_.ended || !manifest_.sealed) return;
-  write_line({{"frames", manifest_.frames.size()}, {"dropped_frames", manifest_.dropped}});
-  manifest_.ended = true;
+  if (!manifest_.ended && manifest_.sealed) {
+    write_line({{"frames", manifest_.frames.size()}, {"dropped_frames", manifest_.dropped}});
+    manifest_.ended = true;
+  }
+  if (!unlisted_.empty()) throw Error{Fault::data, without_line(folder_, unlisted_)};
 }
 
 void CaptureFolder::write_line(Json line) {

@@ -34,8 +34,9 @@ struct CaptureManifest {
   std::map<long, CaptureRecord> frames;  // the last line of each place counts, unless it is worse than one before
   long dropped = 0;
   bool sealed = false;
-  bool ended = false;  // its last line is that of the end of a capture
-  Digest seal;         // of the last line
+  bool ended = false;         // its last line is that of the end of a capture
+  std::size_t cut_bytes = 0;  // behind the last whole line
+  Digest seal;                // of the last line
 };
 
 /// Is there a manifest in this folder?
@@ -44,8 +45,9 @@ struct CaptureManifest {
 /// no_input, data.
 [[nodiscard]] CaptureManifest read_manifest(const std::string& folder);
 
-/// Of a folder whose frames are to be read: warns where a sealed manifest has no end, and refuses images without a line
-/// but the one that a capture which was killed may leave. Throws as read_manifest does.
+/// Of a folder whose frames are to be read: warns where a sealed manifest has no end, and refuses what stands behind
+/// that end, and images without a line but the one that a capture which was killed may leave. Throws as read_manifest
+/// does.
 [[nodiscard]] CaptureManifest open_capture(const std::string& folder);
 
 /// The image of a frame. Throws Fault::data where it is not the one that was captured, and as read_image does.
@@ -62,7 +64,7 @@ class CaptureFolder {
  public:
   /// Makes the folder, or resumes an existing one, whose images are held to the manifest: those that are gone are
   /// missing frames. Throws Fault::no_output when its head differs ("was taken with exposure_us 20000, not 10000"), or
-  /// it holds other things; Fault::data where images or manifest are not what was captured.
+  /// it holds other things; Fault::data where images or manifest are not what was captured, or the manifest is empty.
   CaptureFolder(const std::string& folder, const Json& head);
   ~CaptureFolder();
   CaptureFolder(const CaptureFolder&) = delete;
@@ -73,7 +75,8 @@ class CaptureFolder {
   /// Of record.levels whatever it says: the fingerprint is that of the image. Throws Fault::io.
   void keep(CaptureRecord record, const GreyImage& levels);
   void dropped(long first, long last);
-  /// Writes that the capture has ended, if that is not what the last line says. Throws Fault::io.
+  /// Writes that the capture has ended, if that is not what the last line says. Throws Fault::io, and Fault::data where
+  /// an image that was there before has no line still.
   void end();
 
  private:
@@ -81,7 +84,8 @@ class CaptureFolder {
   void write_line(Json line);
   std::string folder_;
   CaptureManifest manifest_;
-  std::set<long> gone_;  // places of frames whose images are
+  std::set<long> gone_;             // places of frames whose images are
+  std::set<std::string> unlisted_;  // images without a line
   int directory_ = -1;
   int log_ = -1;
 };

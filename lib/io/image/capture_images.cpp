@@ -25,6 +25,21 @@ std::string image_path(const std::string& folder, long place) {
   return (fs::path(folder) / capture_file_name(place)).string();
 }
 
+std::string no_end(const std::string& folder) {
+  return manifest_path(folder) +
+         ": does not end as that of a capture that ended: it was killed, or the last lines are gone; repeat "
+         "vam-capture, which completes it, or restore the manifest";
+}
+
+// Behind the line of the end there is nothing but what a further capture writes.
+std::string more_bytes(const std::string& folder, const CaptureManifest& manifest) {
+  return manifest_path(folder) + ": has " + std::to_string(manifest.cut_bytes) +
+         " bytes of no whole line behind the end of the capture; remove them, or repeat vam-capture, which cuts them "
+         "off";
+}
+
+}  // namespace
+
 std::set<std::string> images_of(const std::string& folder) {
   std::error_code problem;
   std::set<std::string> names;
@@ -35,26 +50,16 @@ std::set<std::string> images_of(const std::string& folder) {
   return names;
 }
 
-// Of the images that were there before the manifest was read: a capture may be going on.
-std::vector<std::string> unlisted(const CaptureManifest& manifest, std::set<std::string> images) {
+std::set<std::string> unlisted(const CaptureManifest& manifest, std::set<std::string> images) {
   for (const auto& [place, record] : manifest.frames) images.erase(capture_file_name(place));
-  return {images.begin(), images.end()};
+  return images;
 }
 
-// One is what a capture leaves that was killed between the image and its line.
-std::string without_line(const std::string& folder, const std::vector<std::string>& names) {
-  return (fs::path(folder) / names.front()).string() + ": has no line in manifest.jsonl" +
+std::string without_line(const std::string& folder, const std::set<std::string>& names) {
+  return (fs::path(folder) / *names.begin()).string() + ": has no line in manifest.jsonl" +
          (names.size() > 1 ? ", as " + std::to_string(names.size() - 1) + " more images" : "") +
          "; restore the manifest, or remove what does not belong to the capture";
 }
-
-std::string no_end(const std::string& folder) {
-  return manifest_path(folder) +
-         ": does not end as that of a capture that ended: it was killed, or the last lines are gone; repeat "
-         "vam-capture, which completes it, or restore the manifest";
-}
-
-}  // namespace
 
 std::string capture_file_name(long place) {
   std::array<char, 32> name{};
@@ -84,11 +89,13 @@ void require_captured(const std::string& path, const CaptureRecord& record, cons
 }
 
 CaptureManifest open_capture(const std::string& folder) {
-  const std::set<std::string> images = images_of(folder);
+  const std::set<std::string> images = images_of(folder);  // before the manifest: a capture may be going on
   CaptureManifest manifest = read_manifest(folder);
-  const std::vector<std::string> more = unlisted(manifest, images);
+  const std::set<std::string> more = unlisted(manifest, images);
+  // One is what a capture leaves that was killed between the image and its line.
   const std::size_t allowed = manifest.sealed && manifest.ended ? 0 : 1;
   if (more.size() > allowed) throw Error{Fault::data, without_line(folder, more)};
+  if (manifest.ended && manifest.cut_bytes > 0) throw Error{Fault::data, more_bytes(folder, manifest)};
   if (manifest.sealed && !manifest.ended) warn(no_end(folder));
   return manifest;
 }
@@ -106,6 +113,7 @@ std::vector<std::string> capture_damage(const std::string& folder, const Capture
   if (const auto more = unlisted(manifest, images_of(folder)); !more.empty())
     damage.push_back(without_line(folder, more));
   if (manifest.sealed && !manifest.ended) damage.push_back(no_end(folder));
+  if (manifest.ended && manifest.cut_bytes > 0) damage.push_back(more_bytes(folder, manifest));
   return damage;
 }
 

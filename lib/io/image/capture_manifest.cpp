@@ -144,10 +144,14 @@ CaptureManifest read_manifest(const std::string& folder) {
   const std::string text = read_all(path, Content::text, most_bytes);
   CaptureManifest manifest;
   long number = 0;
-  for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+  std::size_t begin = 0;
+  for (std::size_t end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     add_line(manifest, text.substr(begin, end - begin), path + ": line " + std::to_string(++number));
   }
-  if (manifest.head.empty()) throw Error{Fault::data, path + ": is empty; remove the folder and begin again"};
+  manifest.cut_bytes = text.size() - begin;
+  if (manifest.head.empty()) {
+    throw Error{Fault::data, path + ": is empty; restore the manifest, or capture again into another folder"};
+  }
   return manifest;
 }
 

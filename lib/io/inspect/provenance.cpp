@@ -83,11 +83,22 @@ std::vector<ProvenanceEntry> inspect_folder(const std::string& path, bool fast) 
   return is_capture_folder(path) ? inspect_capture(path, fast) : inspect_images(path, FileType::images, fast);
 }
 
-std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
+// The manifest of a capture stands for its folder: it says nothing without the images.
+bool is_manifest(const std::string& path, const std::string& text) {
+  if (std::filesystem::path(path).filename() != "manifest.jsonl") return false;
+  const Json head = parse_json(text.substr(0, text.find('\n')));
+  return head.is_object() && head.value("schema", Json()) == "vam-capture/1";
+}
+
+std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
   const std::string name = input_name(path);
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
+  if (is_manifest(path, text)) {
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return inspect_capture(folder.empty() ? "." : folder, fast);
+  }
   if (const Json json = parse_json(text, Keys::distinct); json.is_object()) {
     ProvenanceEntry finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
@@ -116,7 +127,7 @@ std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast) {
         continue;
       throw Error{Fault::data, path + ": is damaged: does not begin as a file " + ending + " does"};
     }
-    return inspect_text(path);
+    return inspect_text(path, fast);
   }
   switch (*type) {
     case FileType::volume:
