@@ -96,6 +96,35 @@ for spoiling in ': >part/events.jsonl' 'rm part/events.jsonl' 'sed -i "/\"end\"/
   is "without the list: $spoiling" "$? $(grep -c '^ended: done  turn 3.00 of 3 ' said) $(grep -c 'warning: part/events.jsonl: does not tell of the end that summary.json states' err)" '0 1 1'
 done
 
+# The light that was logged is held to the summary, with the list and without, in all that counts it.
+whole=$(json run/summary.json reached.lit_flips)
+for cut in "head -n 200" "cat" "grep -v '\"frame\":7,'"; do
+  spoil; rm part/SHA256SUMS; eval "$cut run/flips.jsonl" >part/flips.jsonl
+  lit=$(grep -c '"frame":[0-9]' part/flips.jsonl)
+  if [ "$lit" = "$whole" ]; then ok 'an unchanged log is read' vam-status part; continue; fi
+  for tool in 'vam-status part' 'timeout 20 vam-status --watch part' 'vam-dose frames.exr --shown part -o x.vdb'; do
+    fails 65 "part/flips.jsonl: has $lit lit flips, but summary.json states $whole; it was cut or changed; restore it" $tool
+  done
+done
+rm part/flips.jsonl; fails 65 "part/flips.jsonl: has 0 lit flips, but summary.json states $whole" vam-status part
+for spoiling in 'echo garbage >part/SHA256SUMS' ': >part/SHA256SUMS' 'rm part/angles.jsonl' 'rm part/summary.json' 'sed -i 2d part/flips.jsonl' 'sed -i /printer.toml/d part/SHA256SUMS'; do
+  spoil; eval "$spoiling"
+  vam-status part >said 2>err; status=$?
+  fails 65 'part/(SHA256SUMS: (line 1: is not a hash|is empty|has no hash of printer.toml)|[a-z.]*: (is gone|changed after))' vam-dose frames.exr --shown part -o x.vdb
+  is "vam-dose refuses what vam-status does: $spoiling" "$status $(sed 's/^vam-dose/vam-status/' .log/err)" "65 $(cat err)"
+done
+
+# A print whose end is not in the logs, and that nobody prints: it is over, whatever the times of its files say.
+lost_end() { spoil; rm part/SHA256SUMS part/summary.json; sed -i '/"event":"end"/d' part/events.jsonl; }
+lost_end; touch -d '1 day' part/*.jsonl
+is 'at the planned end' "$(timeout 20 vam-status part --watch | sed 's/  angle .*//')" 'end not logged  turn 3.00 of 3'
+is 'no time is left' "$(vam-status part | grep -c left)" 0
+lost_end; exec 8<part/events.jsonl; flock 8  # as vam-print does
+is 'while it is held it goes on' "$(vam-status part | sed 's/  angle .*  / | /')" 'printing  turn 3.00 of 3 | 0:00 left'
+exec 8<&-
+lost_end; rm part/events.jsonl; touch -d '1 hour ago' part/*
+is 'without events' "$(timeout 20 vam-status part --watch | sed 's/  angle .*//;s/for [0-9]* s/for N s/')" 'no log entry for N s; end not logged  turn 3.00 of unknown'
+
 # Folders of prints that have just begun, or were killed at once: logs that are missing, empty or cut.
 without() { rm -rf part; cp -r run part; rm -f part/SHA256SUMS part/summary.json; for f; do : >part/$f.jsonl; done; }
 line_of() { vam-status part 2>&1 | sed 's/  angle .* deg  / | /;s/for [0-9]* s/for N s/'; }

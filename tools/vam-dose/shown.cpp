@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <set>
 
@@ -13,6 +12,7 @@
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
+#include "io/settings/run_sums.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::dose_tool {
@@ -35,27 +35,12 @@ void require_distinct(const std::vector<std::string>& runs) {
   }
 }
 
-// A print that has ended has the hashes of its files in SHA256SUMS, one "HASH  ./NAME" a line: what was edited since
-// states another exposure than was delivered.
+// What was edited since the print ended states another exposure than was delivered; a log alone may lie anywhere.
 void require_unchanged(const std::string& run) {
-  const fs::path folder = log_of(run).parent_path();
-  const std::string list = (folder / "SHA256SUMS").string();
-  if (!fs::exists(list)) return;  // of a print that was killed
-  std::set<std::string> unlisted{"events.jsonl", "flips.jsonl", "printer.toml"};
-  std::ifstream sums(list);
-  constexpr std::size_t digits = 64;
-  for (std::string line; std::getline(sums, line);) {
-    if (line.size() < digits + 4) continue;
-    const std::string name = line.substr(digits + 4);
-    if (unlisted.erase(name) == 0) continue;
-    const std::string file = (folder / name).string();
-    if (io::sha256_of(file) == line.substr(0, digits)) continue;
-    throw Error{Fault::data,
-                file + ": was changed after the print (its hash is not that in SHA256SUMS); restore the original file"};
-  }
-  if (unlisted.empty() || !fs::is_directory(run)) return;  // a log alone may lie anywhere
-  throw Error{Fault::data, list + ": has no hash of " + *unlisted.begin() +
-                               "; it was cut or changed; restore it, or delete it to use the logs unverified"};
+  const std::string folder = log_of(run).parent_path().string();
+  if (!fs::is_directory(run) && !(io::has_run_sums(folder) && io::read_run_sums(folder).contains("events.jsonl")))
+    return;
+  io::require_run_logs(fs::is_directory(run) ? run : folder);
 }
 
 // The settings that a run froze; empty: it is a log alone.

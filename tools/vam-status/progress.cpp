@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -51,29 +52,17 @@ bool is_locked(const std::string& file) {
   return locked;
 }
 
+// To the planned end; infinite where it is not known or light has not begun.
+double left_s(const PrintProgress& p, double speed_deg_s) {
+  if (p.blanks == 0 || !(p.turns > 0) || !(speed_deg_s > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, 360 * p.turns - p.angle_deg) / speed_deg_s;
+}
+
 // vam-print writes these before it is armed; a printer file with more beside it is a user's own.
 bool about_to_be_armed(const RunFolder& run) {
   if (io::has_regular_file(run.file("calibration.json"))) return true;
   const std::string settings = run.file("printer.toml");
   return io::has_regular_file(settings) && io::require_text_seal(io::read_all(settings), settings);
-}
-
-// The logs of a print that has ended are what they were at its end; other files need not be read for a line.
-void require_logs(const std::string& folder) {
-  if (!io::has_run_sums(folder)) return;
-  const io::RunSums sums = io::read_run_sums(folder);
-  if (!sums.contains("events.jsonl")) {
-    throw Error{Fault::data, folder +
-                                 "/SHA256SUMS: has no hash of events.jsonl; it was cut or changed; restore it, or "
-                                 "delete it to use the logs unverified"};
-  }
-  for (const auto& file : sums) {
-    const fs::path name(file.first);
-    const fs::path ending = name.extension();
-    const bool is_log = ending == ".jsonl" || ending == ".json" || ending == ".toml";
-    if (!is_log || (name.has_parent_path() && name.filename() != "manifest.jsonl")) continue;
-    if (const std::string problem = io::sum_problem(folder, file); !problem.empty()) throw Error{Fault::data, problem};
-  }
 }
 
 }  // namespace
@@ -82,7 +71,7 @@ RunFolder::RunFolder(const std::string& path) : path_(path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored))
     throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
-  require_logs(path);
+  io::require_run_logs(path);
   if (!io::has_regular_file(file("events.jsonl")) && !about_to_be_armed(*this)) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
@@ -109,6 +98,7 @@ void RunFolder::read() {
   read_events();
   read_angle();
   read_flips();
+  look_for_end();
   read_records();
   each_line(file("ost.jsonl"), true, [&](const Json& line) {
     if (line.contains("missing_percent")) progress_.missing_percent = number_at(line, "missing_percent", 0);
@@ -117,8 +107,10 @@ void RunFolder::read() {
 
 void RunFolder::read_events() {
   progress_.silent_s = 1e9;
-  const bool armed = io::has_regular_file(file("events.jsonl"));  // before, there are only the settings
-  for (const char* name : {armed ? "events.jsonl" : "printer.toml", armed ? "angles.jsonl" : "calibration.json"}) {
+  const bool armed = io::has_regular_file(file("events.jsonl"));                  // before, there are only the settings
+  held_ = armed ? std::optional(is_locked(file("events.jsonl"))) : std::nullopt;  // before the end is looked for
+  for (const char* name :
+       {armed ? "events.jsonl" : "printer.toml", armed ? "flips.jsonl" : "calibration.json", "angles.jsonl"}) {
     std::error_code problem;
     const auto written = fs::last_write_time(file(name), problem);
     if (problem) continue;
@@ -135,7 +127,6 @@ void RunFolder::read_events() {
     }
   });
   if (!progress_.outcome) read_summary();
-  progress_.abandoned = !progress_.outcome && progress_.silent_s > silence_s && !is_locked(file("events.jsonl"));
   progress_.simulated.clear();
   const auto look = [&](const char* log, const char* event, const char* what) {
     bool simulated = false;
@@ -172,11 +163,13 @@ void RunFolder::read_angle() {
 
 void RunFolder::read_flips() {
   if (progress_.turns > 0 && settled_) progress_.given_fraction = 0;
+  const std::optional<long> stated = io::stated_flips(path_);
   if (!flips_) {
-    if (!io::has_regular_file(file("flips.jsonl"))) return;
+    if (!io::has_regular_file(file("flips.jsonl"))) return io::require_stated_flips(path_, stated, 0);
     flips_.emplace(path_);
   }
   flips_->read();
+  io::require_stated_flips(path_, stated, flips_->lit());
   progress_.missed = flips_->missed();
   progress_.blanks = flips_->blanks();
   if (const auto shown = flips_->shown(); !shown.empty()) {  // angles.jsonl may be cut
@@ -187,6 +180,14 @@ void RunFolder::read_flips() {
   const double wanted_deg = 360 * progress_.turns - progress_.from_deg;
   if (settled_ && progress_.turns > 0 && wanted_deg > 0)
     progress_.given_fraction = std::min(1.0, lit_s * printer_.stage.speed_deg_s / wanted_deg);
+}
+
+// Whoever prints holds the events. Without them, as they were lost, the other logs tell; times of files may be those of
+// another clock, but nothing follows the last angle.
+void RunFolder::look_for_end() {
+  const bool is_over = left_s(progress_, printer_.stage.speed_deg_s) < 0.5;
+  const bool is_alive = held_.value_or(progress_.blanks == 0);
+  progress_.abandoned = !progress_.outcome && !is_alive && (is_over || progress_.silent_s > silence_s);
 }
 
 void RunFolder::read_records() {
@@ -204,7 +205,9 @@ void RunFolder::read_records() {
 
 std::string state_of(const PrintProgress& progress) {
   if (progress.outcome) return "ended: " + printable(*progress.outcome);
-  if (progress.abandoned || progress.silent_s > (progress.blanks > 0 ? silence_s : loading_s)) {
+  const bool silent = progress.silent_s > (progress.blanks > 0 ? silence_s : loading_s);
+  if (progress.abandoned && progress.silent_s <= silence_s) return "end not logged";
+  if (progress.abandoned || silent) {
     return "no log entry for " + std::to_string(std::lround(progress.silent_s)) + " s; end not logged";
   }
   if (progress.blanks == 0) return "preparing";
@@ -230,7 +233,6 @@ std::string given_text(const PrintProgress& p) {
 
 std::string status_line(const PrintProgress& p, double speed_deg_s) {
   char text[256];
-  const double end_deg = 360 * p.turns;
   std::string line = state_of(p) + "  turn " + turn_text(p);
   std::snprintf(text, sizeof text, "  angle %.1f deg  dose delivered %s  missed %ld of %ld vertical blanks",
                 std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), given_text(p).c_str(), p.missed, p.blanks);
@@ -239,9 +241,10 @@ std::string status_line(const PrintProgress& p, double speed_deg_s) {
     std::snprintf(text, sizeof text, "  cured %.1f %%, missing %.1f %%", 100 - *p.missing_percent, *p.missing_percent);
     line += text;
   }
-  if (!p.outcome && p.silent_s <= silence_s && p.blanks > 0 && p.turns > 0 && speed_deg_s > 0) {
-    const long left_s = std::lround(std::max(0.0, end_deg - p.angle_deg) / speed_deg_s);
-    std::snprintf(text, sizeof text, "  %ld:%02ld left", left_s / 60, left_s % 60);
+  if (const double left = left_s(p, speed_deg_s);
+      !p.outcome && !p.abandoned && p.silent_s <= silence_s && std::isfinite(left)) {
+    const long seconds = std::lround(left);
+    std::snprintf(text, sizeof text, "  %ld:%02ld left", seconds / 60, seconds % 60);
     line += text;
   }
   return line;

@@ -30,7 +30,7 @@ struct PrintProgress {
   std::optional<std::string> outcome;     // when it has ended
   int status = 0;
   double silent_s = 0;     // since the last entry of a log
-  bool abandoned = false;  // it is silent, and nobody writes: vam-print was killed
+  bool abandoned = false;  // it is silent or at its planned end, and nobody writes: vam-print was killed
   std::vector<std::string> simulated;
   std::vector<RecordAge> records;
 };
@@ -59,12 +59,14 @@ class RunFolder {
   void read_summary();
   void read_angle();
   void read_flips();
+  void look_for_end();
   void read_records();
 
   std::string path_;
   model::Printer printer_;
   bool settled_ = false;
   std::optional<io::FlipLog> flips_;
+  std::optional<bool> held_;  // the events, by vam-print; none where there are none
   PrintProgress progress_;
 };
 

@@ -123,6 +123,10 @@ void FlipLog::go_on(double image_s, std::vector<ShownImage>& shown) const {
   }
 }
 
+long FlipLog::lit() const {
+  return std::count_if(flips_.begin(), flips_.end(), [](const LoggedFlip& flip) { return flip.frame >= 0; });
+}
+
 void FlipLog::end_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }
 
 std::vector<ShownImage> FlipLog::shown() const {
@@ -144,10 +148,31 @@ std::vector<ShownImage> read_shown(const std::string& run) {
   return log.shown();
 }
 
+std::optional<long> stated_flips(const std::string& run) {
+  const std::filesystem::path log(log_of(run));
+  const std::string file = (log.parent_path() / "summary.json").string();
+  if (log.filename() != "flips.jsonl" || !has_regular_file(file)) return std::nullopt;
+  constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
+  const Json summary = parse_json(read_all(file, Content::text, most_bytes));
+  if (!summary.is_object() || summary.value("schema", Json()) != "vam-print/1") return std::nullopt;  // being written
+  const Json reached = summary.value("reached", Json());
+  if (!reached.is_object() || !reached.contains("lit_flips") || !reached["lit_flips"].is_number_integer())
+    return std::nullopt;
+  return reached["lit_flips"].get<long>();
+}
+
+void require_stated_flips(const std::string& run, const std::optional<long>& stated, long lit) {
+  if (!stated || *stated == lit) return;
+  throw Error{Fault::data, log_of(run) + ": has " + std::to_string(lit) + " lit flips, but summary.json states " +
+                               std::to_string(*stated) + "; it was cut or changed; restore it"};
+}
+
 Showing read_showing(const std::string& run, const std::string& sinogram, std::optional<double> before_s) {
   require_sinogram_of(run, sinogram);
+  const std::optional<long> stated_lit = stated_flips(run);
   FlipLog log(run);
   log.read();
+  require_stated_flips(run, stated_lit, log.lit());
   if (before_s) log.end_at(*before_s);
   const std::string given = sinogram == "-" ? "" : sha256_of(sinogram);
   Showing showing{sinogram == "-" ? log.shown() : log.shown_of(given)};

@@ -43,6 +43,8 @@ class FlipLog {
   /// Vertical blanks from the last run-up turn on: those at which the image changed late, of all.
   [[nodiscard]] long missed() const { return missed_; }
   [[nodiscard]] long blanks() const { return blanks_; }
+  /// Flips to images with light.
+  [[nodiscard]] long lit() const;
 
  private:
   struct LoggedFlip {
@@ -73,13 +75,19 @@ class FlipLog {
 /// left out. Throws Fault::no_input, Fault::data for another kind of file.
 [[nodiscard]] std::vector<ShownImage> read_shown(const std::string& run);
 
+/// How many lit flips the summary.json of a run states, which vam-print writes when it ends; none where it states none.
+/// Read it before the log, which it closes.
+[[nodiscard]] std::optional<long> stated_flips(const std::string& run);
+/// Throws Fault::data, with both numbers, where a log has another number of lit flips than was stated.
+void require_stated_flips(const std::string& run, const std::optional<long>& stated, long lit);
+
 /// What a run showed of a sinogram.
 struct Showing {
   std::vector<ShownImage> images;
   double full_scale = 0;  // 0: not stated
 };
-/// Throws as read_shown() and require_sinogram_of(), and Fault::data for a log in which its full scale changes.
-/// before_s: as FlipLog::end_at().
+/// Throws as read_shown(), require_sinogram_of() and require_stated_flips(), and Fault::data for a log in which its
+/// full scale changes. before_s: as FlipLog::end_at().
 [[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram,
                                    std::optional<double> before_s = {});
 

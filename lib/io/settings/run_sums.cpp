@@ -75,6 +75,24 @@ RunSums read_run_sums(const std::string& folder) {
   return sums;
 }
 
+void require_run_logs(const std::string& folder) {
+  if (!has_run_sums(folder)) return;
+  const RunSums sums = read_run_sums(folder);
+  for (const char* name : {"events.jsonl", "flips.jsonl", "printer.toml"}) {
+    const bool needed = std::string(name) == "events.jsonl" || has_regular_file(path_in(folder, name));
+    if (!needed || sums.contains(name)) continue;
+    throw Error{Fault::data, path_in(folder, list_name) + ": has no hash of " + name +
+                                 "; it was cut or changed; restore it, or delete it to use the logs unverified"};
+  }
+  for (const auto& file : sums) {  // images need not be read
+    const fs::path name(file.first);
+    const fs::path ending = name.extension();
+    const bool is_log = ending == ".jsonl" || ending == ".json" || ending == ".toml";
+    if (!is_log || (name.has_parent_path() && name.filename() != "manifest.jsonl")) continue;
+    if (const std::string problem = sum_problem(folder, file); !problem.empty()) throw Error{Fault::data, problem};
+  }
+}
+
 std::string sum_problem(const std::string& folder, const RunSums::value_type& file) {
   const auto& [name, hash] = file;
   if (std::string problem = gone(folder, name); !problem.empty()) return problem;

@@ -17,6 +17,11 @@ using RunSums = std::map<std::string, std::string>;
 /// As sha256sum(1) writes it. Throws Fault::data where a line is no hash and name of a file in the folder, or none is.
 [[nodiscard]] RunSums read_run_sums(const std::string& folder);
 
+/// The logs, records and settings of a print that has ended are what they were at its end. Throws Fault::data where one
+/// of the list was changed or is gone, or the list has no hash of those by which light is counted; nothing without a
+/// list, as of a print that was killed. Throws as read_run_sums() does.
+void require_run_logs(const std::string& folder);
+
 /// What is wrong with a file of the list, as a line; empty: nothing.
 [[nodiscard]] std::string sum_problem(const std::string& folder, const RunSums::value_type& file);
 
