@@ -15,7 +15,7 @@ spoilt() {  # spoilt STATUS INJECTION TOOL...: the last argument is its output, 
   is "$what, $1: the old file" "$status $(cat "$out")" "$want old"
   [ "$want" = 137 ] || is "$what, $1: said in a line" "$(grep -c "^$1: $out: " .log/err) $(wc -l <.log/err)" '1 1'
 }
-for tool in 'vam-slice --shape disc-grid --voxel 0.5 -o out.vdb' 'vam-project --pattern star -o out.exr' \
+for tool in 'vam-slice --shape cylinder --voxel 0.5 -o out.vdb' 'vam-project --pattern star -o out.exr' \
   'vam-capture --device sim:?pace=virtual --binning 12 --frames 2 -o views.exr'; do
   for what in write:error=ENOSPC:when=1 write:error=EIO:when=1 fsync:error=EIO; do spoilt 74 $what $tool; done
   spoilt 73 rename:error=EIO $tool
