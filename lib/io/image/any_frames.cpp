@@ -134,68 +134,79 @@ std::map<std::string, CaptureRecord> captured_images(const std::string& folder) 
   return records;
 }
 
+/// Images of a folder, with the angles of its index.
 class FolderSource : public ImageSource {
  public:
-  explicit FolderSource(const std::string& path)
-      : folder_(path), index_(read_frame_index(path, folder_)), captured_(captured_images(path)) {
-    const GreyImage first = folder_.read(0);
-    info_ = frames_of(first.width, first.height, folder_.count());
-    if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
-  }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
   bool next(Image& image, model::ImageInfo& about) override {
     if (taken_ == folder_.count()) return false;
     about = index_.empty() ? model::ImageInfo{} : index_[taken_];
-    const std::string& path = folder_.path(taken_);
-    const GreyImage levels = folder_.read(taken_++);
-    const auto record = captured_.find(std::filesystem::path(path).filename());
-    if (record != captured_.end()) require_captured(path, record->second, levels);
-    image = fractions(levels);
+    image = read(taken_++);
     return true;
+  }
+
+ protected:
+  FolderSource(const std::string& path, FolderOf of)
+      : folder_(path, false, of), index_(read_frame_index(path, folder_)) {}
+  /// Those of the first image, which all must have.
+  void set_size(int width, int height) {
+    info_ = frames_of(width, height, folder_.count());
+    if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
+  }
+  virtual Image read(int i) = 0;
+
+  ImageFolder folder_;
+  model::StackInfo info_;
+
+ private:
+  std::vector<model::ImageInfo> index_;
+  int taken_ = 0;
+};
+
+class GreyFolderSource : public FolderSource {
+ public:
+  explicit GreyFolderSource(const std::string& path)
+      : FolderSource(path, FolderOf::grey), captured_(captured_images(path)) {
+    const GreyImage first = folder_.read(0);
+    set_size(first.width, first.height);
   }
   [[nodiscard]] bool is_grey() const override { return true; }
 
  private:
-  ImageFolder folder_;
-  std::vector<model::ImageInfo> index_;
+  Image read(int i) override {
+    const std::string& path = folder_.path(i);
+    const GreyImage levels = folder_.read(i);
+    const auto record = captured_.find(std::filesystem::path(path).filename());
+    if (record != captured_.end()) require_captured(path, record->second, levels);
+    return fractions(levels);
+  }
+
   std::map<std::string, CaptureRecord> captured_;
-  model::StackInfo info_;
-  int taken_ = 0;
 };
 
 /// One image a file, as Dr.TVAM writes its patterns: 0000.exr, 0001.exr, ...
-class ExrFolderSource : public ImageSource {
+class ExrFolderSource : public FolderSource {
  public:
   explicit ExrFolderSource(const std::string& path)
-      : folder_(path, false, FolderOf::exr),
-        index_(read_frame_index(path, folder_)),
-        first_(read_exr_image(folder_.path(0))) {
-    info_ = frames_of(first_.width, first_.height, folder_.count());
+      : FolderSource(path, FolderOf::exr), first_(read_exr_image(folder_.path(0))) {
+    set_size(first_.width, first_.height);
     info_.units = "relative";
-    if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
   }
-  [[nodiscard]] const model::StackInfo& info() const override { return info_; }
-  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
-  bool next(Image& image, model::ImageInfo& about) override {
-    if (taken_ == folder_.count()) return false;
-    about = index_.empty() ? model::ImageInfo{} : index_[taken_];
-    const std::string& path = folder_.path(taken_);
-    image = taken_ == 0 ? std::move(first_) : read_exr_image(path);
+
+ private:
+  Image read(int i) override {
+    if (i == 0) return std::move(first_);
+    const std::string& path = folder_.path(i);
+    Image image = read_exr_image(path);
     if (image.width != info_.width || image.height != info_.height) {
       throw Error{Fault::data, path + ": has " + size_text(image.width, image.height) +
                                    " pixels, but those before have " + size_text(info_.width, info_.height)};
     }
-    ++taken_;
-    return true;
+    return image;
   }
 
- private:
-  ImageFolder folder_;
-  std::vector<model::ImageInfo> index_;
   Image first_;
-  model::StackInfo info_;
-  int taken_ = 0;
 };
 
 }  // namespace
@@ -205,7 +216,7 @@ std::unique_ptr<ImageSource> open_images(const std::string& path, FileType type)
     throw Error{Fault::usage, "stdin: a video is read from a file only; name it"};
   if (type == FileType::video) return std::make_unique<VideoSource>(path);
   if (type == FileType::images && is_exr_folder(path)) return std::make_unique<ExrFolderSource>(path);
-  if (type == FileType::images) return std::make_unique<FolderSource>(path);
+  if (type == FileType::images) return std::make_unique<GreyFolderSource>(path);
   return std::make_unique<StackSource>(path);
 }
 

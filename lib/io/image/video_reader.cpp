@@ -134,18 +134,22 @@ struct VideoReader::State {
     }
     if (status != AVERROR_EOF) check(status, "reading the video");
     if (status >= 0) check_packet();
-    if (status < 0 && format.seal && announced > 0 && packets != announced) {
+    if (status < 0 && ours() && announced > 0 && packets != announced) {
       throw Error{Fault::data, path + ": the video has " + std::to_string(packets) + " of " +
                                    std::to_string(announced) + " frames; write it again"};
     }
-    if (status < 0 && !format.seal) require_end();
+    if (status < 0 && !ours()) require_end();
     return status >= 0;
   }
 
+  // Their frames follow each other at even times, from 0 on: as many as the duration has.
+  [[nodiscard]] bool ours() const { return format.seal.has_value() || format.comment.starts_with("vam-"); }
+
   // Of other programs' videos, which may begin later than at 0 and leave frames out.
   void require_end() const {
+    if (announced == 0) return;
     const auto missing = std::llround((static_cast<double>(container->duration) / AV_TIME_BASE - end_s) * format.fps);
-    if (announced == 0 || missing < 1) return;
+    if (missing < 1) return;
     throw Error{Fault::data, path + ": the video ends after " + std::to_string(packets) + " frames, " +
                                  std::to_string(missing) + " before the end that it states; write it again"};
   }
