@@ -12,7 +12,7 @@ namespace vam::optimize {
 namespace {
 
 constexpr float half = 0.5F;
-constexpr float cost = 0.25F;  // of a point, relative to a voxel
+constexpr float cost = 0.25F;  // of a point or a cut voxel, relative to another voxel
 
 /// Coverage by voxel, in the order of the slices.
 class TargetVolume {
@@ -87,32 +87,46 @@ class VoxelRow {
       const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
       if (!volume_.contains(next) || !crosses(here, volume_.coverage(next))) continue;
       const auto [steepest, cosine] = normal(at, axis);
-      if (!steepest) continue;
+      if (steepest != axis && crosses_along(at, steepest) && crosses_along(next, steepest)) continue;
       const SurfacePoint::Voxel from = volume_.voxel(at);
       const SurfacePoint::Voxel to = volume_.voxel(next);
       if (!is_lit(from) || !is_lit(to)) continue;
       const float weight = std::min(problem_.weight_at(from.slab, from.i), problem_.weight_at(to.slab, to.i));
-      if (weight > 0) points.push_back({from, to, volume_.share(at, axis), weight, cosine});
+      if (weight > 0)
+        points.push_back({from, to, volume_.share(at, axis), weight, steepest == axis ? cosine : outwards(here)});
     }
   }
 
  private:
+  /// A wall that the voxels do not resolve stands across the axis of its points.
+  static float outwards(float coverage) { return coverage >= half ? 1.0F : -1.0F; }
   struct Normal {
-    bool steepest;  // along no axis the coverage changes more
-    float cosine;   // of the outward normal with the axis
+    int steepest;  // axis along which the coverage changes most
+    float cosine;  // of the outward normal with the axis of the point
   };
   [[nodiscard]] Normal normal(const TargetVolume::At& at, int axis) const {
     const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
     const auto slope = [&](int along) { return volume_.slope(at, along) + volume_.slope(next, along); };
     const float here = slope(axis);
+    int steepest = axis;
+    float most = std::abs(here);
     float square = here * here;
     for (int other = 0; other < axes_; ++other) {
       if (other == axis) continue;
       const float there = slope(other);
-      if (std::abs(there) > std::abs(here) || (std::abs(there) == std::abs(here) && other < axis)) return {false, 0};
+      if (std::abs(there) > most || (std::abs(there) == most && other < steepest)) {
+        steepest = other;
+        most = std::abs(there);
+      }
       square += there * there;
     }
-    return {true, square > 0 ? -here / std::sqrt(square) : 1.0F};
+    return {steepest, square > 0 ? -here / std::sqrt(square) : 1.0F};
+  }
+  /// Whether the surface passes between the voxel and a neighbour along the axis.
+  [[nodiscard]] bool crosses_along(const TargetVolume::At& at, int axis) const {
+    const float here = volume_.coverage(at);
+    return crosses(here, volume_.coverage(TargetVolume::moved(at, axis, 1))) ||
+           crosses(here, volume_.coverage(TargetVolume::moved(at, axis, -1)));
   }
   [[nodiscard]] bool is_lit(SurfacePoint::Voxel v) const { return problem_.labels[v.slab][v.i] != Label::outside; }
 
@@ -120,6 +134,22 @@ class VoxelRow {
   const TargetVolume& volume_;
   int axes_;
 };
+
+std::vector<CutVoxel> cut_voxels(const Problem& problem) {
+  std::vector<std::vector<CutVoxel>> slabs(problem.target.size());
+  parallel_for(count_of(slabs), [&](int s) {
+    const std::vector<Label>& labels = problem.labels[s];
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const float weight = labels[i] == Label::surface ? problem.weight_at(s, i) : 0.0F;
+      if (weight == 0) continue;
+      const SurfacePoint::Voxel at{static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(i)};
+      slabs[s].push_back({at, weight, model::half_covered(problem.target[s].values[i])});
+    }
+  });
+  std::vector<CutVoxel> all;
+  for (const auto& some : slabs) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
 
 }  // namespace
 
@@ -138,24 +168,30 @@ SurfacePoints::SurfacePoints(const Problem& problem)
     }
   });
   for (const auto& some : rows) points_.insert(points_.end(), some.begin(), some.end());
+  cut_ = cut_voxels(problem);
 }
 
 std::vector<float> SurfacePoints::misses(std::span<const Slab> dose) const {
-  std::vector<float> result(points_.size());
+  std::vector<float> result(points_.size() + cut_.size());
   const auto at = [&](SurfacePoint::Voxel v) { return dose[v.slab].values[v.i]; };
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const SurfacePoint& p = points_[i];
     result[i] = (1.0F - p.share) * at(p.from) + p.share * at(p.to) - threshold_;
+  }
+  for (std::size_t i = 0; i < cut_.size(); ++i) {
+    const float above = at(cut_[i].at) - threshold_;
+    result[points_.size() + i] = cut_[i].is_part ? std::min(above, 0.0F) : std::max(above, 0.0F);
   }
   return result;
 }
 
 PerSlice SurfacePoints::losses(std::span<const float> misses, std::size_t slabs) const {
   std::vector<double> sums(slabs * lanes, 0.0);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const SurfacePoint& p = points_[i];
-    sums[p.from.slab * lanes + p.from.i % lanes] += 0.5F * cost * p.weight * misses[i] * misses[i];
-  }
+  const auto add = [&](SurfacePoint::Voxel v, float weight, float miss) {
+    sums[v.slab * lanes + v.i % lanes] += 0.5F * cost * weight * miss * miss;
+  };
+  for (std::size_t i = 0; i < points_.size(); ++i) add(points_[i].from, points_[i].weight, misses[i]);
+  for (std::size_t i = 0; i < cut_.size(); ++i) add(cut_[i].at, cut_[i].weight, misses[points_.size() + i]);
   PerSlice result = filled(slabs, 0.0F);
   for (std::size_t k = 0; k < sums.size(); ++k) result[k / lanes][k % lanes] = static_cast<float>(sums[k]);
   return result;
@@ -184,6 +220,10 @@ void SurfacePoints::add_slopes(std::span<const float> misses, std::span<Slab> sl
     const float slope = share * cost * p.weight * misses[i];
     slopes[p.from.slab].values[p.from.i] += (1.0F - p.share) * slope;
     slopes[p.to.slab].values[p.to.i] += p.share * slope;
+  }
+  for (std::size_t i = 0; i < cut_.size(); ++i) {
+    const CutVoxel& cut = cut_[i];
+    slopes[cut.at.slab].values[cut.at.i] += share * cost * cut.weight * misses[points_.size() + i];
   }
 }
 

@@ -73,6 +73,35 @@ std::vector<Slab> noise(std::size_t count) {
 
 }  // namespace
 
+TEST_CASE("the foot of a thin wall has points on both sides where the block's face passes through its slice") {
+  constexpr int face = 10;
+  constexpr int wall = 20;  // and the column beside it
+  std::vector<float> volume(slices * size * size, 0.0F);
+  for (int z = 0; z <= 15; ++z) {
+    for (int y = 10; y < 30; ++y) {
+      for (int x = 10; x < 30; ++x) {
+        const bool in_wall = x == wall || x == wall + 1;
+        const float beside = z == face ? 0.2F : 0.0F;
+        volume[(z * size + y) * size + x] = z < face ? 1.0F : in_wall ? 0.6F : beside;
+      }
+    }
+  }
+  const SurfacePoints surface(problem_of(volume, {}));
+  const auto beside = [&](int x, int z) {
+    return std::count_if(surface.points().begin(), surface.points().end(), [&](const SurfacePoint& p) {
+      const auto is = [&](SurfacePoint::Voxel v, int at) {
+        return static_cast<int>(v.slab) == z / lanes && static_cast<int>(v.i) == (20 * size + at) * lanes + z % lanes;
+      };
+      return (is(p.from, x) && is(p.to, x + 1)) || (is(p.from, x + 1) && is(p.to, x));
+    });
+  };
+  for (const int z : {face, face + 1}) {
+    CHECK(beside(wall - 1, z) == 1);
+    CHECK(beside(wall + 1, z) == 1);
+  }
+  for (const SurfacePoint& p : surface.points()) CHECK(std::abs(p.cosine) > 0.1F);
+}
+
 TEST_CASE("points lie on the surface, at least one for every 1.75 voxel faces of it") {
   const SurfacePoints surface(problem_of(ball(), {}));
   double worst = 0;
@@ -119,7 +148,7 @@ TEST_CASE("slopes are the transpose of misses, and the derivative of the losses"
   const std::vector<float> misses = surface.misses(dose);
   std::vector<Slab> slopes = slabs(dose.size(), size, size);
   surface.add_slopes(misses, slopes);
-  double along = 0;  // <dose, slopes> = 1/8 <misses + threshold, misses>
+  double along = 0;  // <dose, slopes> = 1/4 <misses + threshold, misses>
   for (std::size_t s = 0; s < dose.size(); ++s) {
     for (std::size_t i = 0; i < dose[s].values.size(); ++i) {
       along += static_cast<double>(dose[s].values[i]) * static_cast<double>(slopes[s].values[i]);
@@ -137,10 +166,34 @@ TEST_CASE("slopes are the transpose of misses, and the derivative of the losses"
   CHECK(loss == doctest::Approx(half_squares).epsilon(1e-5));
 }
 
+TEST_CASE("a voxel that the surface cuts costs something only on the wrong side of the threshold") {
+  std::vector<float> volume(static_cast<std::size_t>(slices) * size * size, 0.0F);
+  const std::size_t more = (5 * size + 20) * size + 20;
+  const std::size_t less = more + 4;
+  for (int x = 5; x < 12; ++x) volume[(5 * size + 20) * size + x] = 1.0F;
+  volume[more] = 0.6F;
+  volume[less] = 0.4F;
+  const Problem problem = problem_of(volume, {});
+  const SurfacePoints surface(problem);
+  const auto costs = [&](float dose) {
+    std::vector<Slab> doses = slabs(problem.target.size(), size, size);
+    for (Slab& slab : doses) std::fill(slab.values.begin(), slab.values.end(), dose);
+    const std::vector<float> misses = surface.misses(doses);
+    return std::vector<float>(misses.end() - 2, misses.end());
+  };
+  CHECK(costs(0.7F)[0] == doctest::Approx(-0.1F));
+  CHECK(costs(0.7F)[1] == 0);
+  CHECK(costs(0.95F)[0] == 0);
+  CHECK(costs(0.95F)[1] == doctest::Approx(0.15F));
+}
+
 TEST_CASE("the surface is constrained only where it is neither free nor constrained otherwise") {
   const std::vector<float> volume = ball();
   const auto count = [&](const Demands& demands, const float* weight, bool stacked) {
-    return SurfacePoints(problem_of(volume, demands, weight, stacked)).points().size();
+    const Problem problem = problem_of(volume, demands, weight, stacked);
+    const SurfacePoints surface(problem);
+    if (surface.points().empty()) CHECK(surface.misses(noise(problem.target.size())).empty());
+    return surface.points().size();
   };
   const std::size_t all = count({}, nullptr, true);
   CHECK(count({}, nullptr, false) > all / 2);
@@ -174,7 +227,9 @@ TEST_CASE("apg brings the dose on the surface to the threshold, in light that is
     options.max_intensity = max_intensity;
     Iterate state;
     run_method(*make_method("apg", options), problem, *light, {.iterations = 25, .until = {}, .patience = 0}, state);
-    const auto misses = SurfacePoints(asked).misses(state.dose);
+    const SurfacePoints surface(asked);
+    auto misses = surface.misses(state.dose);
+    misses.resize(surface.points().size());
     double squares = 0;
     for (const float miss : misses) squares += static_cast<double>(miss) * static_cast<double>(miss);
     return std::sqrt(squares / static_cast<double>(misses.size()));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of the design's surface, whose dose is to be the threshold [physics §6].
+// What the design's surface asks of the dose: to be the threshold at points of the surface, and in voxels that it cuts
+// on the side of the threshold that prints them as part or void [physics §6].
 #pragma once
 
 #include <cstdint>
@@ -24,16 +25,25 @@ struct SurfacePoint {
   float cosine;  // between the outward normal and the way from `from` to `to`
 };
 
-/// The points of a problem, each along the axis that is nearest to the surface's normal there; between two slices only
-/// where they are stacked. None where the surface is free, or a voxel beside it is outside or has weight 0.
+/// A voxel that the surface cuts: part if it is at least half covered, else void.
+struct CutVoxel {
+  SurfacePoint::Voxel at;
+  float weight;
+  bool is_part;
+};
+
+/// The points of a problem, each along the axis that is nearest to the surface's normal there, or, as at the foot of a
+/// thin wall, along another one where the surface does not pass beside a voxel along that axis; between two slices only
+/// where they are stacked; and its cut voxels. None where the surface is free, or a voxel, or one beside the point, is
+/// outside or has weight 0.
 class SurfacePoints {
  public:
   SurfacePoints() = default;
   explicit SurfacePoints(const Problem& problem);
 
-  /// Dose - threshold at every point.
+  /// Dose - threshold at every point, then by how much the dose of every cut voxel is beyond the threshold.
   [[nodiscard]] std::vector<float> misses(std::span<const Slab> dose) const;
-  /// Sum of (1/4) (w/2) miss^2, for the slice that the point begins in.
+  /// Sum of (1/4) (w/2) miss^2, by the slice of the cut voxel, or that the point begins in.
   [[nodiscard]] PerSlice losses(std::span<const float> misses, std::size_t slabs) const;
   /// Adds `share` of the derivatives of these losses by the doses: the transpose of misses().
   void add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share = 1) const;
@@ -43,6 +53,7 @@ class SurfacePoints {
 
  private:
   std::vector<SurfacePoint> points_;
+  std::vector<CutVoxel> cut_;
   float threshold_ = 0;
 };
 
