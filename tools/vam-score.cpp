@@ -119,7 +119,7 @@ void run(const cli::App& app, Options& options) {
   tool::warn_of_grey(in.target(), file);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
   require_known(conditions, options);
-  score::Score result = tool::score_volumes(in.dose(), in.target(), options.how);
+  score::Score result = tool::score_print(in.dose(), in.target(), options.how);
   warn_of_gaps(result.unresolved(), in.target(), file);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();

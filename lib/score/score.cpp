@@ -45,6 +45,9 @@ const std::vector<Figure>& figure_list() {
       {"outside_max_dose", "maximum dose of void voxels outside the box"},
       {"unresolved_part", "fraction of the part in walls of which no voxel is wholly inside; they are not judged"},
       {"unresolved_gaps", "gaps of which no voxel is wholly outside, relative to the part; they are not judged"},
+      {"part_pieces", "separate pieces of the part"},
+      {"print_pieces", "separate pieces of the print; pieces below 8 voxels are not counted"},
+      {"severing_voxels", "voxels of the part that do not cure and where its walls are cut therefore"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
@@ -137,6 +140,9 @@ double Score::figure(const std::string& name) const {
   if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
   if (name == "unresolved_part") return unresolved().part_share();
   if (name == "unresolved_gaps") return unresolved().gap_share();
+  if (name == "part_pieces") return pieces_ ? pieces_->part : none;
+  if (name == "print_pieces") return pieces_ ? pieces_->print : none;
+  if (name == "severing_voxels") return pieces_ ? static_cast<double>(pieces_->severing) : none;
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
   if (is_of_exposure(name)) {
@@ -199,7 +205,7 @@ Json Score::figures() const {
 
 Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
-  Verdict verdict{whole_.metrics(), with_cut_.metrics(), {}, {}, unresolved()};
+  Verdict verdict{whole_.metrics(), with_cut_.metrics(), {}, {}, unresolved(), pieces_};
   if (std::isfinite(duration_s)) verdict.seconds = duration_s;
   return verdict;
 }

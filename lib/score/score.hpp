@@ -10,6 +10,7 @@
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
+#include "model/print_pieces.hpp"
 #include "model/printer.hpp"
 #include "model/unresolved.hpp"
 #include "score/exposure_plan.hpp"
@@ -45,6 +46,8 @@ class Score {
 
   /// `count` row-major slices of dose and of target coverage. Throws Fault::data for a dose that is not finite.
   void add(const float* dose, const float* target, int count);
+  /// Counted by the caller, as the print is known once all slices have been added.
+  void set_pieces(const model::PrintPieces& pieces) { pieces_ = pieces; }
   /// The projections that gave the dose, for the efficiency of light.
   void add_projection(std::span<const float> values) { light_.add(values); }
 
@@ -84,6 +87,7 @@ class Score {
   model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;
   model::UnresolvedFinder unresolved_;
+  std::optional<model::PrintPieces> pieces_;
   std::int64_t surface_ = 0;
   int slices_ = 0;               // seen
   model::OutsideDoses outside_;  // void outside the part's box

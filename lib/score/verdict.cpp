@@ -17,11 +17,24 @@ bool holds_threshold(const Verdict& verdict) {
   return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
 }
 
+bool keeps_pieces(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_as_part(); }
+
+std::string broken(const model::PrintPieces& pieces) {
+  std::string text;
+  if (pieces.print != pieces.part) {
+    text += "; the print is in " + std::to_string(pieces.print) + " pieces, the part in " + std::to_string(pieces.part);
+  }
+  if (pieces.severing >= model::PrintPieces::least_voxels) {
+    text += "; walls are cut where " + std::to_string(pieces.severing) + " voxels of the part do not cure";
+  }
+  return text;
+}
+
 std::string answer(const Verdict& verdict) {
   const model::Unresolved& un = verdict.unresolved;
   if (verdict.whole.part == 0) return "not judged, as no voxel is wholly inside the part";
   if (!prints(verdict)) return "will not print";
-  if (un.loses_walls() || un.shuts_gaps()) return "will not print as designed";
+  if (un.loses_walls() || un.shuts_gaps() || !keeps_pieces(verdict)) return "will not print as designed";
   return un.is_much() ? "may print" : "will print";
 }
 
@@ -43,7 +56,7 @@ bool prints(const Verdict& verdict) { return verdict.whole.pw > 0 && holds_thres
 
 bool is_whole(const Verdict& verdict) {
   const model::Unresolved& un = verdict.unresolved;
-  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much();
+  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much() && keeps_pieces(verdict);
 }
 
 std::string words(const Verdict& verdict) {
@@ -60,6 +73,7 @@ std::string words(const Verdict& verdict) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);
   }
+  if (prints(verdict) && verdict.pieces) line += broken(*verdict.pieces);
   line += unjudged(verdict.unresolved);
   if (verdict.seconds) line += "; duration " + format_number(*verdict.seconds, 4) + " s";
   return line;

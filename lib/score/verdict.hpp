@@ -9,6 +9,7 @@
 
 #include "base/json_fwd.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/print_pieces.hpp"
 #include "model/unresolved.hpp"
 
 namespace vam::score {
@@ -20,17 +21,18 @@ struct Verdict {
   std::optional<double> seconds;  // of the print; none: the resin is not known
   std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
   model::Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
+  std::optional<model::PrintPieces> pieces = std::nullopt;  // none: not counted
 };
 
 /// The threshold, or some threshold if none is given, prints all voxels that are wholly in part or void.
 [[nodiscard]] bool prints(const Verdict& verdict);
 
-/// No walls will be missing, no gaps shut, and all but little of the part is judged.
+/// No walls will be missing, cut off or joined, no gaps shut, and all but little of the part is judged.
 [[nodiscard]] bool is_whole(const Verdict& verdict);
 
-/// "will not print as designed" where walls will be missing or gaps shut, "may print" if too much is not judged, else
-/// "will print: process window +0.065 of the largest dose, VER 0 (412345
-/// voxels); including the 43492 voxels cut by the surface: process window -0.31, VER 0.004; duration 360 s".
+/// "will not print as designed" where walls will be missing, cut off or joined, or gaps shut, "may print" if too much
+/// is not judged, else "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the
+/// 43492 voxels cut by the surface: process window -0.31, VER 0.004; duration 360 s".
 [[nodiscard]] std::string words(const Verdict& verdict);
 
 /// verdict, and with_surface: ver, pw, iou and the number of voxels.

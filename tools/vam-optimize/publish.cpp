@@ -93,8 +93,9 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
       report.erase(key);
   } else {
-    const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt,
-                                 fixed_threshold(options), tool::unresolved(target)};
+    const score::Verdict verdict{
+        outcome.metrics,          outcome.with_cut,         plan ? std::optional(plan->seconds) : std::nullopt,
+        fixed_threshold(options), tool::unresolved(target), outcome.pieces};
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(

@@ -38,7 +38,7 @@ std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printe
   tool::warn_of_grey(*target, target->name());
   score::ScoreOptions how;
   tool::settle_exposure(how, *dose, *target, printer);
-  return Judged{how, tool::score_volumes(*dose, *target, how)};
+  return Judged{how, tool::score_print(*dose, *target, how)};
 }
 
 std::string verdict(const Judged& judged) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/run/private/misses.hpp"
 
+#include <algorithm>
+
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::optimize {
@@ -42,6 +45,25 @@ std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem
     if (is_constrained(label) && (value >= threshold) != (label == Label::part)) ++slices[slice];
   });
   return slices;
+}
+
+model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem) {
+  const auto threshold = static_cast<float>(problem.demands.window.threshold());
+  const Slab& slab = dose[0];
+  model::PrintPieceCounter counter(slab.width, slab.height);
+  for (std::size_t s = 0; s < dose.size(); ++s) {
+    const int count = std::min(lanes, problem.slices - static_cast<int>(s) * lanes);
+    std::vector<std::vector<std::uint8_t>> slices(count, std::vector<std::uint8_t>(product(slab.width, slab.height)));
+    parallel_for(count, [&](int lane) {
+      for (std::size_t i = lane; i < dose[s].values.size(); i += lanes) {
+        const bool part = problem.target[s].values[i] >= model::half_surface;
+        const bool cured = dose[s].values[i] >= threshold && problem.labels[s][i] != Label::outside;
+        slices[lane][i / lanes] = model::printed_bits(part, cured);
+      }
+    });
+    counter.add(slices);
+  }
+  return counter.found();
 }
 
 }  // namespace vam::optimize

@@ -244,6 +244,7 @@ class VolumeRun {
     if (whole) outcome_.surface = work.method->surface_miss(state.dose);
     tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, asked_, times_}, ledger_);
     if (light_.couples_slices() && !task_.demands.grey) outcome_.wrong = wrong_voxels(state.dose, problem);  // one pass
+    if (whole && !task_.demands.grey) outcome_.pieces = print_pieces(state.dose, problem);
     hand_out(state, pass, light);
   }
 

@@ -13,6 +13,7 @@
 #include "base/json_fwd.hpp"
 #include "model/outside.hpp"
 #include "model/piece.hpp"
+#include "model/print_pieces.hpp"
 #include "optimize/run/certify.hpp"
 #include "optimize/run/even_dose.hpp"
 #include "optimize/run/front.hpp"
@@ -73,6 +74,7 @@ struct VolumeOutcome {
   model::DoseMetrics with_cut;               // with the voxels that the surface cuts: part from half coverage on
   std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
+  std::optional<model::PrintPieces> pieces;  // where slices share light; none of a grey target
   std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
   std::optional<SurfaceMiss> surface;        // where slices share light
   double eigenvalue = 0;                     // Method::eigenvalue() of the last pass

@@ -77,6 +77,16 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   CHECK(words(slit).starts_with("will not print as designed: "));
   CHECK(words(slit).find("gaps too narrow for the voxels will be shut") != std::string::npos);
   CHECK(is_whole(verdict()));
+  Verdict cut = verdict();
+  cut.pieces = {.part = 1, .print = 1};
+  CHECK(words(cut) == words(verdict()));
+  CHECK(is_whole(cut));
+  cut.pieces->print = 2;
+  CHECK(words(cut).starts_with("will not print as designed: "));
+  CHECK(words(cut).ends_with("; the print is in 2 pieces, the part in 1"));
+  CHECK(!is_whole(cut));
+  cut.whole.pw = -0.1;  // pieces of what does not print at all say nothing
+  CHECK(words(cut).find("pieces") == std::string::npos);
   thin.whole.pw = -0.1;
   CHECK(words(thin).starts_with("will not print: "));
   Verdict edge = verdict();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Location of wrong voxels in a finished print: outside the part's box, and slice by slice.
+// Location of wrong voxels in a finished print: outside the part's box, and slice by slice; pieces of the print.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/outside.hpp"
+#include "model/print_pieces.hpp"
 #include "optimize/target/problem.hpp"
 
 namespace vam::optimize {
@@ -20,5 +21,8 @@ struct OutsideSlices {
 
 /// How many voxels of each slice in use are on the wrong side of the threshold.
 [[nodiscard]] std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem);
+
+/// Of a whole part: its pieces and those of its print at the threshold. Not of a grey target.
+[[nodiscard]] model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem);
 
 }  // namespace vam::optimize

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Separate pieces of a part and of its print: a wall that is cut off, or two walls that are joined, have no wrong voxel
+// where only voxels that the surface cuts lie between.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace vam::model {
+
+/// Voxels of a row that are of a solid: [begin, end).
+struct VoxelRun {
+  int row, begin, end;
+};
+
+/// The runs of a slice, row by row, of the voxels with solid(pixel).
+template <class Solid>
+[[nodiscard]] std::vector<VoxelRun> runs_of(int width, int height, const Solid& solid) {
+  std::vector<VoxelRun> runs;
+  for (int row = 0; row < height; ++row) {
+    const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+    for (int x = 0; x < width; ++x) {
+      if (!solid(first + static_cast<std::size_t>(x))) continue;
+      const int begin = x;
+      while (x < width && solid(first + static_cast<std::size_t>(x))) ++x;
+      runs.push_back({row, begin, x});
+    }
+  }
+  return runs;
+}
+
+/// Voxels that share a corner are of one piece.
+class PieceCounter {
+ public:
+  /// The next slice, as of runs_of().
+  void add(const std::vector<VoxelRun>& slice);
+  /// Pieces of at least so many voxels.
+  [[nodiscard]] int count(std::int64_t least_voxels) const;
+
+ private:
+  [[nodiscard]] std::size_t root(std::size_t run) const;
+  void join(std::size_t a, std::size_t b);
+  /// Those of `slice`, whose first run has number `first`, with those of the slice or row before.
+  void join_neighbours(const std::vector<VoxelRun>& slice, std::size_t first, const std::vector<VoxelRun>& before,
+                       std::size_t first_before, int rows_apart);
+
+  mutable std::vector<std::size_t> parent_;  // of every run so far; paths are shortened when they are followed
+  std::vector<std::int64_t> voxels_;         // of the piece, at its root
+  std::vector<VoxelRun> last_;               // slice
+};
+
+/// Of a voxel, as bits.
+namespace printed {
+inline constexpr std::uint8_t part = 1;   // at least half covered
+inline constexpr std::uint8_t cured = 2;  // receives the threshold
+}  // namespace printed
+[[nodiscard]] constexpr std::uint8_t printed_bits(bool part, bool cured) {
+  return static_cast<std::uint8_t>((part ? printed::part : 0) | (cured ? printed::cured : 0));
+}
+
+/// Counted are pieces of at least so many voxels: smaller ones are rounded tips and edges.
+struct PrintPieces {
+  static constexpr std::int64_t least_voxels = 8;
+  int part = 0;
+  int print = 0;
+  /// Voxels of the part that do not cure and between which and around which its cured voxels fall apart: those at the
+  /// foot of a wall that stands free in the print, or hangs on by its ends.
+  std::int64_t severing = 0;
+
+  [[nodiscard]] bool is_as_part() const { return print == part && severing < least_voxels; }
+};
+
+/// Slice by slice, from the lowest up.
+class PrintPieceCounter {
+ public:
+  PrintPieceCounter(int width, int height) : width_(width), height_(height) {}
+  /// The next slices, each row-major, of printed:: bits.
+  void add(const std::vector<std::vector<std::uint8_t>>& slices);
+  /// Of the slices so far, beyond which is nothing.
+  [[nodiscard]] PrintPieces found() const;
+
+ private:
+  using Slice = std::vector<std::uint8_t>;
+  [[nodiscard]] std::int64_t severing(const Slice* below, const Slice& slice, const Slice* above) const;
+
+  int width_, height_;
+  PieceCounter part_, print_;
+  std::vector<Slice> last_;    // up to two
+  std::int64_t severing_ = 0;  // in all but the last slice
+};
+
+}  // namespace vam::model
