@@ -187,6 +187,13 @@ for name in flips.jsonl printer.toml; do
   fails 65 "edited/$name: changed after the print" print --resume edited --run none
   mv kept edited/$name
 done
+# As vam-check, vam-status and vam-dose do, by the same check: also where there is a summary but no list.
+cp -r edited summed; rm summed/SHA256SUMS; sed '/"outcome"/d; /flips_sha256/d; s/"reached": .*/"flips_sha256": "'"$(sha256sum <edited/flips.jsonl | cut -c-64)"'",/' whole/summary.json >summed/summary.json
+ok 'a log as its summary states is resumed' print --resume summed --plan
+sed -i 's/"angle_deg":1/"angle_deg":2/' summed/flips.jsonl
+for tool in 'vam-check summed' 'vam-status summed' 'print --resume summed --run none'; do
+  fails 65 'summed/flips.jsonl: has lines whose SHA-256 begins' $tool
+done
 echo note >edited/note.txt; mv edited 'moved & edited'
 ok 'a folder that was moved, with a file more' vam-dose frames.exr --printer whole/printer.toml --shown 'moved & edited' -o edited.vdb
 mv 'moved & edited' edited
@@ -194,7 +201,7 @@ cp edited/SHA256SUMS kept
 for cut in 'head -c 100' 'head -c 0' 'grep -v flips'; do
   $cut kept >edited/SHA256SUMS
   fails 65 'SHA256SUMS: (has no hash of [a-z]*.[a-z]*; it was cut or changed; restore it, or delete it|is empty; it was cut|line 1: is not a hash|line 2: is not a hash)' vam-dose frames.exr --printer whole/printer.toml --shown edited -o none.vdb
-  fails 65 'SHA256SUMS: has no hash of [a-z]*.[a-z]*; it was cut or changed; restore it, or delete it' print --resume edited --run none
+  fails 65 "^vam-print: $(sed 's/^[^:]*: //;s/[()]/./g' .log/err)$" print --resume edited --run none
 done
 mv kept edited/SHA256SUMS; mv edited/events.jsonl kept
 fails 65 'edited/events.jsonl: is gone, but SHA256SUMS lists it; restore it' vam-dose frames.exr --printer whole/printer.toml --shown edited -o none.vdb
@@ -218,7 +225,7 @@ holds 'which counts half' "($(json dimmer.dose.json shown_turns) - ($(json both.
 holds 'both parts together the whole' "($(json both.dose.json shown_turns) - $(json whole.dose.json shown_turns)) ^ 2 < 0.02 ^ 2"
 holds 'and its dose, everywhere' "($(json both.dose.json dose_shown_max_relative) / $(json whole.dose.json dose_shown_max_relative) - 1) ^ 2 < 0.03 ^ 2"
 fails 65 'rest: complete, all 1 turns; nothing is left to print' print --resume rest --run none
-fails 66 'nowhere: not the run folder of a print that was armed' print --resume nowhere --run none
+fails 66 'nowhere: not a folder; give the run folder of vam-print' print --resume nowhere --run none
 fails 64 '.--turns: conflicts with --resume' print --resume again --turns 3 --run none
 python3 "$VAM_SOURCE/tests/tools/exr.py" make other.exr space=projector width=64 height=36 count=2
 fails 65 'other.exr: is not the sinogram of whole, whose SHA-256 begins' vam-dose other.exr --printer whole/printer.toml --shown whole -o none.vdb

@@ -106,6 +106,20 @@ for cut in "head -n 200" "cat" "grep -v '\"frame\":7,'"; do
     fails 65 "part/flips.jsonl: has $lit lit flips, but summary.json states $whole; it was cut or changed; restore it" $tool
   done
 done
+# As many flips with other angles, or other moments: their hash in the summary, which runs of former versions have not.
+for change in 's/"angle_deg":1/"angle_deg":2/' 's/"t_monotonic_s":./&1/' '$!N;s/\(.*\)\n\(.*\)/\2\n\1/'; do
+  spoil; rm part/SHA256SUMS; sed -i "$change" part/flips.jsonl
+  for tool in 'vam-status part' 'timeout 20 vam-status --watch part' 'vam-dose frames.exr --shown part -o x.vdb' 'vam-check part' 'vam-check part/flips.jsonl'; do
+    fails 65 'part/flips.jsonl: has lines whose SHA-256 begins [0-9a-f]{8}, but summary.json states [0-9a-f]{8}; it was cut or changed; restore it' $tool
+  done
+  (cd part && find . -type f -exec sha256sum {} + >../sums && mv ../sums SHA256SUMS)
+  fails 65 'part/flips.jsonl: has lines whose SHA-256' vam-check part
+  sed -i /flips_sha256/d part/summary.json; rm part/SHA256SUMS
+  ok 'the run of a former version is read' vam-status part
+  is 'and said to be unsealed' "$(vam-check part)" 'part: run folder without SHA256SUMS, unsealed'
+done
+is 'the log alone is held to the summary, too' "$(vam-check run/flips.jsonl)" 'run/flips.jsonl: flips of a print, sealed'
+spoil; rm part/SHA256SUMS; printf '{"utc' >>part/flips.jsonl; ok 'a line that was cut counts nowhere' vam-status part
 rm part/flips.jsonl; fails 65 "part/flips.jsonl: has 0 lit flips, but summary.json states $whole" vam-status part
 for spoiling in 'echo garbage >part/SHA256SUMS' ': >part/SHA256SUMS' 'rm part/angles.jsonl' 'rm part/summary.json' 'sed -i 2d part/flips.jsonl' 'sed -i /printer.toml/d part/SHA256SUMS'; do
   spoil; eval "$spoiling"

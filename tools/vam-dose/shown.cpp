@@ -79,6 +79,7 @@ cli::PrinterOptions printer_of(const Options& options) {
 
 void take_full_scale(Options& options) {
   if (options.shown.empty()) return;
+  for (const std::string& one : options.shown) require_unchanged(one);
   const std::string& run = options.shown.front();
   const std::string& sinogram = options.inputs.front();
   const double stated = io::read_showing(run, sinogram).full_scale;
@@ -113,7 +114,6 @@ std::vector<double> shown_turns(const Options& options, const std::string& sinog
   }
   std::vector<double> turns(info.height);
   for (const std::string& run : options.shown) {
-    require_unchanged(run);
     const io::Showing showing = io::read_showing(run, sinogram, options.before_s);
     double intensity = intensity_of(run, run == options.shown.front(), printer);
     if (full_scale && showing.full_scale > 0) intensity *= *full_scale / showing.full_scale;

@@ -19,7 +19,7 @@ namespace vam::dose_tool {
 [[nodiscard]] cli::PrinterOptions printer_of(const Options& options);
 
 /// Takes the full scale at which a run of --shown showed the sinogram, if it states it. Throws Fault::usage where
-/// --full-scale says otherwise.
+/// --full-scale says otherwise, Fault::data for a run whose logs or settings were changed since its end.
 void take_full_scale(Options& options);
 
 /// The full scale at which the first run of --shown showed a sinogram. Throws Fault::data where it does not state it.

@@ -18,6 +18,7 @@
 #include "base/json_text.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "base/sha256.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
@@ -163,13 +164,13 @@ void RunFolder::read_angle() {
 
 void RunFolder::read_flips() {
   if (progress_.turns > 0 && settled_) progress_.given_fraction = 0;
-  const std::optional<long> stated = io::stated_flips(path_);
+  const auto stated = io::stated_flips(path_);
   if (!flips_) {
-    if (!io::has_regular_file(file("flips.jsonl"))) return io::require_stated_flips(path_, stated, 0);
+    if (!io::has_regular_file(file("flips.jsonl"))) return io::require_stated_flips(path_, stated, 0, sha256(""));
     flips_.emplace(path_);
   }
   flips_->read();
-  io::require_stated_flips(path_, stated, flips_->lit());
+  io::require_stated_flips(path_, stated, flips_->lit(), flips_->sha256());
   progress_.missed = flips_->missed();
   progress_.blanks = flips_->blanks();
   if (const auto shown = flips_->shown(); !shown.empty()) {  // angles.jsonl may be cut

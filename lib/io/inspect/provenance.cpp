@@ -11,6 +11,7 @@
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/image/capture_folder.hpp"
+#include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
@@ -60,15 +61,21 @@ std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType ty
   return {{what, source->is_sealed(), source->seal(), source->info().history, source->has_checksums()}};
 }
 
+// A print that has ended left a list of hashes, and one of its flips in the summary, which former versions did not.
 std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
-  if (!has_run_sums(path)) {
-    throw Error{Fault::data, path +
-                                 ": has no SHA256SUMS, which a print writes when it has ended: it goes on, was "
-                                 "killed, or the list is gone; nothing of it can be verified"};
+  const auto stated = stated_flips(path);
+  if (has_run_sums(path)) {
+    const RunSums sums = read_run_sums(path);
+    auto damage = run_damage(path, sums, fast);
+    if (damage.empty() && !fast) require_stated_flips(path);
+    return {{"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, false, damage}};
   }
-  const RunSums sums = read_run_sums(path);
-  return {
-      {"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, false, run_damage(path, sums, fast)}};
+  if (!fast) require_stated_flips(path);
+  if (stated && stated->sha256.empty()) return {{"run folder without SHA256SUMS", false, "", {}}};
+  throw Error{Fault::data, path +
+                               ": has no SHA256SUMS, which a print writes when it has ended: it goes on, was "
+                               "killed, or the list is gone; " +
+                               (stated ? "only flips.jsonl" : "nothing") + " of it can be verified"};
 }
 
 std::vector<ProvenanceEntry> inspect_capture(const std::string& path, bool fast) {
@@ -93,6 +100,10 @@ bool is_manifest(const std::string& path, const std::string& text) {
 std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
   const std::string name = input_name(path);
+  if (const auto stated = stated_flips(path); stated && !stated->sha256.empty()) {
+    require_stated_flips(path);
+    return {{"flips of a print", true, "", {}}};
+  }
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
   if (is_manifest(path, text)) {

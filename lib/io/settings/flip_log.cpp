@@ -64,6 +64,8 @@ FlipLog::FlipLog(const std::string& path) : file_(log_of(path)), lines_(file_) {
 void FlipLog::read() {
   for (std::string text; lines_.next(text);) {
     ++line_;
+    text.push_back('\n');
+    hash_.add(text.data(), text.size());
     const Json event = parse_json(text);
     try {
       if (event.at("event") == "display") begin_run();
@@ -127,6 +129,8 @@ long FlipLog::lit() const {
   return std::count_if(flips_.begin(), flips_.end(), [](const LoggedFlip& flip) { return flip.frame >= 0; });
 }
 
+std::string FlipLog::sha256() const { return Sha256(hash_).digest(); }
+
 void FlipLog::end_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }
 
 std::vector<ShownImage> FlipLog::shown() const {
@@ -148,31 +152,48 @@ std::vector<ShownImage> read_shown(const std::string& run) {
   return log.shown();
 }
 
-std::optional<long> stated_flips(const std::string& run) {
+std::optional<StatedFlips> stated_flips(const std::string& run) {
   const std::filesystem::path log(log_of(run));
   const std::string file = (log.parent_path() / "summary.json").string();
   if (log.filename() != "flips.jsonl" || !has_regular_file(file)) return std::nullopt;
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
   const Json summary = parse_json(read_all(file, Content::text, most_bytes));
   if (!summary.is_object() || summary.value("schema", Json()) != "vam-print/1") return std::nullopt;  // being written
+  StatedFlips stated;
   const Json reached = summary.value("reached", Json());
-  if (!reached.is_object() || !reached.contains("lit_flips") || !reached["lit_flips"].is_number_integer())
-    return std::nullopt;
-  return reached["lit_flips"].get<long>();
+  if (reached.is_object() && reached.value("lit_flips", Json()).is_number_integer()) stated.lit = reached["lit_flips"];
+  if (const Json hash = summary.value("flips_sha256", Json()); hash.is_string()) stated.sha256 = hash;
+  return stated;
 }
 
-void require_stated_flips(const std::string& run, const std::optional<long>& stated, long lit) {
-  if (!stated || *stated == lit) return;
-  throw Error{Fault::data, log_of(run) + ": has " + std::to_string(lit) + " lit flips, but summary.json states " +
-                               std::to_string(*stated) + "; it was cut or changed; restore it"};
+void require_stated_flips(const std::string& run, const std::optional<StatedFlips>& stated, long lit,
+                          const std::string& sha256) {
+  if (!stated) return;
+  constexpr const char* remedy = "; it was cut or changed; restore it";
+  if (stated->lit && *stated->lit != lit) {
+    throw Error{Fault::data, log_of(run) + ": has " + std::to_string(lit) + " lit flips, but summary.json states " +
+                                 std::to_string(*stated->lit) + remedy};
+  }
+  if (stated->sha256.empty() || stated->sha256 == sha256) return;
+  throw Error{Fault::data, log_of(run) + ": has lines whose SHA-256 begins " + sha256.substr(0, 8) +
+                               ", but summary.json states " + stated->sha256.substr(0, 8) + remedy};
+}
+
+void require_stated_flips(const std::string& run) {
+  const auto stated = stated_flips(run);
+  if (!stated || (!stated->lit && stated->sha256.empty())) return;
+  if (!has_regular_file(log_of(run))) return require_stated_flips(run, stated, 0, vam::sha256(""));
+  FlipLog log(run);
+  log.read();
+  require_stated_flips(run, stated, log.lit(), log.sha256());
 }
 
 Showing read_showing(const std::string& run, const std::string& sinogram, std::optional<double> before_s) {
   require_sinogram_of(run, sinogram);
-  const std::optional<long> stated_lit = stated_flips(run);
+  const auto stated_log = stated_flips(run);
   FlipLog log(run);
   log.read();
-  require_stated_flips(run, stated_lit, log.lit());
+  require_stated_flips(run, stated_log, log.lit(), log.sha256());
   if (before_s) log.end_at(*before_s);
   const std::string given = sinogram == "-" ? "" : sha256_of(sinogram);
   Showing showing{sinogram == "-" ? log.shown() : log.shown_of(given)};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/sha256.hpp"
 #include "io/stream/log_lines.hpp"
 
 namespace vam::io {
@@ -45,6 +46,8 @@ class FlipLog {
   [[nodiscard]] long blanks() const { return blanks_; }
   /// Flips to images with light.
   [[nodiscard]] long lit() const;
+  /// SHA-256 of the lines so far, their ends included.
+  [[nodiscard]] std::string sha256() const;
 
  private:
   struct LoggedFlip {
@@ -62,6 +65,7 @@ class FlipLog {
 
   std::string file_;
   LogLines lines_;
+  Sha256 hash_;
   int line_ = 0;
   std::vector<LoggedFlip> flips_;
   std::vector<ShownSinogram> sinograms_;
@@ -75,11 +79,19 @@ class FlipLog {
 /// left out. Throws Fault::no_input, Fault::data for another kind of file.
 [[nodiscard]] std::vector<ShownImage> read_shown(const std::string& run);
 
-/// How many lit flips the summary.json of a run states, which vam-print writes when it ends; none where it states none.
-/// Read it before the log, which it closes.
-[[nodiscard]] std::optional<long> stated_flips(const std::string& run);
-/// Throws Fault::data, with both numbers, where a log has another number of lit flips than was stated.
-void require_stated_flips(const std::string& run, const std::optional<long>& stated, long lit);
+/// What the summary.json of a run states of its log of flips, which vam-print writes when it ends.
+struct StatedFlips {
+  std::optional<long> lit;  // flips with light
+  std::string sha256;       // of its whole lines; empty: not stated, as by former versions
+};
+/// None where no summary is there yet. Read it before the log, which it closes.
+[[nodiscard]] std::optional<StatedFlips> stated_flips(const std::string& run);
+/// Throws Fault::data where a log differs from what was stated: a number of lit flips with both numbers, other lines by
+/// the beginnings of both hashes. A log that is gone has neither.
+void require_stated_flips(const std::string& run, const std::optional<StatedFlips>& stated, long lit,
+                          const std::string& sha256);
+/// Throws as stated_flips(), FlipLog and require_stated_flips(); a log that is not stated is not read.
+void require_stated_flips(const std::string& run);
 
 /// What a run showed of a sinogram.
 struct Showing {

@@ -3,8 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <fstream>
 
+#include "base/sha256.hpp"
 #include "fault_of.hpp"
 #include "io/stream/stream.hpp"
 #include "lib/io/scratch.hpp"
@@ -166,4 +168,29 @@ TEST_CASE("a log that grows is read line by line, and its missed blanks are coun
   CHECK(log.shown().front().seconds == 2);
   CHECK(log.missed() == 2);
   CHECK(log.blanks() == 4);
+}
+
+TEST_CASE("a log is held to the summary beside it, whole lines alone, and to nothing where it states nothing") {
+  const scratch::Folder folder;
+  const std::string lines = flip(11, 0, 2) + flip(13, 1, 92);
+  const auto summary = [&](const std::string& keys) {
+    (void)folder.write("summary.json", R"({"schema": "vam-print/1")" + keys + "}");
+  };
+  const std::string hash = R"(, "flips_sha256": ")" + vam::sha256(lines) + "\"";
+  const std::string log = folder.write("flips.jsonl", lines);
+  const auto held = [&] { vam::io::require_stated_flips(log); };
+  held();  // no summary
+  summary("");
+  held();
+  CHECK(vam::io::stated_flips(log)->sha256.empty());
+  summary(R"(, "reached": {"lit_flips": 3})");
+  CHECK(has(error_of(held, Fault::data), "has 2 lit flips, but summary.json states 3"));
+  summary(hash);
+  held();
+  (void)folder.write("flips.jsonl", lines + "{\"utc\"");
+  held();
+  (void)folder.write("flips.jsonl", flip(11, 0, 2) + flip(13, 1, 91));
+  CHECK(has(error_of(held, Fault::data), "states " + vam::sha256(lines).substr(0, 8)));
+  std::filesystem::remove(log);
+  error_of(held, Fault::data);
 }
