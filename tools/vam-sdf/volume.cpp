@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sdf --volume: how far the print stands outside its design, for the next design.
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/vdb/vdb.hpp"
@@ -14,11 +15,16 @@ namespace vam::sdf_tool {
 void write_deviation_volume(const cli::App& app, const Options& options, const model::TriangleSoup& print,
                             const model::TriangleSoup& design, double rms_mm) {
   model::TriangleSoup closed = design;
-  if (const auto repair = solid::repair(closed, options.design); repair.boundary_edges > 0) {
+  const auto repair = solid::repair(closed, options.design);
+  if (repair.boundary_edges > 0) {
     throw Error{Fault::data,
                 options.design + ": has " + std::to_string(repair.boundary_edges) +
                     " boundary edges, across which inside and outside are not defined; --volume requires a "
                     "closed design"};
+  }
+  if (repair.duplicates_dropped > 0) {
+    warn(options.design + ": holds " + std::to_string(repair.duplicates_dropped) +
+         " duplicate triangles, which count once; a body may be there twice");
   }
   const model::Grid grid = solid::deviation_grid(design, options.volume_voxel_mm);
   require_memory(3.0 * sizeof(float) * static_cast<double>(grid.size()), "--volume: " + model::size_text(grid),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
 #include "base/index.hpp"
 #include "io/mesh/file.hpp"
@@ -25,6 +26,12 @@ std::uint64_t triangles_promised(const std::string& bytes) {
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, sizeof count);
   return count;
+}
+
+// What fills a block of a disk, or a line end of a program that saw text. Nothing else of a mesh looks so.
+bool is_padding(std::string_view bytes) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 16;
+  return bytes.size() <= most_bytes && bytes.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == bytes.npos;
 }
 
 std::array<float, 3> normal_of(const std::array<double, 3>& a, const std::array<double, 3>& b,
@@ -64,10 +71,10 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
                       std::to_string(binary_stl_bytes(bytes)) + " bytes) but the file has " +
                       std::to_string(bytes.size()) + " bytes; it is truncated or no STL"};
   }
-  // Some programs append a few bytes.
-  if (const std::uint64_t more = (bytes.size() - binary_stl_bytes(bytes)) / triangle_bytes; more > 0 && count > 0) {
-    throw MeshProblem{"the header states " + std::to_string(count) + " triangles but the file has " +
-                      std::to_string(count + more) + "; its count is damaged, or it holds several meshes"};
+  if (const std::string_view rest = std::string_view(bytes).substr(binary_stl_bytes(bytes));
+      count > 0 && !is_padding(rest)) {
+    throw MeshProblem{std::to_string(rest.size()) + " bytes follow the " + std::to_string(count) +
+                      " triangles that the header states; its count is damaged, or the file holds more than a mesh"};
   }
   PolygonSoup soup;
   soup.points.reserve(3 * count);

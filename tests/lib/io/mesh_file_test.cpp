@@ -301,9 +301,16 @@ TEST_CASE("faces beyond the count of a header are refused with both numbers") {
   const scratch::Folder folder;
   vam::io::write_stl(folder / "a.stl", box());
   const std::string stl = slurp(folder / "a.stl");
-  CHECK(read_mesh(folder.write("a", stl + std::string(49, 'x'))).triangles.size() == 12);
-  const std::string more = "the header states 12 triangles but the file has 24; its count is damaged";
-  CHECK(has(refusal(folder, stl + stl.substr(84)), more));
+  for (const std::string& padding : {std::string(49, '\0'), std::string(4096, '\0'), std::string("\r\n")}) {
+    CHECK(read_mesh(folder.write("a", stl + padding)).triangles.size() == 12);
+  }
+  for (const auto& [rest, count] : std::map<std::string, std::string>{{"x", "1"},
+                                                                      {std::string(48, '\0') + "x", "49"},
+                                                                      {stl.substr(84), "600"},
+                                                                      {stl, "684"},
+                                                                      {std::string(65537, '\0'), "65537"}}) {
+    CHECK(has(refusal(folder, stl + rest), count + " bytes follow the 12 triangles that the header states; its count"));
+  }
   CHECK(has(refusal(folder, box_off() + "3 0 1 2\n# end\n3 0 2 3\n"), "states 6 faces but the file has 8"));
   CHECK(has(refusal(folder, box_ply() + "3 0 1 2\n\n"), "states 6 faces but the file has 7"));
   vam::io::write_ply(folder / "b.ply", box(), {}, {});
