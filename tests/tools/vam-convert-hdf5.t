@@ -137,7 +137,7 @@ vam-convert bad.h5 --array packed --voxel 1 -o x.vdb 2>&1 | sed 's/.*by h5py: //
 ok 'the command unpacks it' sh unpack.sh
 ok 'and it is read' sh -c 'vam-convert plain.h5 --array packed --voxel 1 --stretch-z 1 -o plain.vdb'
 refused virtual 65 'bad.h5: /virtual has its values in other files'
-refused far 64 'but no dataset is called far, or it is in another file'
+refused far 65 'bad.h5: /far is a link to /group/only of the file one.dat, which is not in the file'
 refused no 64 'bad.h5: holds /complex \(records of several fields\), /deep \(1 x 2 x 3 x 4\), .*, but no dataset is called no'
 made flat.h5 <<'PY'
 f["a"], f["b/c"] = a[0], a[0, 0]

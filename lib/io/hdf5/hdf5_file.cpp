@@ -27,12 +27,14 @@ Open& of(H5FD_t* file) { return *reinterpret_cast<Open*>(file); }
 
 struct Info {
   const Hdf5Bytes* bytes;
+  const Open** opened;
 };
 
 H5FD_t* open_bytes(const char* /*name*/, unsigned /*flags*/, hid_t access, haddr_t /*most*/) {
   const auto* info = static_cast<const Info*>(api().H5Pget_driver_info(access));
   if (info == nullptr) return nullptr;
   auto* open = new (std::nothrow) Open{{}, info->bytes, 0};
+  *info->opened = open;
   return open == nullptr ? nullptr : &open->base;
 }
 
@@ -114,7 +116,8 @@ Handle open_file(const Hdf5Bytes& bytes, const std::string& name) {
   h5.H5PLset_loading_state(0);
   static const hid_t registered = h5.H5FDregister(&driver());
   const Handle access(h5.H5Pcreate(*h5.file_access));
-  const Info info{&bytes};
+  const Open* opened = nullptr;
+  const Info info{&bytes, &opened};
   if (registered < 0 || h5.H5Pset_driver(access.id(), registered, &info) < 0) {
     throw Error{Fault::bug, name + ": HDF5 does not start" + cause()};
   }
@@ -122,6 +125,12 @@ Handle open_file(const Hdf5Bytes& bytes, const std::string& name) {
   Handle file(h5.H5Fopen(name.c_str(), read_only, access.id()));
   if (!file) {
     throw Error{Fault::data, name + ": the HDF5 file is truncated, damaged or still being written" + cause()};
+  }
+  // Which the library takes from the superblock, counted from the beginning of the file, a user block included.
+  if (opened != nullptr && bytes.size > opened->used) {
+    throw Error{Fault::data, name + ": has " + std::to_string(bytes.size - opened->used) +
+                                 " bytes behind the end that its HDF5 superblock states; it is damaged, or more was "
+                                 "appended"};
   }
   return file;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/hdf5/private/hdf5_handle.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <vector>
 
@@ -47,6 +49,16 @@ std::string text_attribute(hid_t object, const char* name) {
   std::string copy(text.data());
   copy.erase(copy.find_last_not_of(' ') + 1);  // Fortran's padding
   return copy;
+}
+
+std::string target_of(hid_t group, const std::string& link) {
+  std::array<char, most_text> value{};  // a path; or flags, of which there are none, a file and a path in it
+  if (api().H5Lget_val(group, link.c_str(), value.data(), value.size() - 2, H5P_DEFAULT) < 0) return "";
+  if (value[0] != 0) return value.data();
+  const std::string file = value.data() + 1;
+  return file.empty()
+             ? ""
+             : std::string(value.data() + std::min(file.size() + 2, value.size() - 1)) + " of the file " + file;
 }
 
 Handle open_object(hid_t parent, const std::string& path) {

@@ -53,13 +53,18 @@ class Walk {
     const bool shows = text_attribute(group, "NX_class") == "NXdata";
     for (hsize_t i = 0; i < about.nlinks && links_ < most_links; ++i, ++links_) {
       const std::string link = name_of(group, i);
-      const Handle object = link.empty() ? Handle() : open_object(group, link);
-      H5O_info_t place{};
-      if (!object || h5.H5Oget_info2(object.id(), &place, H5O_INFO_BASIC) < 0) continue;
+      if (link.empty()) continue;
       const std::string at = path + "/" + link;
+      const bool is_signal = shows && link == (signal.empty() ? "data" : signal);
+      const Handle object = open_object(group, link);
+      H5O_info_t place{};
+      if (const std::string target = object ? "" : target_of(group, link); !target.empty()) {
+        found.push_back({at, {}, "a link to " + target + ", which is not in the file", is_signal, 0, true});
+      }
+      if (!object || h5.H5Oget_info2(object.id(), &place, H5O_INFO_BASIC) < 0) continue;
       if (h5.H5Iget_type(object.id()) == H5I_DATASET) {
         Dataset dataset = describe(object.id(), at);
-        dataset.is_signal = shows && link == (signal.empty() ? "data" : signal);
+        dataset.is_signal = is_signal;
         dataset.address = place.addr;
         found.push_back(std::move(dataset));
       } else if (h5.H5Iget_type(object.id()) == H5I_GROUP && groups_.insert(place.addr).second) {
@@ -105,6 +110,22 @@ std::vector<Dataset> only(const std::vector<Dataset>& all, const Wanted& wanted)
   return some;
 }
 
+/// Throws Fault::data where a link on the way to `path` leads nowhere.
+void require_links(hid_t file, const std::string& path, const std::string& name) {
+  for (std::size_t begin = 1; begin < path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    const Handle group = open_object(file, path.substr(0, begin));
+    const std::string at = path.substr(0, end);
+    const std::string target =
+        group && !open_object(file, at) ? target_of(group.id(), path.substr(begin, end - begin)) : "";
+    if (!target.empty()) {
+      throw Error{Fault::data, name + ": " + printable(at) + " is a link to " + printable(target) +
+                                   ", which is not in the file; give a file that holds it"};
+    }
+    begin = end + 1;
+  }
+}
+
 bool is_volume(const Dataset& dataset) { return dataset.holds.empty() && dataset.shape.size() == 3; }
 
 }  // namespace
@@ -135,8 +156,9 @@ std::string chosen_path(hid_t file, const std::string& named, const std::string&
   if (!named.empty()) {
     std::string path = named.starts_with('/') ? named : "/" + named;
     if (open_dataset(file, path)) return path;
-    throw Error{Fault::usage, name + ": holds " + list_of(datasets_of(file)) + ", but no dataset is called " +
-                                  printable(named) + ", or it is in another file"};
+    require_links(file, path, name);
+    throw Error{Fault::usage,
+                name + ": holds " + list_of(datasets_of(file)) + ", but no dataset is called " + printable(named)};
   }
   const std::vector<Dataset> all = datasets_of(file);
   const std::vector<Dataset> volumes = only(all, is_volume);
@@ -144,6 +166,10 @@ std::string chosen_path(hid_t file, const std::string& named, const std::string&
   const bool exchange =
       std::any_of(all.begin(), all.end(), [](const Dataset& d) { return is_volume(d) && d.path == "/exchange/data"; });
   if (exchange) return "/exchange/data";
+  for (const Dataset& d : all) {  // what the file is there to show must not be replaced by what else it holds
+    if (d.is_lost && (d.path == "/exchange/data" || (d.is_signal && signals.empty())))
+      require_links(file, d.path, name);
+  }
   if (signals.size() == 1) return signals.front().path;
   if (volumes.size() == 1) return volumes.front().path;
   if (volumes.empty()) {

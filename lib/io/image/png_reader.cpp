@@ -100,6 +100,10 @@ GreyImage decode_png(const std::string& bytes, const std::string& name) {
   std::vector<png_bytep> rows(reader.height());
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels.data() + y * reader.row_bytes();
   if (!reader.pixels(rows.data())) throw damaged();
+  if (source.left > 0) {
+    throw Error{Fault::data, name + ": has " + std::to_string(source.left) +
+                                 " bytes behind the end of its PNG image; it is damaged, or holds several images"};
+  }
   if (image.bits == 16) {
     std::memcpy(image.values.data(), pixels.data(), 2 * image.values.size());
   } else {

@@ -22,8 +22,8 @@ using Shape = std::vector<hsize_t>;
 /// A file to which datasets are added.
 class Made {
  public:
-  explicit Made(const std::string& path)
-      : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), links_(H5Pcreate(H5P_LINK_CREATE)) {
+  explicit Made(const std::string& path, hid_t creation = H5P_DEFAULT)
+      : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT)), links_(H5Pcreate(H5P_LINK_CREATE)) {
     H5Pset_create_intermediate_group(links_, 1);
   }
   ~Made() {
@@ -65,6 +65,9 @@ class Made {
   }
   void link(const std::string& from, const std::string& to) const {
     REQUIRE(H5Lcreate_soft(to.c_str(), file_, from.c_str(), links_, H5P_DEFAULT) >= 0);
+  }
+  void link_out(const std::string& from, const std::string& file, const std::string& to) const {
+    REQUIRE(H5Lcreate_external(file.c_str(), to.c_str(), file_, from.c_str(), links_, H5P_DEFAULT) >= 0);
   }
   void virtual_copy(const std::string& path, const Shape& shape, const std::string& other_file) const {
     const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
@@ -270,6 +273,53 @@ TEST_CASE("HDF5 files that are not read are refused with what they hold") {
   CHECK(has(refusal(folder / "huge.h5"), "column 3, row 1 of image 1 is not a finite number"));
 }
 
+TEST_CASE("HDF5 links that lead nowhere are named, and nothing else is taken for what they stand for") {
+  const scratch::Folder folder;
+  const std::string path = folder / "a.h5";
+  {
+    const Made made(path);
+    made.link("/gone", "/nowhere/data");
+    made.link_out("/far", "b.h5", "/data");
+    made.link_out("/master", "b.h5", "/entry");
+  }
+  const std::string far = "/far is a link to /data of the file b.h5, which is not in the file";
+  CHECK(has(refusal(path, Fault::data, {"/gone"}), "a.h5: /gone is a link to /nowhere/data, which is not in the file"));
+  CHECK(has(refusal(path, Fault::data, {"far"}), far));
+  CHECK(has(refusal(path, Fault::data, {"/master/data"}), "/master is a link to /entry of the file b.h5"));
+  CHECK(has(refusal(path), "no array of 3 dimensions, but /far (a link to /data of the file b.h5, which is not in"));
+  for (const char* shown : {"/exchange/data", "/entry/data"}) {
+    const std::string two = folder / "two.h5";
+    {
+      const Made made(two);
+      made.add("/preview", {2, 3, 4}, H5T_STD_I32LE, counted(24));
+      made.add(std::string(shown) + "_dark", {3, 4}, H5T_STD_I32LE, counted(12));
+      if (shown == std::string("/entry/data")) made.text("/entry", "NX_class", "NXdata");
+      made.link(shown, "/nowhere");
+    }
+    CHECK(has(refusal(two), std::string(shown) + " is a link to /nowhere, which is not in the file"));
+    CHECK(is_counted(read(two, {"/preview"})));
+  }
+}
+
+TEST_CASE("HDF5 files end where their superblock says, behind a user block, too") {
+  const scratch::Folder folder;
+  const std::string path = folder / "a.h5";
+  for (const hsize_t user_block : {0, 512}) {
+    CAPTURE(user_block);
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_userblock(creation, user_block);
+    Made(path, creation).add("/a", {2, 3, 4}, H5T_STD_I32LE, counted(24));
+    H5Pclose(creation);
+    const std::string bytes = scratch::slurp(path);
+    CHECK(is_counted(read(path)));
+    CHECK(is_counted(read(folder.write("b.h5", std::string(512, 'u') + bytes))));  // as h5jam puts one before it
+    for (const std::size_t more : {1, 4096}) {
+      const std::string said = refusal(folder.write("c.h5", bytes + std::string(more, '\0')));
+      CHECK(has(said, "has " + std::to_string(more) + " bytes behind the end that its HDF5 superblock states"));
+    }
+  }
+}
+
 TEST_CASE("NXtomo keys and units that contradict the projections are refused") {
   const scratch::Folder folder;
   const std::string path = folder / "a.nxs";
@@ -299,7 +349,9 @@ TEST_CASE("HDF5 groups that hold each other are walked once") {
     made.link("/a/nowhere", "/c");
   }
   CHECK(is_counted(read(folder / "loop.h5")));
-  CHECK(has(refusal(folder / "loop.h5", Fault::usage, {"/x"}), "holds /a/b/data (2 x 3 x 4), but no dataset"));
+  CHECK(has(refusal(folder / "loop.h5", Fault::usage, {"/x"}),
+            "holds /a/b/data (2 x 3 x 4), "
+            "/a/nowhere (a link to /c, which is not in the file), but no dataset"));
 }
 
 TEST_CASE("HDF5 files cut off or damaged anywhere are read, or refused in one line") {

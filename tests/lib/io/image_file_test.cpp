@@ -92,6 +92,9 @@ TEST_CASE("truncated, damaged and foreign images are errors") {
   std::string flipped = png;
   flipped[png.size() / 2] = static_cast<char>(flipped[png.size() / 2] ^ 1);
   CHECK(has(refused(flipped), "the PNG is damaged"));
+  for (const std::string& rest : {std::string("\0", 1), png}) {
+    CHECK(has(refused(png + rest), "has " + std::to_string(rest.size()) + " bytes behind the end of its PNG image"));
+  }
   CHECK(has(refused("GIF89a"), "neither PNG nor TIFF"));
   CHECK(has(refused(""), "neither PNG nor TIFF"));
   write_tiff(folder / "a.tif", all_levels(16));

@@ -10,7 +10,7 @@
 namespace vam::io::hdf5 {
 
 /// For reading; no plugins, nothing said on stderr. `bytes` must outlive it. Throws Fault::data, beginning with
-/// `name`: truncated, damaged, or not closed by its writer.
+/// `name`: truncated, damaged, not closed by its writer, or followed by other bytes.
 [[nodiscard]] Handle open_file(const Hdf5Bytes& bytes, const std::string& name);
 
 }  // namespace vam::io::hdf5

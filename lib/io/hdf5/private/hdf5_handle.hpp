@@ -36,6 +36,10 @@ class Handle {
 /// An attribute that is one text; empty where there is none.
 [[nodiscard]] std::string text_attribute(hid_t object, const char* name);
 
+/// Where a link in a group leads: "/entry/data", "/data of the file b.h5"; empty where it is the object itself, or
+/// none.
+[[nodiscard]] std::string target_of(hid_t group, const std::string& link);
+
 /// "/exchange/data", below a file or group: false where there is no such object in this file.
 [[nodiscard]] Handle open_object(hid_t parent, const std::string& path);
 /// The same; false also where it is no dataset.

@@ -11,7 +11,7 @@
 #define VAM_HDF5_FUNCTIONS(X)                                                                                         \
   X(H5Aexists) X(H5Aget_space) X(H5Aget_type) X(H5Aopen) X(H5Aread) X(H5Dget_create_plist) X(H5Dget_space)            \
   X(H5Dget_space_status) X(H5Dget_type) X(H5Dread) X(H5Eset_auto2) X(H5Ewalk2) X(H5FDregister) X(H5Fopen)             \
-  X(H5Gget_info) X(H5Idec_ref) X(H5Iget_type) X(H5Lget_name_by_idx) X(H5Oget_info2) X(H5Oopen) X(H5PLset_loading_state) \
+  X(H5Gget_info) X(H5Idec_ref) X(H5Iget_type) X(H5Lget_name_by_idx) X(H5Lget_val) X(H5Oget_info2) X(H5Oopen) X(H5PLset_loading_state) \
   X(H5Pcreate) X(H5Pget_chunk) X(H5Pget_driver_info) X(H5Pget_external_count) X(H5Pget_filter2) X(H5Pget_layout)      \
   X(H5Pget_nfilters) X(H5Pset_driver) X(H5Screate_simple) X(H5Sget_simple_extent_dims) X(H5Sget_simple_extent_ndims)  \
   X(H5Sget_simple_extent_npoints) X(H5Sselect_hyperslab) X(H5Tget_class) X(H5Tget_size) X(H5Tis_variable_str)         \
