@@ -24,9 +24,11 @@ std::vector<std::string> description() {
       "The output name selects the format. A name in .exr is a frame stack of --frames images, and so is standard "
       "output; with --live every frame is sent immediately as a stack of its own, for vam-ost --live. A name without "
       "an extension, or ending in /, is a folder of numbered PNG files with manifest.jsonl: a frame is on the disk "
-      "before its line of the manifest is. Repeating the command captures only the missing frames.",
+      "before its line of the manifest is. Repeating the command captures only the missing frames, names them in a "
+      "warning, and is refused (73) with other settings.",
       "Every frame is kept by default; in a folder the number of a lost frame is left out. With --view-step DEG the "
-      "frame nearest to each multiple of that angle is kept, for --turns turns from angle 0.",
+      "frame nearest to each multiple of that angle is kept, for --turns turns from angle 0; with --speed, an angle is "
+      "refused of which these frames would be further apart than vam-ost allows (15 degrees).",
       "The camera is that of --device or camera.device in the printer file; without either the command fails. Frames "
       "of a simulated camera are marked: \"simulated\" in log, report and manifest, and a line in the history of a "
       "stack.",
@@ -69,10 +71,12 @@ cli::Manual manual() {
        {"Twenty frames of a simulated print, 18 degrees apart, as fast as they can be rendered:",
         "vam-capture --device 'sim:?pace=virtual&speed=180&lit=0.1' --binning 8 --fps 10 --frames 20 -o "
         "views.exr"},
-       {"Half a turn into a folder; the second call finds nothing missing and captures nothing:",
-        "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --view-step 12 --turns 0.5 -o "
+       {"A turn of views into a folder, whose second call finds nothing missing and captures nothing; and what they "
+        "show:",
+        "vam-capture --device 'sim:?pace=virtual&speed=90&lit=0' --binning 8 --fps 10 --speed 90 --view-step 9 -o "
         "views/\nvam-capture "
-        "--device 'sim:?pace=virtual' --binning 8 --speed 90 --view-step 12 --turns 0.5 -o views/"}},
+        "--device 'sim:?pace=virtual&speed=90&lit=0' --binning 8 --fps 10 --speed 90 --view-step 9 -o views/\n"
+        "vam-ost views -o print.vdb"}},
       notes(),
       {"vam-calibrate", "vam-sim-camera", "vam-stage", "vam-project", "vam-ost"},
       {"In addition to the attributes of all frame stacks, every image of a captured stack has vam:time_s (seconds on "

@@ -91,7 +91,9 @@ quiet 'a whole recording' vam-capture --device replay:views.exr --frames 12 -o w
 cp -r whole half; rm half/000003.png half/00001*.png  # one is deleted; the capture was killed before two more
 head -n 11 whole/manifest.jsonl >half/manifest.jsonl
 printf '{"frame":10,"file":"0000' >>half/manifest.jsonl
-quiet 'resumes' vam-capture --device replay:views.exr --frames 12 -o half/
+vam-capture --device replay:views.exr --frames 12 -o half/ 2>said
+is 'resumes, and says which images are new' "$? $(cat said)" \
+  '0 vam-capture: warning: half/: keeps 9 images of an earlier capture; new are 000003.png, 000010.png to 000011.png; if the scene has changed since, capture all into another folder'
 is 'and captures only the missing frames' "$(tail -n 4 half/manifest.jsonl | sed 's/,"file.*//;s/,"dropped.*//' | tr '\n' ' ')" \
   '{"frame":3 {"frame":10 {"frame":11 {"frames":12 '
 lines() { sed 's/,"seal":.*//' $1/manifest.jsonl | sort -u; }
@@ -110,7 +112,7 @@ shrinking() { vam-capture --device "sim:?pace=virtual$1" --binning 12 --frames 6
 shrinking '&shrink=4' 2>said
 is 'another size' "$? $(grep -c ': sends images of 60 x 22 pixels instead of 60 x 45;' said) $(wc -l <said)" '76 1 1'
 is 'four frames are kept' "$(grep -c '"complete":true' shrunk/manifest.jsonl) $(ls shrunk | grep -c png)" '4 4'
-quiet 'the remaining frames are captured' shrinking ''
+ok 'the remaining frames are captured' shrinking ''
 is 'all six' "$(grep -c '"complete":true' shrunk/manifest.jsonl)" 6
 vam-capture --device 'sim:?pace=virtual' --binning 20 --frames 4 -o coarse/
 cp -r whole differs; cp coarse/000003.png differs/
@@ -124,7 +126,7 @@ tries=0; until [ -s killed/manifest.jsonl ] && [ "$(wc -l <killed/manifest.jsonl
 kill -KILL $victim; wait $victim 2>/dev/null
 for file in $(grep -o '[0-9]*\.png' killed/manifest.jsonl); do cmp -s "killed/$file" "whole/$file" || echo "$file"; done >different
 is 'after kill -9 every listed image is complete' "$(cat different)" ''
-quiet 'and the remaining frames are captured' vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/
+ok 'and the remaining frames are captured' vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/
 for file in whole/*.png; do cmp -s "$file" "killed/$(basename "$file")" || echo "$file"; done >different
 is 'with the same result' "$(cat different)" ''
 
@@ -143,6 +145,16 @@ quiet 'live frames reach vam-ost' sh live.sh
 holds 'which saw a turn' "$(grep -c turns live.log) >= 1"
 vam-ost turn -o seen.vdb 2>said
 is 'a capture folder is read by vam-ost with its angles' "$? $(grep -vc '000000.png: dark' said)" '0 0'  # no print yet
+
+# Views of a turn that vam-ost can use, or a refusal with what to do.
+fails 64 '^vam-capture: --view-step: at 90 deg/s and 10 frames/s, views at multiples of 12 deg are up to 18 deg apart, and vam-ost allows 15; give --view-step 9, or --fps 15$' \
+  $take --speed 90 --view-step 12 -o odd/
+fails 64 'views at multiples of 5 deg are up to 18 deg apart, and vam-ost allows 15; give --fps 36$' $take --speed 180 --view-step 5 -o odd/
+for remedy in '--fps 10 --view-step 9' '--fps 15 --view-step 12'; do
+  quiet "views by $remedy" vam-capture --device "sim:?pace=virtual&lit=0&speed=90" --binning 12 --speed 90 $remedy -o odd/
+  ok 'are a turn to vam-ost' vam-ost odd -o odd.vdb
+  rm -r odd
+done
 
 # Images and lines that were changed, exchanged, added or lost are named by what reads a folder.
 ok 'a whole folder is sealed' sh -c 'vam-check turn | grep -qx "turn: capture folder of 44 images, sealed"'
@@ -180,7 +192,12 @@ spoil; cp again/000002.png bad/000003.png; fails 65 'bad/000003.png: is not the 
 spoil; rm bad/000003.png
 fails 66 'bad/000003.png: is gone, but manifest.jsonl lists it; restore it, or repeat vam-capture' vam-ost bad -o no.vdb
 fails 65 'bad/000003.png: is gone' vam-check --fast bad
-quiet 'one that was deleted is captured again' $take --speed 90 --view-step 9 --turns 1.1 -o bad/
+for other in '90 --view-step 9 --lag 7' '45 --view-step 9' '90 --view-step 9 --exposure 5000' '90 --view-step 9 --pixel 0.2' '90 --view-step 4.5'; do
+  fails 73 'bad/: was captured with another setting .(lag_ms 0.0, not 7.0|speed_deg_s 90.0, not 45.0|exposure_us 20000.0, not 5000.0|pixel_mm 0.[0-9]*, not 0.2|every_deg 9.0, not 4.5).; give another folder' \
+    $take --turns 1.1 --speed $other -o bad/
+done
+$take --speed 90 --view-step 9 --turns 1.1 -o bad/ 2>said
+is 'one that was deleted is captured again, and named' "$? $(sed 's/; if.*//' said)" '0 vam-capture: warning: bad/: keeps 43 images of an earlier capture; new are 000003.png'
 ok 'and the folder is whole' vam-check bad
 for change in '5d' '2d' '1d' '5s/"angle_deg":[0-9.]*/"angle_deg":33.5/' '5s/,"seal.*"/,"seal":"xxh3:"/' '5s/,"seal[^}]*//' '1s/,"seal[^}]*//' '46s/:44,/:43,/'; do
   spoil; sed -i "$change" bad/manifest.jsonl

@@ -10,6 +10,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/progress.hpp"
+#include "base/text.hpp"
 #include "device/open/camera.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
@@ -92,11 +93,31 @@ std::unique_ptr<FrameStore> open_store(const cli::App& app, const Options& o, co
     head.update(facts(camera));
     head["pixel_mm"] = o.pixel_mm.value_or(printer.camera.pixel_mm * camera.mode().binning);
     head["every_deg"] = o.every_deg.value_or(0);
+    head["lag_ms"] = o.lag_ms.value_or(printer.camera.lag_ms);
+    head["speed_deg_s"] = o.speed_deg_s ? Json(*o.speed_deg_s) : Json();  // null: not the source of the angles
     return open_folder(o.output, head);
   }
   const bool simulated = camera.identify().contains("simulated");
   const model::StackInfo info = stack_info(app, o, printer, camera.mode(), count, simulated);
   return o.live ? open_stream(o.output, info, o.stack) : open_stack(o.output, info, o.stack);
+}
+
+// Frames of a free-running camera are not where the views are wanted, but at multiples of their own.
+void require_near_views(const Options& o, const device::CameraMode& mode) {
+  constexpr double most_deg = 15;  // that vam-ost allows between views
+  const bool runs_freely = o.camera.trigger.empty() || o.camera.trigger == "free";
+  if (!o.every_deg || !o.speed_deg_s || !runs_freely || *o.every_deg > most_deg || !(mode.fps > 0)) return;
+  const double frame_deg = *o.speed_deg_s / mode.fps;
+  constexpr double same = 1e-6;
+  const double frames = std::ceil(*o.every_deg / frame_deg - same);  // between the views that are furthest apart
+  if (frames * frame_deg <= most_deg + same) return;
+  const double nearest_deg = std::floor(*o.every_deg / frame_deg) * frame_deg;
+  throw Error{Fault::usage, "--view-step: at " + format_number(*o.speed_deg_s, 6) + " deg/s and " +
+                                format_number(mode.fps, 6) + " frames/s, views at multiples of " +
+                                format_number(*o.every_deg, 6) + " deg are up to " +
+                                format_number(frames * frame_deg, 6) + " deg apart, and vam-ost allows 15; give " +
+                                (nearest_deg > 0 ? "--view-step " + format_number(nearest_deg, 6) + ", or " : "") +
+                                "--fps " + format_number(*o.speed_deg_s * frames / *o.every_deg, 6)};
 }
 
 std::unique_ptr<device::AngleSource> open_angles(const Options& o, const device::CapturePlan& plan) {
@@ -190,6 +211,7 @@ void take(const cli::App& app, const Options& options) {
   device::EventLog log(options.log);
   const auto angles = open_angles(options, plan);
   const auto camera = open_camera(options, printer);
+  require_near_views(options, camera->mode());
   const auto store = open_store(app, options, printer, *camera, plan.frames);
   Json about = facts(*camera);
   about["lag_ms"] = 1e3 * plan.latency_s;

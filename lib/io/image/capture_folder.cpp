@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "base/fingerprint.hpp"
@@ -58,11 +59,29 @@ Json to_line(const CaptureRecord& record) {
 std::string difference(const Json& there, const Json& wanted) {
   for (const auto& [key, value] : wanted.items()) {
     const auto found = there.find(key);
+    const bool is_recent = key == "lag_ms" || key == "speed_deg_s";
+    if (found == there.end() && is_recent) continue;
     if (found == there.end() || *found != value) {
       return key + " " + (found == there.end() ? "unknown" : found->dump()) + ", not " + value.dump();
     }
   }
+  for (const auto& [key, value] : there.items()) {
+    if (key != manifest_seal_key && !wanted.contains(key)) return key + " " + value.dump() + ", not unknown";
+  }
   return "";
+}
+
+// "000003.png, 000010.png to 000012.png"
+std::string names_of(const std::set<long>& places) {
+  std::string text;
+  for (auto first = places.begin(); first != places.end();) {
+    auto last = first;
+    while (std::next(last) != places.end() && *std::next(last) == *last + 1) ++last;
+    text += (text.empty() ? "" : ", ") + capture_file_name(*first);
+    if (last != first) text += " to " + capture_file_name(*last);
+    first = std::next(last);
+  }
+  return text;
 }
 
 }  // namespace
@@ -119,6 +138,7 @@ void CaptureFolder::require_images() {
       gone_.insert(place);
     } else {
       (void)read_captured(folder_, record);
+      ++earlier_;
     }
   }
   unlisted_ = unlisted(manifest_, images_of(folder_));
@@ -148,6 +168,7 @@ void CaptureFolder::keep(CaptureRecord record, const GreyImage& levels) {
   write_line(to_line(record));
   manifest_.frames[record.place] = record;
   gone_.erase(record.place);
+  fresh_.insert(record.place);
   unlisted_.erase(name);
 }
 
@@ -160,6 +181,10 @@ void CaptureFolder::end() {
   if (!manifest_.ended && manifest_.sealed) {
     write_line({{"frames", manifest_.frames.size()}, {"dropped_frames", manifest_.dropped}});
     manifest_.ended = true;
+  }
+  if (earlier_ > 0 && !fresh_.empty()) {
+    warn(folder_ + ": keeps " + std::to_string(earlier_) + " images of an earlier capture; new are " +
+         names_of(fresh_) + "; if the scene has changed since, capture all into another folder");
   }
   if (!unlisted_.empty()) throw Error{Fault::data, without_line(folder_, unlisted_)};
 }

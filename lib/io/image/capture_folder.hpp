@@ -64,7 +64,8 @@ class CaptureFolder {
  public:
   /// Makes the folder, or resumes an existing one, whose images are held to the manifest: those that are gone are
   /// missing frames. Throws Fault::no_output when its head differs ("was taken with exposure_us 20000, not 10000"), or
-  /// it holds other things; Fault::data where images or manifest are not what was captured, or the manifest is empty.
+  /// it holds other things; lag_ms and speed_deg_s, which former versions did not state, are compared where they are
+  /// stated. Throws Fault::data where images or manifest are not what was captured, or the manifest is empty.
   CaptureFolder(const std::string& folder, const Json& head);
   ~CaptureFolder();
   CaptureFolder(const CaptureFolder&) = delete;
@@ -75,7 +76,8 @@ class CaptureFolder {
   /// Of record.levels whatever it says: the fingerprint is that of the image. Throws Fault::io.
   void keep(CaptureRecord record, const GreyImage& levels);
   void dropped(long first, long last);
-  /// Writes that the capture has ended, if that is not what the last line says. Throws Fault::io, and Fault::data where
+  /// Writes that the capture has ended, if that is not what the last line says; warns where it joined new images to
+  /// those of an earlier one. Throws Fault::io, and Fault::data where
   /// an image that was there before has no line still.
   void end();
 
@@ -85,6 +87,8 @@ class CaptureFolder {
   std::string folder_;
   CaptureManifest manifest_;
   std::set<long> gone_;             // places of frames whose images are
+  long earlier_ = 0;                // images of captures before this one
+  std::set<long> fresh_;            // places of those of this one
   std::set<std::string> unlisted_;  // images without a line
   int directory_ = -1;
   int log_ = -1;
