@@ -99,7 +99,7 @@ void add_camera(cli::App& app, Options& o) {
   app.option("--device", "DEVICE", o.device, "Camera: " + device::camera_devices() + ".").default_is("camera.device");
   app.option("--exposure", "US", o.camera.exposure_us, cli::positive, "Exposure time.")
       .default_is("camera.exposure_us");
-  app.option("--fps", "HZ", o.camera.fps, cli::positive, "Frames per second.").default_is("camera.fps");
+  app.option("--fps", "HZ", o.camera.fps, cli::rate, "Frames per second.").default_is("camera.fps");
   app.option("--binning", "N", o.camera.binning, {1, 64}, "Binning by the camera: the sum of N x N pixels.")
       .default_is("camera.binning");
   app.option("--gain", "VALUE", o.camera.gain, cli::any, "Gain, in dB or in steps of the camera.")
@@ -130,7 +130,7 @@ void declare(cli::App& app, Options& o) {
       .was("--every");
   app.option("--turns", "N", o.turns, cli::positive, "With --view-step: number of turns.").default_is("1");
   app.option("--follow", "FILE", o.follow, "Read the stage angle from this output of vam-stage, a FIFO or -.");
-  app.option("--speed", "DEG/S", o.speed_deg_s, cli::positive,
+  app.option("--speed", "DEG/S", o.speed_deg_s, cli::rate,
              "Without --follow: stage speed; the angle is speed x time since the start.");
   app.option("--angle", "DEG", o.angle_deg, {0, 1e6}, "Without --follow: fixed stage angle.");
   app.option("--lag", "MS", o.lag_ms, {-10000, 10000},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
@@ -105,6 +106,19 @@ std::string format_number(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
+}
+
+std::string plain_number(double value) {
+  constexpr double most = 1e15;
+  constexpr double least = 1e-9;
+  const double size = std::abs(value);
+  if (!(size < most) || (size < least && size > 0)) return format_number(value);
+  char text[64];
+  const bool whole = value == std::round(value);
+  std::snprintf(text, sizeof text, "%.*f", whole ? 0 : 9, value);
+  std::string digits = text;
+  if (!whole) digits.erase(digits.find_last_not_of('0') + 1);
+  return digits;
 }
 
 std::string mm_text(double value_mm) { return format_number(value_mm) + " mm"; }

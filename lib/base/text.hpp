@@ -34,6 +34,9 @@ namespace vam {
 /// Shortest decimal form with at most `digits` significant digits, for messages: format_number(0.0650) = "0.065".
 [[nodiscard]] std::string format_number(double value, int digits = 6);
 
+/// Without an exponent, as limits are told: 1000000000, 0.000001; the shortest form where that has no digit.
+[[nodiscard]] std::string plain_number(double value);
+
 /// "1.5 mm"
 [[nodiscard]] std::string mm_text(double value_mm);
 

@@ -47,6 +47,7 @@ struct Range {
 inline constexpr Range any{-1e300, 1e300};
 inline constexpr Range positive{0, 1e300, true};
 inline constexpr Range non_negative{0, 1e300};
+inline constexpr Range rate{0.001, 1e6};  // of what must end in a lifetime: frames a second, degrees a second
 
 struct Option;  // cli/private/declaration.hpp
 struct Declaration;

@@ -2,7 +2,6 @@
 #include "cli/private/values.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
@@ -11,25 +10,11 @@
 
 namespace vam::cli {
 
-namespace {
-
-/// Without an exponent, for manuals: 1000000, 0.000001.
-std::string plain(double value) {
-  char text[64];
-  const int decimals = value == std::round(value) ? 0 : 9;
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  std::string digits = text;
-  if (decimals > 0) digits.erase(digits.find_last_not_of('0') + 1);
-  return digits;
-}
-
-}  // namespace
-
 std::string describe(const Range& range) {
   const bool has_low = range.low > any.low;
   const bool has_high = range.high < any.high;
-  const std::string low = plain(range.low);
-  const std::string high = plain(range.high);
+  const std::string low = plain_number(range.low);
+  const std::string high = plain_number(range.high);
   if (has_low && has_high) return (range.open_low ? "more than " + low + ", at most " : low + " to ") + high;
   if (has_low) return (range.open_low ? "more than " : "at least ") + low;
   if (has_high) return "at most " + high;

@@ -20,6 +20,9 @@ ok 'with a warning' grep -q 'warning: .*: option lit_s is now lit$' said
 rm former.exr present.exr said
 fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
 fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
+for rate in '--fps 1e-300 --frames 2' '--speed 1e-300 --view-step 3'; do
+  fails 64 "^vam-capture: ${rate%% *}: 1e-300 is out of range; give 0.001 to 1000000" vam-capture --device sim:?pace=virtual $rate -o views.exr
+done
 fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr
 fails 66 'cannot open' $take --frames 1 --follow missing -o views.exr
 fails 69 'cannot open' vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr

@@ -61,6 +61,10 @@ ok 'with the sensitivity' grep -q 'Sensitivity of the resin' new.html
 rm -r half/renewed half/renewed.jsonl
 ok 'live metrology' sh -c 'vam-status half | grep -q "cured 65.8 %, missing 34.2 %"'
 
+for tool in vam-check vam-status; do
+  $tool run >&- 2>err; is "$tool: nowhere to write to" "$? $(grep -c "^$tool: stdout: cannot" err)" '74 1'
+done
+
 # A print that has ended is held to its hashes: what was cut, changed, lost or added since is named.
 spoil() { rm -rf part; cp -r run part; }
 ok 'a run folder is verified' sh -c "vam-check run | grep -Eqx 'run: run folder of [0-9]+ files, sealed'"

@@ -14,7 +14,7 @@ namespace vam::curethrough {
 
 void add_print(cli::App& app, PrintOptions& options) {
   app.group("Print");
-  app.option("--print-speed", "MM_H", options.speed_mm_h, cli::positive, "Speed of the platform.").was("--speed");
+  app.option("--print-speed", "MM_H", options.speed_mm_h, cli::rate, "Speed of the platform.").was("--speed");
   app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
              "Depth in which the intensity falls to a tenth (base 10).");
   app.default_is("from resin.absorption_per_mm, else 2000");

@@ -16,11 +16,11 @@ namespace {
 
 void add_time(cli::App& app, Options& options) {
   app.group("Time");
-  app.option("--fps", "HZ", options.fps, cli::positive, "Frames per second.")
+  app.option("--fps", "HZ", options.fps, cli::rate, "Frames per second.")
       .default_is("projector.fps; for slices print speed / slice height");
-  app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::positive, "Speed of the platform, for slices.")
+  app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::rate, "Speed of the platform, for slices.")
       .default_is("as stated in the stack");
-  app.option("--speed", "DEG/S", options.speed_deg_s, cli::positive, "Stage speed.").default_is("stage.speed_deg_s");
+  app.option("--speed", "DEG/S", options.speed_deg_s, cli::rate, "Stage speed.").default_is("stage.speed_deg_s");
   app.option("--turns", "N", options.turns, cli::positive, "Turns of the print; not necessarily a whole number.")
       .default_is("stage.turns");
 }

@@ -50,7 +50,11 @@ PolygonSoup parse(const std::string& bytes, const std::string& others) {
                       foreign_remedy(bytes)};
   }
   // A binary STL has no signature; of no other format is anything left but text.
-  if (bytes.find('\0') != std::string::npos) return parse_stl(bytes);
+  if (const std::size_t at = bytes.find('\0'); at != std::string::npos) {
+    if (const std::string text = text_format_of(bytes); !text.empty())
+      throw MeshProblem{"is damaged: byte " + std::to_string(at) + " of its text (" + text + ") is 0; save it again"};
+    return parse_stl(bytes);
+  }
   throw MeshProblem{"not a mesh of a known format (" + mesh_format_names() + ")"};
 }
 

@@ -3,6 +3,7 @@
 #include "io/mesh/private/formats.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <string_view>
 
 #include "base/printable.hpp"
@@ -55,6 +56,14 @@ bool is_text_stl(const std::string& bytes) {
 // The size comes before "solid": many programs begin the header of a binary STL with that word.
 bool is_stl(const std::string& bytes) { return has_binary_stl_size(bytes) || is_text_stl(bytes); }
 
+bool has_vertex_line(const std::string& text) {
+  for (std::size_t line = 0; line < text.size(); line = std::min(text.find('\n', line), text.size()) + 1) {
+    double x = 0, y = 0, z = 0;
+    if (text[line] == 'v' && std::sscanf(text.c_str() + line, "v %lf %lf %lf", &x, &y, &z) == 3) return true;
+  }
+  return false;
+}
+
 void write_plain_ply(const std::string& path, const model::TriangleSoup& mesh,
                      const std::vector<std::string>& comments) {
   write_ply(path, mesh, {}, comments);
@@ -81,6 +90,13 @@ void write_obj(const std::string& path, const model::TriangleSoup& mesh, const s
 }
 
 }  // namespace
+
+std::string text_format_of(const std::string& bytes) {
+  std::string text = bytes.substr(0, 1 << 16);
+  std::replace(text.begin(), text.end(), '\0', ' ');
+  if (is_text_stl(text) && lower_case(text).find("vertex") != std::string::npos) return "ASCII STL";
+  return is_obj(text) && has_vertex_line(text) ? "OBJ" : "";
+}
 
 bool is_3mf(const std::string& bytes) { return bytes.starts_with("PK\3\4"); }
 

@@ -48,7 +48,7 @@ const std::vector<PrinterField> fields{
     {"projector", "max_intensity_mw_cm2", at<&Printer::projector, &Projector::max_intensity_mw_cm2>, "intensity at full grey", 0, most_mw_cm2, true},
     {"projector", "response", at<&Printer::projector, &Projector::response>, "response table: CSV file \"grey,intensity\", relative to this file; empty: linear"},
     {"projector", "bits", at<&Printer::projector, &Projector::bits>, "number of grey levels = 2^bits", 1, 16, false, {"1", "2", "4", "8", "10", "16"}},
-    {"projector", "fps", at<&Printer::projector, &Projector::fps>, "frames per second", 0, 1e6, true},
+    {"projector", "fps", at<&Printer::projector, &Projector::fps>, "frames per second", 0.001, 1e6},
     {"projector", "axis_column", at<&Printer::projector, &Projector::axis_column>, "column of the rotation axis, from 0 at the left, before orientation; the middle if absent", -65536, 131072},
     {"projector", "axis_row", at<&Printer::projector, &Projector::axis_row>, "row level with the lens, where z = 0; from 0 at the top, before orientation; the middle if absent", -65536, 131072},
     {"projector", "orientation", at<&Printer::projector, &Projector::orientation>, "orientation of the image: normal, flip-columns, flip-rows or rotate-180", 0, 0, false, {"normal", "flip-columns", "flip-rows", "rotate-180"}},
@@ -67,7 +67,7 @@ const std::vector<PrinterField> fields{
     {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 10},
     {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "diffusion coefficient of the dose (radicals and inhibitor)", 0, 0.1},
     {"stage", "device", at<&Printer::stage, &PrinterStage::device>, comment_on(model::stage_schemes), 0, 0, false, {}, schemes_of(model::stage_schemes)},
-    {"stage", "speed_deg_s", at<&Printer::stage, &PrinterStage::speed_deg_s>, "rotation speed", 0, 1e6, true},
+    {"stage", "speed_deg_s", at<&Printer::stage, &PrinterStage::speed_deg_s>, "rotation speed", 0.001, 1e6},
     {"stage", "turns", at<&Printer::stage, &PrinterStage::turns>, "turns of one print", 1, 1e6},
     {"stage", "direction", at<&Printer::stage, &PrinterStage::direction>, "direction of rotation, 1: clockwise seen from above, theta increases; -1: the other way", -1, 1, false, {"1", "-1"}},
     {"camera", "device", at<&Printer::camera, &PrinterCamera::device>, comment_on(model::camera_schemes), 0, 0, false, {}, schemes_of(model::camera_schemes)},
@@ -77,7 +77,7 @@ const std::vector<PrinterField> fields{
     {"camera", "azimuth_deg", at<&Printer::camera, &PrinterCamera::azimuth_deg>, "angle from the projector", -360, 360},
     {"camera", "binning", at<&Printer::camera, &PrinterCamera::binning>, "binning: pixels per axis", 1, 64},
     {"camera", "exposure_us", at<&Printer::camera, &PrinterCamera::exposure_us>, "exposure time", 0, 1e9, true},
-    {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0, 1e6, true},
+    {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0.001, 1e6},
     {"camera", "gain", at<&Printer::camera, &PrinterCamera::gain>, "gain, in dB or the camera's own steps; default: unchanged", -1e6, 1e6},
     {"camera", "black_level", at<&Printer::camera, &PrinterCamera::black_level>, "black level, in the camera's own unit; default: unchanged", -1e6, 1e6},
     {"camera", "stamp", at<&Printer::camera, &PrinterCamera::stamp>, "moment of an exposure that its time stamp names: auto (that of the camera model), start, middle or end", 0, 0, false, {"auto", "start", "middle", "end"}},
@@ -95,10 +95,14 @@ const std::vector<PrinterField> fields{
 };
 // clang-format on
 
+std::string beyond(const PrinterField& field, const std::string& value) {
+  return value + " is not between " + plain_number(field.low) + (field.open_low ? " (excluded) and " : " and ") +
+         plain_number(field.high);
+}
+
 std::string number_objection(const PrinterField& field, double value) {
   if (value >= field.low && value <= field.high && !(field.open_low && value == field.low)) return "";
-  return format_number(value) + " is not between " + format_number(field.low) +
-         (field.open_low ? " (excluded) and " : " and ") + format_number(field.high);
+  return beyond(field, plain_number(value));
 }
 
 std::string word_objection(const PrinterField& field, const std::string& word) {
@@ -157,6 +161,10 @@ std::vector<std::string> section_names() {
 }
 
 std::string dotted_name(const PrinterField& field) { return std::string(field.section) + "." + field.key; }
+
+std::string objection_to_whole(const PrinterField& field, const std::string& digits) {
+  return field.words.empty() ? beyond(field, digits) : word_objection(field, digits);
+}
 
 std::string objection(const PrinterField& field, const Slot& slot) {
   if (const auto* word = std::get_if<std::string*>(&slot)) {

@@ -84,8 +84,7 @@ struct Store {
   const char* operator()(int* target) const {
     const auto value = node.is_integer() ? node.value<int>() : std::nullopt;
     if (value) *target = *value;
-    if (value) return nullptr;
-    return node.is_integer() ? "a whole number up to 2147483647" : "a whole number";
+    return value ? nullptr : "a whole number";
   }
   const char* operator()(double* target) const {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
@@ -111,6 +110,10 @@ struct Store {
 void assign(Printer& printer, const PrinterField& field, const toml::node& node, Fault fault,
             const std::string& place) {
   const Slot slot = field.slot(printer);
+  if (std::holds_alternative<int*>(slot) && node.is_integer() && !node.value<int>()) {
+    throw Error{fault, place + ": " + dotted_name(field) + ": " +
+                           objection_to_whole(field, std::to_string(*node.value<std::int64_t>()))};
+  }
   if (const char* needed = std::visit(Store{node}, slot)) {
     throw Error{fault, place + ": " + dotted_name(field) + " must be " + needed + ", not " + type_name(node)};
   }
@@ -151,6 +154,32 @@ void read_table(Printer& printer, const toml::table& root, const std::string& su
   }
 }
 
+bool is_whole(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  return !text.empty() && text.find_first_not_of("0123456789_") == text.npos;
+}
+
+// A whole number of more than 64 bits is no TOML; its key and limits, where the line has one, else nothing.
+std::string beyond_64_bits(std::string_view text, std::size_t number) {
+  const auto trimmed = [](std::string_view words) {
+    words = words.substr(std::min(words.find_first_not_of(" \t"), words.size()));
+    return words.substr(0, words.find_last_not_of(" \t\r") + 1);
+  };
+  std::string_view section, line;
+  for (std::size_t n = 1, begin = 0; n <= number && begin < text.size(); ++n) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    line = trimmed(text.substr(begin, end - begin));
+    if (line.starts_with('[')) section = trimmed(line.substr(1, std::min(line.find(']'), line.size()) - 1));
+    begin = end + 1;
+  }
+  const std::size_t equals = std::min(line.find('='), line.size());
+  const PrinterField* field = find_field(section, trimmed(line.substr(0, equals)));
+  if (field == nullptr || equals == line.size()) return "";
+  const std::string_view value = line.substr(equals + 1);
+  const std::string digits(trimmed(value.substr(0, value.find('#'))));
+  return is_whole(digits) ? dotted_name(*field) + ": " + objection_to_whole(*field, digits) : "";
+}
+
 // Each level of nesting takes one of these, and the parser and its tables a piece of the stack for each level.
 void check_depth(std::string_view text, const std::string& subject) {
   const auto count = std::count_if(text.begin(), text.end(), [](char c) { return c == '.' || c == '[' || c == '{'; });
@@ -170,7 +199,9 @@ Printer read_settings(std::string_view text, const std::string& subject) {
     try {
       return toml::parse(text, subject);
     } catch (const toml::parse_error& error) {
-      throw Error{Fault::data, place(subject, error.source()) + ": not TOML: " + std::string(error.description())};
+      const std::string beyond = beyond_64_bits(text, error.source().begin.line);
+      throw Error{Fault::data, place(subject, error.source()) + ": " +
+                                   (beyond.empty() ? "not TOML: " + std::string(error.description()) : beyond)};
     }
   }();
   Printer printer = without_axis();
@@ -210,6 +241,8 @@ void override_one(Printer& printer, const std::string& set) {
   const toml::value<std::string> bare(value);
   if (std::holds_alternative<std::string*>(field->slot(printer))) {  // quotes are optional around text
     if (node == nullptr || !node->is_string()) node = &bare;
+  } else if (node == nullptr && is_whole(value)) {
+    throw Error{Fault::usage, subject + ": " + objection_to_whole(*field, value)};
   } else if (node == nullptr || parsed.size() != 1) {
     throw Error{Fault::usage, subject + ": '" + value + "' is not a value"};
   }

@@ -50,7 +50,7 @@ OutputFile::OutputFile(const std::string& path, Content content, Temporary tempo
   if (path == "-") {
     name_ = "stdout";
     descriptor_ = STDOUT_FILENO;
-    if (fcntl(descriptor_, F_GETFL) < 0) fail(Fault::no_output, name_, "cannot write", errno);
+    if (fcntl(descriptor_, F_GETFL) < 0) fail(Fault::io, name_, "cannot write", errno);
   } else if (const bool exists = stat(path.c_str(), &about) == 0; exists && S_ISDIR(about.st_mode)) {
     throw Error{Fault::no_output, path + ": is a directory; name a file in it"};
   } else if (exists && (!S_ISREG(about.st_mode) || is_descriptor_path(path))) {

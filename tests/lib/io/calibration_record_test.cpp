@@ -135,7 +135,8 @@ TEST_CASE("a record with an impossible value is refused, with the record, the nu
     return message_of([&] { apply_records(printer, calibration, utc_seconds()); });
   };
   CHECK(refused(511, 12.7).empty());
-  CHECK(has(refused(1e9, 12.7), "projector.axis_column: 1e+09 is not between -65536 and 131072; run vam-calibrate"));
+  CHECK(
+      has(refused(1e9, 12.7), "projector.axis_column: 1000000000 is not between -65536 and 131072; run vam-calibrate"));
   CHECK(has(refused(-40, 12.7), "projector.axis_column: -40 is not in the image of 1024 columns"));
   CHECK(has(refused(1024, 12.7), "not in the image"));
   CHECK(has(refused(511, -12.7), "vial.radius_mm: -12.7 is not between 0 (excluded)"));

@@ -297,6 +297,22 @@ TEST_CASE("OFF with counts beside its magic word, comments, normals and colours;
   }
 }
 
+TEST_CASE("text of a mesh with a byte 0 is damaged, and is told where") {
+  const scratch::Folder folder;
+  std::string stl = "Solid box\n";
+  for (int i = 0; i < 4; ++i)
+    stl += "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  for (const auto& [text, format] :
+       std::map<std::string, std::string>{{box_obj(), "OBJ"}, {stl + "endsolid box\n", "ASCII STL"}}) {
+    for (const std::size_t at : {text.size() / 3, text.size() - 1}) {
+      std::string bad = text;
+      bad[at] = '\0';
+      CHECK(has(refusal(folder, bad), "is damaged: byte " + std::to_string(at) + " of its text (" + format + ") is 0"));
+    }
+  }
+  CHECK(has(refusal(folder, std::string("v is for volume\n\0", 17)), "not a whole STL file"));
+}
+
 TEST_CASE("faces beyond the count of a header are refused with both numbers") {
   const scratch::Folder folder;
   vam::io::write_stl(folder / "a.stl", box());

@@ -99,16 +99,28 @@ TEST_CASE("unknown keys name file, line and the nearest known key") {
 
 TEST_CASE("wrong types and impossible values name file and line") {
   CHECK(has(refusal("[projector]\ncolumns = 1024.5\n"), "p.toml:2: projector.columns must be a whole number"));
-  CHECK(has(refusal("[projector]\ncolumns = 99999999999\n"), "p.toml:2: projector.columns must be a whole number"));
+  for (const std::string digits : {"2147483648", "-2147483649", "9223372036854775807", "99999999999999999999"}) {
+    for (const std::string after : {"", " # in each image", "\r"}) {
+      CHECK(has(refusal("[vial]\n[ projector ] # DMD\n rows = " + digits + after + "\ncolumns = 64\n"),
+                "p.toml:3: projector.rows: " + digits + " is not between 1 and 65536"));
+    }
+    CHECK(has(set_refusal("projector.rows=" + digits), ": " + digits + " is not between 1 and 65536"));
+    CHECK(has(refusal("[projector]\nbits = " + digits + "\n"), "'" + digits + "' is not one of 1, 2, 4, 8, 10, 16"));
+  }
+  CHECK(has(refusal("[projector]\nlines = 99999999999999999999\n"), "p.toml:2: not TOML"));
+  for (const char* key : {"[stage]\nspeed_deg_s", "[camera]\nfps", "[projector]\nfps"}) {
+    CHECK(has(refusal(std::string(key) + " = 1e-300\n"), "1e-300 is not between 0.001 and 1000000"));
+  }
   CHECK(has(refusal("[vial]\nradius_mm = \"12\"\n"), "must be a number, not text"));
   CHECK(has(refusal("[projector]\ntelecentric = 1\n"), "must be true or false"));
   CHECK(has(refusal("vial = 3\n"), "must be a section"));
   CHECK(has(refusal("[vial]\nradius_mm = -1\n"), "p.toml:2: vial.radius_mm: -1 is not between 0"));
   CHECK(has(refusal("[vial]\nradius_mm = nan\n"), "nan is not between"));
   for (const std::string beyond : {"1e30", "1e300", "inf"}) {  // one for which every product is finite, or none
-    CHECK(
-        has(refusal("[projector]\nmax_intensity_mw_cm2 = " + beyond + "\n"), " is not between 0 (excluded) and 1e+09"));
-    CHECK(has(refusal("[resin]\ncritical_dose_mj_cm3 = " + beyond + "\n"), " is not between 0 (excluded) and 1e+09"));
+    CHECK(has(refusal("[projector]\nmax_intensity_mw_cm2 = " + beyond + "\n"),
+              " is not between 0 (excluded) and 1000000000"));
+    CHECK(has(refusal("[resin]\ncritical_dose_mj_cm3 = " + beyond + "\n"),
+              " is not between 0 (excluded) and 1000000000"));
   }
   CHECK(has(refusal("[projector]\nbits = 3\n"), "'3' is not one of 1, 2, 4, 8, 10, 16"));
   CHECK(has(refusal("[projector]\norientation = \"up\"\n"), "not one of normal"));

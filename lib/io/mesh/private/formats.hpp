@@ -55,6 +55,9 @@ struct MeshFormat {
 /// True when that is exactly the size.
 [[nodiscard]] bool has_binary_stl_size(const std::string& bytes);
 
+/// The format whose text these bytes are but for some that are 0: "OBJ", "ASCII STL"; empty: they are none.
+[[nodiscard]] std::string text_format_of(const std::string& bytes);
+
 /// Capitals of ASCII as small letters.
 [[nodiscard]] std::string lower_case(std::string text);
 

@@ -51,6 +51,9 @@ void centre_axis(model::Printer& printer);
 /// Why the number or the word in the slot is not allowed: "must be above 0"; empty when it is.
 [[nodiscard]] std::string objection(const PrinterField& field, const Slot& slot);
 
+/// The same for the digits of a whole number that an int cannot hold.
+[[nodiscard]] std::string objection_to_whole(const PrinterField& field, const std::string& digits);
+
 /// What no single field can tell (a wall thicker than the vial, a lens inside it): the first contradiction in words
 /// that name both settings and their numbers; empty when there is none.
 [[nodiscard]] std::string contradiction(const model::Printer& printer);
