@@ -70,10 +70,10 @@ cli::Manual manual() {
        "record is written to standard output."},
       {{"The rotation axis from frames of a bead (here a printed piece) over one turn:",
         "vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
-        "--binning 4 --speed 90 --view-step 10 -o turn.exr && vam-calibrate axis turn.exr --heights 3"},
+        "--binning 4 --speed 90 --view-step 9 -o turn.exr && vam-calibrate axis turn.exr --heights 3"},
        {"The same as a record in force, and the list of records:",
         "vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
-        "--binning 4 --speed 90 --view-step 10 -o turn.exr && mkdir cal && "
+        "--binning 4 --speed 90 --view-step 9 -o turn.exr && mkdir cal && "
         "vam-calibrate axis turn.exr --heights 3 --set calibration.folder=cal && "
         "vam-calibrate check --set calibration.folder=cal"}},
       {},

@@ -60,7 +60,7 @@ is 'free space' "$(plan --run runs/new 2>&1 | grep -c 'runs: no such folder; cre
 is 'no plan leaves anything' "$(ls -d print-* 2>/dev/null)" ''
 
 # A folder of records that was copied with its links followed.
-vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 --speed 90 --view-step 10 \
+vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 --speed 90 --view-step 9 \
   -o turn.exr
 vam-calibrate axis turn.exr --heights 3 --set calibration.folder=cal --set stage.device= >/dev/null
 cp -rL cal copied
