@@ -121,18 +121,14 @@ double scattered(const Body& body, const Place& point, const Place& d, double ab
 Place turned(const Place& v, double c, double s) { return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]}; }
 Place turned(const Place& v, double angle) { return turned(v, std::cos(angle), std::sin(angle)); }
 
-std::vector<Beam> all_beams(const ViewBench& bench, double dx, double dy) {
-  std::vector<Beam> beams;
-  for (int r = 0; r < bench.rows; ++r) {
-    for (int c = 0; c < bench.columns; ++c) {
-      for (int n = 0; n < bench.rays * bench.rays; ++n) {
-        const double right = (n % bench.rays + 0.5) / bench.rays - 0.5;
-        const double down = (n / bench.rays + 0.5) / bench.rays - 0.5;
-        beams.push_back(trace(bench, c + right, r + down, dx, dy));
-      }
-    }
-  }
-  return beams;
+// One after the other, as their pixels and the rays in these.
+Beam beam_at(const ViewBench& bench, std::size_t at, double dx, double dy) {
+  const auto side = static_cast<std::size_t>(bench.rays);
+  const auto columns = static_cast<std::size_t>(bench.columns);
+  const std::size_t pixel = at / (side * side);
+  const auto offset = [&](std::size_t n) { return (static_cast<double>(n % side) + 0.5) / bench.rays - 0.5; };
+  return trace(bench, static_cast<double>(pixel % columns) + offset(at),
+               static_cast<double>(pixel / columns) + offset(at % (side * side) / side), dx, dy);
 }
 
 std::vector<float> one_view(const ViewBench& bench, const std::vector<Body>& bodies, const std::vector<Bubble>& bubbles,
@@ -141,8 +137,6 @@ std::vector<float> one_view(const ViewBench& bench, const std::vector<Body>& bod
   const double angle = 2 * std::numbers::pi * share + bench.azimuth_deg * std::numbers::pi / 180;
   const bool wobbles = bench.run_out_mm[0] != 0 || bench.run_out_mm[1] != 0;
   const Place shift = turned({bench.run_out_mm[0], bench.run_out_mm[1], 0}, -angle);
-  const std::vector<Beam> own = wobbles ? all_beams(bench, shift[0], shift[1]) : std::vector<Beam>{};
-  const std::vector<Beam>& beams = wobbles ? own : straight;
   std::vector<Body> all = bodies;
   for (const Bubble& bubble : bubbles) {
     Body body = bubble.body;
@@ -154,11 +148,11 @@ std::vector<float> one_view(const ViewBench& bench, const std::vector<Body>& bod
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   std::vector<float> pixels;
-  pixels.reserve(beams.size() / rays);
-  for (std::size_t i = 0; i < beams.size(); i += rays) {
+  pixels.reserve(straight.size() / rays);
+  for (std::size_t i = 0; i < straight.size(); i += rays) {
     double light = 0;
     for (std::size_t n = i; n < i + rays; ++n) {
-      const Beam& beam = beams[n];
+      const Beam beam = wobbles ? beam_at(bench, n, shift[0], shift[1]) : straight[n];
       if (!beam.there) continue;
       const Place p = turned(beam.point, c, s);
       const Place d = turned(beam.direction, c, s);
@@ -189,7 +183,9 @@ float brightest(const std::vector<std::vector<float>>& views) {
 
 std::vector<std::vector<float>> bench_views(const ViewBench& bench, const std::vector<Body>& bodies,
                                             const std::vector<Bubble>& bubbles, int count) {
-  const std::vector<Beam> straight = all_beams(bench, 0, 0);
+  const auto pixels = static_cast<std::size_t>(bench.rows) * static_cast<std::size_t>(bench.columns);
+  std::vector<Beam> straight(pixels * static_cast<std::size_t>(bench.rays) * static_cast<std::size_t>(bench.rays));
+  for (std::size_t n = 0; n < straight.size(); ++n) straight[n] = beam_at(bench, n, 0, 0);
   std::vector<std::vector<float>> views(static_cast<std::size_t>(count));
   std::vector<std::thread> workers;
   const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -77,6 +77,7 @@ struct Deviations {
 oracle::ViewBench drawn_bench(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
   oracle::ViewBench bench = coarse_bench();
+  bench.rays = 1;
   bench.axis_column += 6 * (unit(random) - 0.5);
   const double size_mm = 0.12 * unit(random);
   const double towards = 2 * std::numbers::pi * unit(random);
@@ -138,12 +139,16 @@ TEST_CASE("the axis of ideal views has a standard deviation that its error does 
 }
 
 TEST_CASE("a run-out of 0.1 mm is seen, and a print without it is as it is") {
-  const std::vector<oracle::Body> post{{Kind::cylinder, {0, 0, 0}, {4.5, 0, 6.2}, 1},
-                                       {Kind::cylinder, {1.5, 1, 0}, {1.2, 0, 6.2}, -1},
-                                       {Kind::block, {5.2, 0.5, -3}, {0.9, 1.2, 1.5}, 1}};
+  const std::vector<oracle::Body> post{{Kind::cylinder, {0, 0, 0}, {4.5, 0, 2.7}, 1},
+                                       {Kind::cylinder, {1.5, 1, 0}, {1.2, 0, 2.7}, -1},
+                                       {Kind::block, {5.2, 0.5, -1.3}, {0.9, 1.2, 0.7}, 1}};
   for (const double bath : {1.0, 1.4}) {
     CAPTURE(bath);
     oracle::ViewBench bench;
+    bench.columns = 400;
+    bench.rows = 140;
+    bench.axis_column = 199.5;
+    bench.axis_row = 69.5;
     bench.rays = 2;
     bench.run_out_mm = {0.06, -0.08};
     bench.bath_index = bath;
@@ -221,7 +226,8 @@ TEST_CASE("where bubbles pass, run-out and axis deviate by as much as their stan
 }
 
 TEST_CASE("bubbles that turn with the vial are no run-out") {
-  const oracle::ViewBench bench = coarse_bench();
+  oracle::ViewBench bench = coarse_bench();
+  bench.rays = 1;
   int pulled = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     CAPTURE(seed);
@@ -259,7 +265,7 @@ TEST_CASE("absorption that is not given is no run-out, and is seen") {
       bench.run_out_mm = {run_out_mm, 0};
       oracle::ViewBench clear = bench;
       clear.absorption_per_mm = 0;
-      return found_in(clear, seen(bench, part, noise, seed), {bench.axis_column, 0});
+      return found_in(clear, seen(bench, part, noise, seed, 90), {bench.axis_column, 0});
     };
     const RunOut absorbed = found_at(0.1, 0);
     MESSAGE("absorption ", absorbed.absorption_per_mm, " +- ", absorbed.absorption_sigma_per_mm, " per mm");
