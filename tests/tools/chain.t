@@ -4,6 +4,9 @@
 
 voxels() { vam-view "$1" --export "$1.nrrd" && sed '1,/^$/d' "$1.nrrd" | cksum; }  # the data behind the NRRD header
 
+# A projector of few pixels, of which frames are made quickly.
+vam-slice --print-printer --set projector.pixel_mm=0.26 --set projector.columns=256 --set projector.rows=192 -o coarse.toml
+VAM_PRINTER=$PWD/coarse.toml; export VAM_PRINTER
 ok 'slice' vam-slice --shape ball-in-cage --voxel 0.3 -o part.vdb
 ok 'optimize' vam-optimize --geometry parallel part.vdb --angles 90 --iterations 8 -o sino.exr
 ok 'resample' vam-resample sino.exr -o frames.exr
