@@ -92,16 +92,19 @@ cli::Manual manual() {
             "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
             "vam-resample -o seen.exr\n"
             "vam-project seen.exr -o views --set projector.fps=2.5\n"
-            "vam-ost views --view-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
+            "vam-ost views --view-step 4 --pixel 0.065 --binning 2 --set camera.distance_mm=119.808 --set "
+            "camera.azimuth_deg=0 -o "
             "scatter.vdb --projections seen.png"},
            {"Determine the gelation threshold from this volume, and use it:",
             "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
             "vam-resample -o seen.exr\n"
             "vam-project seen.exr -o views --set projector.fps=2.5\n"
-            "vam-ost views --view-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
+            "vam-ost views --view-step 4 --pixel 0.065 --binning 2 --set camera.distance_mm=119.808 --set "
+            "camera.azimuth_deg=0 -o "
             "scatter.vdb\n"
             "vam-calibrate resin scatter.vdb --diameter 6 -o resin.json\n"
-            "vam-ost views --view-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 "
+            "vam-ost views --view-step 4 --pixel 0.065 --binning 2 --set camera.distance_mm=119.808 --set "
+            "camera.azimuth_deg=0 "
             "--resin resin.json --mesh print.ply -o again.vdb"}},
           notes(),
           {"vam-calibrate", "vam-capture", "vam-sdf", "vam-view", "vam-resample"},

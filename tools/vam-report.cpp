@@ -54,8 +54,8 @@ cli::Manual manual() {
         "vam-dose light.exr --like part.vdb -o dose.vdb\n"
         "vam-report part.vdb light.exr dose.vdb light.json trace.csv -o report.html"},
        {"The inspection of a print:",
-        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o seen.vdb\n"
+        "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --voxel 0.2 --stretch-z 1 -o seen.vdb\n"
         "vam-sdf seen.vdb design.vdb --isovalue 0.5 -o deviation.ply --report inspection.json\n"
         "vam-report deviation.ply inspection.json -o inspection.html"},
        {"Everything in a folder:",

@@ -53,28 +53,30 @@ cli::Manual manual() {
        "that all reports have, with the probability of such a drift by chance (Student's t): a process drifts where "
        "drift_p is below 0.05, and varies where spread exceeds half the uncertainty."},
       {{"Compare two boxes of slightly different size:",
-        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\nvam-slice --shape box:x=6.2,y=6.2,z=6.2 "
-        "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
+        "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-slice --shape "
+        "box:x=6.2,y=6.2,z=6.2 "
+        "--voxel 0.2 --stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
         "deviation.json"},
        {"Check a tolerance in a script:",
-        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o print.vdb\n"
+        "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --voxel 0.2 --stretch-z 1 -o print.vdb\n"
         "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
        {"Measure the flatness of the upper face of a plate and its thickness, with uncertainties:",
-        "vam-slice --shape box:x=6,y=6,z=2 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --stretch-z 1 -o print.vdb\n"
+        "vam-slice --shape box:x=6,y=6,z=2 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --voxel 0.2 --stretch-z 1 -o print.vdb\n"
         "vam-sdf print.vdb design.vdb --isovalue 0.5 --region top=plane:-2,-2,0.9,2,2,1.3 --region "
         "body=wall:-2,-2,-2,2,2,2 --require 'top.flatness<=0.1,body.thickness>=2' --report regions.json"},
        {"A face from a mesh of its own, with a closer tolerance than the rest:",
-        "vam-slice --shape box:x=6,y=6,z=2 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --stretch-z 1 -o print.vdb\n"
+        "vam-slice --shape box:x=6,y=6,z=2 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --voxel 0.2 --stretch-z 1 -o print.vdb\n"
         "printf 'OFF\\n4 2 0\\n-3 -3 1\\n3 -3 1\\n3 3 1\\n-3 3 1\\n3 0 1 2\\n3 0 2 3\\n' >seat.off\n"
         "vam-sdf print.vdb design.vdb --isovalue 0.5 --region seat=plane:seat.off --tolerance 0.2 --tolerance "
         "seat=0.15 "
         "--require 'within>=95,seat.within>=95'"},
        {"Compare repeated prints:",
-        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
-        "for n in 1 2 3 4; do vam-slice --shape box:x=6.$n,y=6.2,z=6.2 --stretch-z 1 -o print.vdb; vam-sdf print.vdb "
+        "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
+        "for n in 1 2 3 4; do vam-slice --shape box:x=6.$n,y=6.2,z=6.2 --voxel 0.2 --stretch-z 1 -o print.vdb; vam-sdf "
+        "print.vdb "
         "design.vdb --isovalue 0.5 --report run$n.json; done\nvam-sdf trend run1.json run2.json run3.json run4.json "
         "--plot trend.png"},
        {"Compare an embossed badge that is 1 % too small with its design:",

@@ -134,11 +134,11 @@ std::vector<std::pair<std::string, std::string>> examples() {
        "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
        "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
       {"Robust to errors of the axis and of the lamp:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --angles 90 --robust "
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 60 --robust "
        "'axis=0.5px,lamp=3%' "
        "--yield-printers 10 --report robust.json -o robust.exr"},
       {"A bound for any projections, and the regions of the part that determine it:",
-       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 60 --certify proof.vdb "
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 30 --certify proof.vdb "
        "--report proved.json -o best.exr\n"
        "vam-view proof.vdb -o proof.png"},
       {"A part three times as tall as the image, in three turns:",
