@@ -116,7 +116,7 @@ vam-convert part.vdb -o few.npy
 vam-convert few.mkv --geometry parallel --pixel 1 -o few-new.exr
 vam-project few.exr --printer printer.toml -o few-frames/
 vam-check part.vdb few-sino.exr printer.toml few.mkv
-vam-sdf box.off part.vdb --isovalue 0.5 -o few.ply
+vam-sdf box.off part.vdb --isovalue 0.5 --samples 2000 -o few.ply
 vam-stack few-sino.exr -o few-new.exr
 vam-plan box.off
 vam-report part.vdb few-sino.exr -o few.html
@@ -189,10 +189,10 @@ same 'the bound is of no consequence, not even for the history' free.vdb part.vd
 # Slices that light couples are optimised together: what does not fit in memory lies in scratch files.
 box 5 5 0.5 >block.off
 vam-slice block.off --voxel 0.016 --stretch-z 1 -o block.vdb
-coupled='vam-optimize block.vdb --method dose-norm --angles 12 --iterations 1'
+coupled='vam-optimize block.vdb --set vial.radius_mm=6 --method dose-norm --angles 12 --iterations 1'
 quiet 'coupled slices in memory' sh -c "$coupled -o block.exr && mv block.exr free.exr"
 mkdir scratch
-ok 'coupled slices beyond --memory' sh -c "TMPDIR=scratch $coupled --memory 0.2 -o block.exr 2>warning"
+ok 'coupled slices beyond --memory' sh -c "TMPDIR=scratch $coupled --memory 0.12 -o block.exr 2>warning"
 ok 'a warning with both numbers and the remedy' grep -Eq \
   '^vam-optimize: warning: block.vdb: .* voxels: needs [0-9.]+ GiB of memory, but [0-9.]+ GiB are left; what does not fit is kept in scratch files in TMPDIR or /var/tmp, which is slower; allow more with --memory$' warning
 same 'the same bytes' free.exr block.exr

@@ -72,7 +72,7 @@ quiet "the print as a mesh" vam-score --grid target part.vdb --mesh print.ply
 is "a PLY with faces" "$(head -c 400 print.ply | grep -ac 'element face')" 1
 for ending in stl obj 3mf; do
   quiet "the same as $ending" vam-score --grid target part.vdb --mesh print.$ending
-  holds "is the same surface" "$(vam-sdf print.$ending print.ply --align none --report apart.json 2>/dev/null; json apart.json print_to_design.max_abs_mm) < 1e-5"
+  holds "is the same surface" "$(vam-sdf print.$ending print.ply --align none --samples 20000 --report apart.json 2>/dev/null; json apart.json print_to_design.max_abs_mm) < 1e-5"
 done
 is 'the 3MF is a package of sound parts, its model in mm' "$(python3 - <<'PY'
 import xml.etree.ElementTree, zipfile
