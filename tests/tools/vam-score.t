@@ -15,7 +15,7 @@ ok "a report on stdout" sh -c 'vam-score --report - --grid target part.vdb >out.
 is "the former --json is a report on stdout" "$(vam-score --json --grid target part.vdb 2>warning)" "$(vam-score --report - --grid target part.vdb)"
 is "with a warning" "$(cat warning)" "vam-score: warning: --json is now --report -"
 is "the report on stdout has the figures of the file" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
-is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 20
+is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 23
 ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0 [(][0-9]+ voxels[)]; including the [0-9]+ voxels cut by the surface: process window [-+0-9.e]+, VER "'
 is "the verdict counts part and surface voxels" "$(json perfect.json with_surface.voxels)" \
   $(($(json perfect.json part_voxels) + $(json perfect.json void_voxels) + $(json perfect.json surface_voxels)))
@@ -48,6 +48,22 @@ vam-score --grid target wall.vdb --require 'pw>0,unresolved_part<=0.02' >table 2
 is "can be required to be judged" "$?" 1
 ok "with its share" grep -q '^vam-score: unresolved_part = 0.2[0-9]*, but unresolved_part<=0.02 is required$' why
 vam-optimize --angles 30 --iterations 5 wall.vdb -o wall.exr --report wall.json 2>&1
+# Such a wall on a block, and the same without its lowest layer: only voxels that the surface cuts are missing.
+on_block() {  # on_block LOW HEIGHT
+  printf 'OFF\n16 24 0\n'
+  box 3 4 1 | awk 'NR > 2 && NF == 3 { print $1, $2, $3 }'
+  box 0.26 4 "$2" | awk -v up="$1" 'NR > 2 && NF == 3 { print $1, $2, $3 + up }'
+  box 3 4 1 | awk 'NF == 4 { print; far = far $1 " " $2 + 8 " " $3 + 8 " " $4 + 8 "\n" } END { printf "%s", far }'
+}
+on_block 1 3 >stand.off
+on_block 1.2 2.8 >foot.off
+for part in stand foot; do vam-slice $part.off --voxel 0.2 --stretch-z 1 -o $part.vdb 2>.log/$part; done
+vam-score --grid target foot.vdb --target stand.vdb --report foot.json >table
+json foot.json verdict >said
+ok "a wall without foot is no print as designed" grep -q '^will not print as designed: process window +1 .*; the print is in 2 pieces, the part in 1; walls are cut where 40 voxels of the part do not cure; ' said
+is "with its pieces" "$(for key in part_pieces print_pieces severing_voxels; do json foot.json $key; done | tr '\n' ' ')" "1.0 2.0 40.0 "
+vam-score --grid target foot.vdb --target stand.vdb --require 'pw>0,severing_voxels<=0' >table 2>why
+is "can be required to be whole" "$? $(cat why)" "1 vam-score: severing_voxels = 40, but severing_voxels<=0 is required"
 # A fin that straddles two voxels, none of which is half covered, and a slot that leaves three quarters of one free.
 {
   printf 'OFF\n16 24 0\n'
