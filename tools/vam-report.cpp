@@ -40,7 +40,8 @@ cli::Manual manual() {
        "used. The type of a file is determined by its content.",
        "Depending on the files, the page contains: the verdict of vam-score with its figures of merit; design and "
        "print in three dimensions, the design coloured by the margin of the dose on its surface, the print by its "
-       "distance from the design; sections of every volume, those of the dose with the outline of the design; the "
+       "distance from the design; sections of every volume, those of the dose with the outline of the design, and of "
+       "what it prints; the "
        "projections as an animation, and the sinograms; the dose distributions in part and void; the convergence "
        "of the optimisation; all reports; and for each file the commands that produced it, with their seals.",
        "An inspection: with the print of vam-sdf (-o), the mesh of the design and the report of vam-sdf, the page has "

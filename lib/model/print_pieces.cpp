@@ -98,27 +98,33 @@ class Neighbourhood {
 
 }  // namespace
 
-/// Nullptr beyond the volume.
-std::int64_t PrintPieceCounter::severing(const Slice* below, const Slice& slice, const Slice* above) const {
+std::vector<std::size_t> severing_voxels(int width, int height, const std::uint8_t* const* slices) {
   constexpr std::uint8_t print = printed::part | printed::cured;
-  const std::array<const Slice*, 3> slices{below, &slice, above};
-  std::int64_t voxels = 0;
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      if (slice[product(y, width_) + x] != printed::part) continue;
+  std::vector<std::size_t> voxels;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t at = product(y, width) + static_cast<std::size_t>(x);
+      if (slices[1][at] != printed::part) continue;
       Neighbourhood around;
       for (int dz = -1; dz <= 1; ++dz) {
         if (slices[dz + 1] == nullptr) continue;
-        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height_ - 1); ++v) {
-          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width_ - 1); ++u) {
-            if (has((*slices[dz + 1])[product(v, width_) + u], print)) around.set(u - x, v - y, dz);
+        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v) {
+          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
+            if (has(slices[dz + 1][product(v, width) + u], print)) around.set(u - x, v - y, dz);
           }
         }
       }
-      if (around.is_severed()) ++voxels;
+      if (around.is_severed()) voxels.push_back(at);
     }
   }
   return voxels;
+}
+
+/// Nullptr beyond the volume.
+std::int64_t PrintPieceCounter::severing(const Slice* below, const Slice& slice, const Slice* above) const {
+  const auto bits = [](const Slice* of) { return of == nullptr ? nullptr : of->data(); };
+  const std::array<const std::uint8_t*, 3> slices{bits(below), slice.data(), bits(above)};
+  return std::ssize(severing_voxels(width_, height_, slices.data()));
 }
 
 void PrintPieceCounter::add(const std::vector<Slice>& slices) {

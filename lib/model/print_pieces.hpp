@@ -59,6 +59,10 @@ inline constexpr std::uint8_t cured = 2;  // receives the threshold
   return static_cast<std::uint8_t>((part ? printed::part : 0) | (cured ? printed::cured : 0));
 }
 
+/// Which voxels of the middle one of three slices of printed:: bits sever, as PrintPieces counts them, by their
+/// numbers; nullptr beyond the volume.
+[[nodiscard]] std::vector<std::size_t> severing_voxels(int width, int height, const std::uint8_t* const* slices);
+
 /// Counted are pieces of at least so many voxels: smaller ones are rounded tips and edges.
 struct PrintPieces {
   static constexpr std::int64_t least_voxels = 8;

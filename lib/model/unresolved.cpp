@@ -39,6 +39,9 @@ struct Place {
   [[nodiscard]] bool near_part() const {
     return near([](float c) { return label_of(c) == Label::part; });
   }
+  [[nodiscard]] bool is_of_lost_wall(float covered) const {
+    return covered < half && !near([](float c) { return c >= half; });
+  }
   [[nodiscard]] bool near_void() const {
     return at_border() || near([](float c) { return label_of(c) == Label::void_; });
   }
@@ -72,6 +75,19 @@ bool Unresolved::shuts_gaps() const {
          lost_gaps.widest >= least_width;
 }
 
+std::vector<std::size_t> lost_walls(int width, int height, const float* const* slices) {
+  std::vector<std::size_t> voxels;
+  for (int j = 0; j < height; ++j) {
+    for (int i = 0; i < width; ++i) {
+      const std::size_t at = product(j, width) + static_cast<std::size_t>(i);
+      const float covered = slices[1][at];
+      if (label_of(covered) != Label::surface) continue;
+      if (Place{width, height, slices, i, j}.is_of_lost_wall(covered)) voxels.push_back(at);
+    }
+  }
+  return voxels;
+}
+
 /// Of the middle one of three slices.
 UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) const {
   Slice sums;
@@ -84,7 +100,7 @@ UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) c
       const Place place{width_, height_, slices, i, j};
       if (!place.near_part()) {
         sums.part += covered;
-        if (covered < half && !place.near([](float c) { return c >= half; })) {
+        if (place.is_of_lost_wall(covered)) {
           sums.walls.voxels += covered;
           sums.walls.most = std::max(sums.walls.most, covered);
         }

@@ -4,6 +4,7 @@
 // that is more than three quarters free are surely printed shut.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "model/grid.hpp"
@@ -51,6 +52,10 @@ struct Unresolved {
   /// Gaps will be shut in the print: more than tips of grooves and corners between struts.
   [[nodiscard]] bool shuts_gaps() const;
 };
+
+/// Which voxels of the middle one of three slices of coverage are of lost walls, by their numbers; nullptr beyond the
+/// volume.
+[[nodiscard]] std::vector<std::size_t> lost_walls(int width, int height, const float* const* slices);
 
 /// Finds it slice by slice, from the lowest up.
 class UnresolvedFinder {

@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
+#include "plot/missing.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"
 
@@ -17,31 +18,32 @@ enum Cure : std::size_t { empty, cured, missing, overcured };
 
 constexpr std::array<Rgb, 4> colours{paint::white, Rgb{150, 150, 150}, paint::blue, paint::vermilion};
 
-Cure cure_of(float dose, model::Label label, double threshold) {
+/// `share`: of the part that is missing.
+Cure cure_of(float dose, model::Label label, float share, double threshold) {
+  if (share > 0) return missing;
   const bool printed = static_cast<double>(dose) >= threshold;
-  if (label == model::Label::part) return printed ? cured : missing;
   if (label == model::Label::void_) return printed ? overcured : empty;
   return printed ? cured : empty;
 }
 
-/// Voxels seen: of the judged part and void, and how they cure.
+/// What is seen: of the part its volume, of the judged void its voxels, and how they cure.
 struct Counts {
-  long part = 0;
-  long outside = 0;
-  long missing = 0;
-  long overcured = 0;
+  double part = 0;
+  double outside = 0;
+  double missing = 0;
+  double overcured = 0;
 
-  void add(model::Label label, Cure cure) {
-    part += label == model::Label::part ? 1 : 0;
+  void add(model::Label label, float coverage, float share, Cure cure) {
+    part += label == model::Label::void_ ? 0 : static_cast<double>(coverage);
     outside += label == model::Label::void_ ? 1 : 0;
-    missing += cure == Cure::missing ? 1 : 0;
+    missing += static_cast<double>(share);
     overcured += cure == Cure::overcured ? 1 : 0;
   }
 };
 
 /// "missing (0.3 % of the part seen)".
-std::string with_share(const std::string& what, long count, long of, const std::string& whole) {
-  const double percent = of > 0 ? 100 * static_cast<double>(count) / static_cast<double>(of) : 0;
+std::string with_share(const std::string& what, double count, double of, const std::string& whole) {
+  const double percent = of > 0 ? 100 * count / of : 0;
   return what + " (" + format_number(percent, 3) + " % of the " + whole + " seen)";
 }
 
@@ -50,9 +52,15 @@ std::string with_share(const std::string& what, long count, long of, const std::
 ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
                       const model::Circle& circle, const ViewOptions& options, const io::SparseVolume* insert) {
   require_same_voxels(dose.grid(), target.grid(), options.name, "compute the dose on this target");
-  const views::Sections sections = views::sections_of(dose.grid(), options);
+  const MissingPart lacking = missing_part(dose, target, threshold);
+  ViewOptions seen = options;
+  if (!seen.at && seen.sheet == 1)
+    seen.at = plane_mm(dose.grid(), seen.plane, lacking.section(seen.plane)) /
+              (seen.plane == Plane::axial ? seen.stretch_z : 1);
+  const views::Sections sections = views::sections_of(dose.grid(), seen);
   std::vector<Image> doses = planes(dose, options.plane, sections.indices);
   const std::vector<Image> parts = planes(target, options.plane, sections.indices);
+  const std::vector<Image> shares = planes(lacking.shares, options.plane, sections.indices);
   ImageFigure figure;
   Counts counts;
   std::vector<Image> hidden;
@@ -62,11 +70,12 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
     for (int y = 0; y < picture.height; ++y) {
       for (int x = 0; x < picture.width; ++x) {
         const model::Label label = model::label_of(parts[n](x, y));
-        const Cure cure = cure_of(doses[n](x, y), label, threshold);
+        const Cure cure = cure_of(doses[n](x, y), label, shares[n](x, y), threshold);
         picture(x, y) = colours[cure];
         const auto [i, j] = plane_column(dose.grid(), options.plane, sections.indices[n], x, y);
         if (!hidden.empty() && model::half_covered(hidden[n](x, y))) continue;
-        if (label == model::Label::part || circle.contains(i, j)) counts.add(label, cure);
+        if (label != model::Label::void_ || circle.contains(i, j))
+          counts.add(label, parts[n](x, y), shares[n](x, y), cure);
       }
     }
     figure.panels.push_back({std::move(doses[n]), sections.captions[n], {}});
@@ -86,9 +95,9 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
       {Mark::patch, colours[overcured], with_share("overcured", counts.overcured, counts.outside, "void")},
       {Mark::none,
        {},
-       insert == nullptr ? "voxels that the surface cuts, and void beyond the writable circle, are not counted"
-                         : "voxels that the surface cuts, the insert, and void beyond the writable circle are not "
-                           "counted"}};
+       "voxels that the surface cuts are wrong only in walls that are missing; " +
+           std::string(insert == nullptr ? "void beyond the writable circle is not counted"
+                                         : "the insert, and void beyond the writable circle, are not counted")}};
   figure.title = options.title.value_or(options.name + ": cured at " + format_number(threshold, 4) + " " + dose.units +
                                         views::sections_text(sections, options.plane));
   return figure;

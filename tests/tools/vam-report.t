@@ -33,6 +33,22 @@ is 'the page says what its size is of' \
   'surface, where voxels of 0.25 mm are half covered, spans 5 x 3 x 1.97 mm along x, y and z'
 ok 'the same page again' vam-report part.vdb light.exr dose.vdb light.json score.json trace.csv part.png -o again.html
 is 'the pages are identical except for the file name' "$(sed 's/again\.html/report.html/g' again.html | cmp - report.html && echo same)" same
+# A fin of 0.1 mm on 0.25 mm voxels, of which none is half covered, is there, and its section with what prints.
+printf 'OFF\n16 24 0\n' >fin.off
+for x in 2 0.05; do
+  y=2; low=-1; high=1; [ "$x" = 2 ] || { high=2; low=0; }
+  for z in $low $high; do printf '%s %s %s\n' -$x -$y $z $x -$y $z $x $y $z -$x $y $z; done
+done >>fin.off
+for n in 0 8; do
+  for f in '0 3 2' '0 2 1' '4 5 6' '4 6 7' '0 1 5' '0 5 4' '1 2 6' '1 6 5' '2 3 7' '2 7 6' '3 0 4' '3 4 7'; do
+    set -- $f; echo "3 $(($1 + n)) $(($2 + n)) $(($3 + n))"
+  done
+done >>fin.off
+vam-slice fin.off --voxel 0.25 -o fin.vdb 2>/dev/null
+vam-sinogram fin.vdb --angles 30 --filter ram-lak --negative clip | vam-dose --like fin.vdb -o fin-dose.vdb
+ok 'a page of a part with a fin' vam-report fin.vdb fin-dose.vdb -o fin.html
+is 'the design has the fin' "$(grep -o 'spans 4 x 4 x [0-9.]* mm' fin.html | grep -c 'x \(2.9\|3\)')" 1
+ok 'sections of what prints' grep -q 'Part as printed, sections across z' fin.html
 mkdir folder && cp part.vdb dose.vdb score.json part.off folder
 ok 'a page of a folder' vam-report folder -o folder.html --title 'A box'
 is 'the page has its title' "$(grep -c '<title>A box</title>' folder.html)" 1

@@ -11,6 +11,7 @@
 #include "model/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
+#include "plot/missing.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/signed_distance.hpp"
@@ -83,25 +84,48 @@ double colour_limit(std::vector<double> values, double least) {
   return std::ceil(wanted / power) * power;
 }
 
+/// With the triangles of another mesh.
+void append(model::TriangleSoup& mesh, const model::TriangleSoup& other) {
+  const auto first = static_cast<decltype(mesh.triangles)::value_type::value_type>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
+  for (auto triangle : other.triangles) {
+    for (auto& corner : triangle) corner += first;
+    mesh.triangles.push_back(triangle);
+  }
+}
+
+/// Walls that no voxel nearby is half covered by, which the surface of the coverage leaves out; of a print those that
+/// do not cure.
+model::TriangleSoup lost_body(const io::SparseVolume& target, const PrintedDose* print, int by) {
+  const io::SparseVolume lost =
+      plot::lost_walls(target, print != nullptr ? print->dose : nullptr, print != nullptr ? print->threshold : 0);
+  return solid::isosurface(averaged(lost, by), 0.5 / by);  // of one voxel, which is a share of 1/by in a wall
+}
+
 /// The design, and the print where there is a dose, on voxels of this coarseness.
 std::vector<Layer> layers_of(const io::SparseVolume& target, const std::optional<PrintedDose>& print, int by) {
   std::vector<Layer> layers(1);
   layers[0].name = "design";
   layers[0].mesh = solid::isosurface(averaged(target, by), model::half_surface);
-  if (!print || layers[0].mesh.triangles.empty()) return layers;
-  const model::Volume dose = averaged(*print->dose, by);
   Layer& design = layers[0];
+  const bool shows = !design.mesh.triangles.empty();
+  const model::TriangleSoup resolved = design.mesh;
+  append(design.mesh, lost_body(target, nullptr, by));
+  if (!print || design.mesh.triangles.empty()) return layers;
+  const model::Volume dose = averaged(*print->dose, by);
   for (const auto& point : design.mesh.points)
     design.values.push_back(100 * (value_at(dose, point) / print->threshold - 1));
   design.limit = colour_limit(design.values, 1);
   design.unit = "%";
   design.meaning = "dose on the design's surface relative to the threshold; blue: too low";
   Layer printed{"print", solid::isosurface(dose, print->threshold), {}, 1, "mm", ""};
-  if (printed.mesh.triangles.empty()) return layers;
-  const std::vector<float> away = solid::Surface(design.mesh).signed_distances(printed.mesh.points);
+  if (printed.mesh.triangles.empty() || !shows) return layers;
+  const std::vector<float> away = solid::Surface(resolved).signed_distances(printed.mesh.points);
   printed.values.assign(away.begin(), away.end());
   printed.limit = colour_limit(printed.values, 0.1 * target.grid().voxel_mm);
   printed.meaning = "distance of the print from the design; red: outside, blue: missing";
+  append(printed.mesh, lost_body(target, &*print, by));
+  printed.values.resize(printed.mesh.points.size(), -printed.limit);  // missing
   layers.push_back(std::move(printed));
   return layers;
 }

@@ -83,6 +83,19 @@ std::string section_views(const Volumes& volumes, int count) {
   return views;
 }
 
+std::string cure_views(const Volumes& volumes, const score::ScoreOptions& how, double threshold, int count) {
+  const io::SparseVolume& dose = *volumes.find("dose");
+  const io::SparseVolume* insert = volumes.find("insert");
+  plot::ViewOptions options;
+  options.name = "dose";
+  options.sheet = std::min(count, plot::plane_count(dose.grid(), options.plane));
+  options.size = shown_px;
+  options.stretch_z = tool::stretch_z(dose.metadata);
+  const plot::ImageFigure sheet =
+      plot::view_cure(dose, *volumes.find("target"), threshold, how.circle, options, insert);
+  return series("Part as printed, sections across z", frames_of(sheet), "The shares are of all sections.");
+}
+
 std::string histogram(const Volumes& volumes, const score::ScoreOptions& how) {
   const io::SparseVolume& dose = *volumes.find("dose");
   const io::SparseVolume* insert = volumes.find("insert");

@@ -25,6 +25,10 @@ struct Volumes {
 /// HTML: axial and coronal sections of every grid, the dose with the target's outline, both with the insert.
 [[nodiscard]] std::string section_views(const Volumes& volumes, int count);
 
+/// HTML: axial sections of what the dose cures at the threshold, and of what is missing; both must be there.
+[[nodiscard]] std::string cure_views(const Volumes& volumes, const score::ScoreOptions& how, double threshold,
+                                     int count);
+
 /// HTML: the shares of part and void over the dose; both must be there.
 [[nodiscard]] std::string histogram(const Volumes& volumes, const score::ScoreOptions& how);
 

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "model/dose_metrics.hpp"
+#include "plot/missing.hpp"
 #include "plot/render.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/signed_distance.hpp"
@@ -74,16 +75,26 @@ plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVol
   }
   plot::Body missing{beyond(part.mesh, solid::Surface(print.mesh).signed_distances(part.mesh.points), voxel_mm), {}};
   missing.colours.assign(missing.mesh.points.size(), plot::paint::blue);
+  plot::Body thin{surface_of(plot::lost_walls(target, nullptr, 0), 0.5, target), {}};
+  plot::Body lost{surface_of(plot::lost_walls(target, &dose, threshold), 0.5, target), {}};
+  lost.colours.assign(lost.mesh.points.size(), plot::paint::blue);
   plot::ImageFigure figure;
   figure.columns = 2;
-  const Sight sight = sight_of({&part, &print});
+  std::vector<const plot::Body*> wanted{&part}, printed{&print, &missing};
+  if (!thin.mesh.triangles.empty()) wanted.push_back(&thin);
+  if (!lost.mesh.triangles.empty()) printed.push_back(&lost);
+  std::vector<const plot::Body*> all = wanted;
+  all.push_back(&print);
+  const Sight sight = sight_of(all);
   const int pixels = view.size * 7 / 10;
-  add_panel(figure, {&part}, sight, pixels, "target");
-  add_panel(figure, {&print, &missing}, sight, pixels, "print at " + format_number(threshold, 4) + " " + dose.units);
+  add_panel(figure, wanted, sight, pixels, "target");
+  add_panel(figure, printed, sight, pixels, "print at " + format_number(threshold, 4) + " " + dose.units);
   label(figure, sight, view, ": target and print");
   const std::string by = ", by more than a voxel (" + format_number(voxel_mm, 3) + " mm)";
   figure.legend = {{plot::Mark::patch, plot::paint::vermilion, "false cure: outside the target" + by},
-                   {plot::Mark::patch, plot::paint::blue, "missing: target outside the print" + by},
+                   {plot::Mark::patch, plot::paint::blue,
+                    "missing: target outside the print" + by +
+                        (lost.mesh.triangles.empty() ? "" : ", and walls thinner than half a voxel")},
                    {plot::Mark::none, {}, "target " + size_text(solid::bounding_box(part.mesh))}};
   return figure;
 }

@@ -39,7 +39,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--at", "PLACE", options.view.at, cli::any,
              "Show the section or sinogram slice nearest to PLACE in mm (of the print), or the frame nearest to PLACE "
              "in degrees.");
-  app.default_is("the middle one; the first frame");
+  app.default_is("the middle one, of a cure map one where much is missing; the first frame");
   app.option("--sheet", "N", options.view.sheet, {1, 400},
              "Number of evenly spaced sections, slices or frames on one sheet.");
   app.option("--target", "FILE", options.target,
