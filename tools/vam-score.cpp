@@ -87,12 +87,15 @@ std::vector<model::Condition> conditions_of(const Options& options) {
 /// What a target's 1 is in the unit of the dose: a target prescribes relative doses unless it states otherwise.
 double unit_of(const io::SparseVolume& target, const io::SparseVolume& dose, const std::string& file) {
   const std::string relative = "relative";
-  if (dose.units == relative || dose.units == target.units) return 1;
+  if (dose.units == target.units) return 1;
   const auto unit = tool::dose_unit_mj_cm3(dose.metadata);
   if (target.units == relative && unit && *unit > 0) return *unit;
-  throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units + ", but the target " +
-                               (target.units == relative ? "prescribes relative doses" : "is in " + target.units) +
-                               "; compute the dose from the projections of vam-optimize --grey-target with vam-dose"};
+  if (dose.units == relative || target.units != relative) {
+    throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units + ", but the target is in " + target.units +
+                                 "; make both in mJ/cm3: set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
+                                 "vam-dose, whose dose is of one turn without --exposure-plan or --shown"};
+  }
+  throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units + ", but the target prescribes relative doses; compute the dose from the projections of vam-optimize --grey-target with vam-dose"};
 }
 
 void score_grey(const Options& options, const model::Printer& printer,

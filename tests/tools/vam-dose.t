@@ -137,6 +137,20 @@ fails 65 cut.exr vam-dose cut.exr -o x.vdb
 unsealed() { sed 's|vam:\(facts_\)*seal|vom:\1seal|g' "$1"; }
 { unsealed handle.vdb | sed 's|target|others|g'; unsealed part.vdb; } >mixed.vdb  # an insert of other voxels
 fails 65 "differs from that of 'target'" vam-dose frames.exr --like mixed.vdb -o x.vdb
+# Of a grey target only the voxels are needed.
+vam-convert part.vdb -o part.npy
+python3 -c 'import array
+head, values = open("part.npy", "rb").read().split(b"\n", 1)
+open("grey.npy", "wb").write(head + b"\n" + array.array("f", [20 * x for x in array.array("f", values)]).tobytes())'
+vam-convert grey.npy --voxel 0.1 --stretch-z 1 --value-unit mJ/cm3 -o grey.vdb
+vam-convert part.npy --voxel 0.1 --stretch-z 1 -o covered.vdb
+quiet "the place of a dose" vam-dose virtual.exr --like grey.vdb -o like-grey.vdb
+vam-dose virtual.exr --like covered.vdb -o like-part.vdb
+for like in grey part; do vam-convert like-$like.vdb -o like-$like.npy; done
+same "is that of a part" like-grey.npy like-part.npy
+fails 65 "'target' is a dose for every voxel, not a part; --exposure-plan requires" \
+  vam-dose virtual.exr --like grey.vdb --exposure-plan --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 -o x.vdb
+fails 65 'in relative, but the target is in mJ/cm3; make both in mJ/cm3: .*--exposure-plan' vam-score like-grey.vdb --target grey.vdb --grey-target
 fails 65 camera vam-dose camera.exr -o x.vdb
 fails 65 frames vam-dose images.exr -o x.vdb
 fails 65 cubes vam-dose flattened.exr -o x.vdb

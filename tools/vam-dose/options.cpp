@@ -11,9 +11,10 @@ namespace {
 
 void declare_volume(cli::App& app, Options& options) {
   app.group("Volume");
-  app.option("--like", "FILE", options.like,
-             "Volume (VDB) that determines the voxels of the dose; its grid 'target' is the part to which the report "
-             "refers, its grid 'insert' an opaque object in the beam.")
+  app.option(
+         "--like", "FILE", options.like,
+         "Volume (VDB) that determines the voxels of the dose; its grid 'target' is the part to which the report "
+         "refers (of a grey target, a dose, only the voxels count), its grid 'insert' an opaque object in the beam.")
       .reads();
   app.option("--size", "MM", options.size_mm, cli::positive,
              "Edge of the square volume around the axis; the voxel size is the slice height.");

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-dose/place.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "base/error.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
@@ -32,6 +35,31 @@ model::StackInfo posed(model::StackInfo info, const Options& options) {
   return info;
 }
 
+namespace {
+
+/// A target of --grey-target: a dose for every voxel, in a unit or above the 1 of coverage.
+bool is_dose(const io::SparseVolume& target) {
+  if (target.units != "relative") return true;
+  const model::Grid& grid = target.grid();
+  std::vector<float> slice(grid.slice_size());
+  for (int k = 0; k < grid.nz; ++k) {
+    target.read_slices(k, 1, slice.data());
+    if (*std::max_element(slice.begin(), slice.end()) > 1 + model::coverage_rounding) return true;
+  }
+  return false;
+}
+
+/// A part whose coverage is judged; of a dose only the place of its voxels is known.
+const io::SparseVolume* part_of(const io::SparseVolume& target, const Options& options) {
+  if (!is_dose(target)) return &target;
+  if (!options.exposure_plan) return nullptr;
+  throw Error{Fault::data, options.like +
+                               ": grid 'target' is a dose for every voxel, not a part; --exposure-plan "
+                               "requires the coverage of a part (vam-slice writes it)"};
+}
+
+}  // namespace
+
 Place place_of(const Options& options, const model::Printer& printer, const model::StackInfo& info) {
   Place place;
   if (options.like.empty()) {
@@ -39,19 +67,20 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     return place;
   }
   place.like = io::read_volumes(options.like);
-  io::require_usable(options.like, place.like);
+  io::require_usable(options.like, place.like, io::TargetKind::grey);
+  const io::SparseVolume* like = &place.like.front();
   for (const io::SparseVolume& volume : place.like) {
-    if (volume.name() == "target") place.target = &volume;
+    if (volume.name() == "target") like = &volume, place.target = part_of(volume, options);
     if (volume.name() == "insert") place.insert = &volume;
   }
   if (options.exposure_plan && place.target == nullptr) {
     throw Error{Fault::data,
                 options.like + ": has no grid 'target'; --exposure-plan requires the part (vam-slice writes it)"};
   }
-  const double farthest_mm = place.target != nullptr ? io::farthest_mm(*place.target, model::coverage_rounding) : 0;
+  const double farthest_mm = like->name() == "target" ? io::farthest_mm(*like, model::coverage_rounding) : 0;
   place.judged_mm = optics::judged_radius_mm(printer, farthest_mm);
   light::require_in_reach(info.poses, printer, place.judged_mm);
-  place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
+  place.grid = like->grid();
   if (info.space == model::Space::projector) {  // what prints around the part must be seen
     const model::Grid inner = place.grid;
     place.grid = light::extended(inner, light::lit_margin(printer, inner, place.judged_mm, info.poses));
