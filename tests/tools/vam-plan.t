@@ -115,6 +115,11 @@ ok 'with the reason' grep -qE '^  not judged  *0.2[0-9]* % of the part.*, too th
 is 'in the report, too' "$(json wide.json all_judged) $(json fin.json all_judged)" 'false true'
 holds 'with its share' "($(json wide.json unresolved_part) / (0.9 / 363.9) - 1) ^ 2 < 0.3 ^ 2"
 holds 'on the voxels of the estimate' "$(json wide.json estimate_voxel_mm) > 0.12"
+block 4 4 2 0.1 1 >thin.off
+ok 'on voxels of 0.25 mm' \
+  sh -c 'vam-plan thin.off --no-preview --set projector.pixel_mm=0.25 --report thin.json >thin 2>.log/thin'
+ok 'the fin is the thinnest wall' grep -qx 'thinnest wall  *below 1 voxel (0.25 mm): enlarge the part, or use smaller pixels' thin
+is 'the report gives no other' "$(grep -c thinnest_wall thin.json)" 0
 block 4 4 1.5 0.01 3 >sheet.off
 ok 'walls that the printer loses are a warning' \
   sh -c 'vam-plan sheet.off --no-preview 2>&1 >.log/sheet | grep -q "sheet.off: 0.37 % of the part is in walls too thin"'

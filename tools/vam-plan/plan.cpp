@@ -150,6 +150,12 @@ void warn_of_resolution(const std::string& subject, const Filled& fine, double s
     warn(doubt);
 }
 
+/// Which half-covered voxels either leave out or show as thick as a voxel.
+bool has_walls_below_a_voxel(const model::Unresolved& unresolved, const solid::Walls& walls) {
+  const bool thin = walls.thinnest_voxels && *walls.thinnest_voxels < 1.5;
+  return unresolved.loses_walls() || (thin && unresolved.is_much());
+}
+
 /// On the printer's voxels, or on larger ones where these are too many.
 void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
@@ -161,6 +167,7 @@ void add_walls(Plan& plan, const solid::Part& part) {
   plan.sharp_edges = walls.sharp_edges;
   plan.wall_voxels = walls.thinnest_voxels;
   plan.wall_mm = walls.thinnest_mm;
+  if (has_walls_below_a_voxel(fine.content.unresolved, walls)) plan.wall_voxels.reset();
   if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
 }
 

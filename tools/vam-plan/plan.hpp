@@ -38,7 +38,7 @@ struct Plan {
   double scale = 1;                   // of what follows, of the file's coordinates
   model::Grid grid;                   // at the printer's pixels
   double stretch_z = 1;               // of that grid
-  std::optional<double> wall_voxels;  // of that grid; none: there is no wall as thick as the resolution
+  std::optional<double> wall_voxels;  // of that grid; none: the thinnest one is thinner than the resolution
   double wall_mm = 0;                 // of the print
   bool sharp_edges = false;           // thinner than what prints
   int wall_resolution = 1;            // in voxels
