@@ -121,6 +121,7 @@ f["complex"] = a.astype("c8")
 f["plane"] = a[0]
 f["lzf"] = 1.0
 f.create_dataset("packed", data=a[0], chunks=(3, 4), compression="lzf")
+f.create_dataset("it's \\ \"mine\"", data=a[0], chunks=(3, 4), compression="lzf")
 f["far"] = h5py.ExternalLink("one.dat", "/group/only")
 layout = h5py.VirtualLayout((2, 3, 4), "i8")
 layout[:] = h5py.VirtualSource("one.dat", "group/only", (2, 3, 4))
@@ -136,6 +137,10 @@ refused packed 65 'bad.h5: /packed is packed by lzf, which is not read; unpack a
 vam-convert bad.h5 --array packed --voxel 1 -o x.vdb 2>&1 | sed 's/.*by h5py: //; s/python3/\/usr\/bin\/python3/' >unpack.sh
 ok 'the command unpacks it' sh unpack.sh
 ok 'and it is read' sh -c 'vam-convert plain.h5 --array packed --voxel 1 --stretch-z 1 -o plain.vdb'
+cp bad.h5 "an artist's.h5"
+vam-convert "an artist's.h5" --array "it's \\ \"mine\"" --voxel 1 -o x.vdb 2>&1 | sed 's/.*by h5py: //; s/python3/\/usr\/bin\/python3/' >unpack.sh
+ok 'names are quoted for shell and Python' sh unpack.sh
+ok 'and what they name is read' vam-convert plain.h5 --array "it's \\ \"mine\"" --voxel 1 --stretch-z 1 -o plain.vdb
 refused virtual 65 'bad.h5: /virtual has its values in other files'
 refused far 65 'bad.h5: /far is a link to /group/only of the file one.dat, which is not in the file'
 refused no 64 'bad.h5: holds /complex \(records of several fields\), /deep \(1 x 2 x 3 x 4\), .*, but no dataset is called no'

@@ -174,7 +174,19 @@ nrrd() {  # nrrd REGEX SPACINGS: says it of --voxel 0.5, or nothing where it is 
   ok "stated voxels: $1" sh -c 'vam-convert stated.nrrd --voxel 0.5 --stretch-z 1 -o stated.vdb 2>said'
   if [ -z "$1" ]; then is 'in silence' "$(cat said)" ''; else ok 'and says so' grep -Eq "$1" said; fi
 }
-nrrd '' 'space directions: (0.5,0,0) (0,0.3,0.4) (0,0,-0.5)'
+nrrd '' 'space directions: (0.5,0,0) (0,0.5,0.0001) (0,0,0.5)'
+nrrd '' 'space directions: none (0.5,0) (0,0.5)'
+turned() {  # turned REGEX DIRECTIONS [OPTION...]: axes that are not x, y and z are refused
+  LC_ALL=C sed "s/^space directions.*/space directions: $2/" part.nrrd >turned.nrrd; said=$1; shift 2
+  fails 65 "turned.nrrd: its axes $said" vam-convert turned.nrrd --voxel 0.5 --stretch-z 1 "$@" -o x.vdb
+}
+turned 'lie obliquely in space .*; resample it' '(0.35,0.35,0) (-0.35,0.35,0) (0,0,0.5)'
+turned 'lie obliquely' '(0.5,0,0) (0.5,0,0) (0,0,0.5)'
+turned 'lie obliquely' '(0.35,0.35,0) (-0.35,0.35,0) (0,0,0.5)' --axes zxy
+turned 'run backwards .*unu flip -a N' '(0.5,0,0) (0,0.5,0) (0,0,-0.5)'
+turned 'are in another order .*; give --axes zxy$' '(0,0.5,0) (0.5,0,0) (0,0,0.5)'
+turned 'are in another order .*; give --axes yxz$' '(0,0,0.5) (0.5,0,0) (0,0.5,0)'
+ok 'the order is taken' vam-convert turned.nrrd --voxel 0.5 --stretch-z 1 --axes yxz -o ordered.vdb
 nrrd '' 'spacings: 0.5 0.5 nan'
 nrrd '' 'spacings: 500 500 500\nunits: "um" "um" "um"'
 nrrd '' 'spacings: 7 7 7\nunits: "s" "s" "s"'
@@ -184,7 +196,9 @@ nrrd 'states voxels of 0.5 x 0.5 x 1 mm, and is read with --voxel 0.5; voxels mu
 nrrd 'states voxels of 50 mm, ' 'spacings: 5 5 5\nunits: "cm" "cm" "cm"'
 { printf 'RIFF\210\023\0\0AVI LIST'; head -c 5000 /dev/zero; } >film.avi
 { printf 'GIF89a'; head -c 500 /dev/zero; } >film.gif
-for kind in 'avi an AVI video' 'gif a GIF image'; do
+{ printf '\0\0\001\272'; head -c 500 /dev/zero; } >film.mpg
+{ printf '\060\046\262\165\216\146\317\021'; head -c 500 /dev/zero; } >film.wmv
+for kind in 'avi an AVI video' 'gif a GIF image' 'mpg an MPEG video' 'wmv a WMV video'; do
   film=film.${kind%% *} kind=${kind#* }
   fails 65 "$film: is $kind, not an array .*; convert it without loss: ffmpeg -i" vam-convert $film --voxel 1 -o x.vdb
   fails 65 "$film: is $kind, not a mesh; .*ffmpeg" vam-slice $film -o x.vdb

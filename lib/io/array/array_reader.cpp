@@ -148,7 +148,7 @@ struct ArrayReader::State {
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); }, file.name());
     StatedViews stated;
     const arrays::Head head = format == Format::npy    ? take_npy_head(front)
-                              : format == Format::nrrd ? take_nrrd_head(front, stated.voxel_mm)
+                              : format == Format::nrrd ? take_nrrd_head(front, stated.voxel_mm, !options.own_order)
                                                        : take_mrc_head(front);
     send({head, std::move(front), options.axes}, out, stated);
   }

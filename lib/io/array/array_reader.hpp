@@ -23,7 +23,7 @@ struct ArrayOptions {
   std::string name;                  // of the array in a .npz or HDF5 file that holds several
   std::array<int, 3> axes{0, 1, 2};  // which axis of the array counts the images, the rows and the columns
   bool projections = false;          // the rows are stage angles: what an HDF5 file states about them counts
-  bool own_order = false;            // of projections, the order of an HDF5 file's convention goes before `axes`
+  bool own_order = false;            // `axes` was not asked for: the order of an HDF5 file's convention goes before it
 };
 
 /// Reads an array of 2 or 3 axes front to back, parsed in a child; what is not finite as float is refused. Where

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -129,21 +130,71 @@ void require_plain(const Bytes& bytes, const Fields& fields) {
   }
 }
 
-/// "(0.5,0,0) none (0,0,2)" or "0.5 nan 2": the lengths; nan for what is none.
-std::vector<double> lengths_of(const std::string& text) {
-  std::vector<double> lengths;
+/// "(0.5,0,0) none (0,0,2)" or "0.5 nan 2": of each axis its numbers, nan for what is none.
+std::vector<std::vector<double>> directions_of(const std::string& text) {
+  std::vector<std::vector<double>> directions;
   for (std::size_t at = 0; at < text.size();) {
     const bool vector = text[at] == '(';
     const std::size_t end = std::min(text.find(vector ? ')' : ' ', at), text.size());
-    double squares = 0;
+    directions.emplace_back();
     for (const std::string& number : split(text.substr(at + (vector ? 1 : 0), end - at - (vector ? 1 : 0)), ',')) {
       const auto value = parse_number(number.substr(std::min(number.find_first_not_of(' '), number.size())));
-      squares += value ? *value * *value : std::nan("");
+      directions.back().push_back(value ? *value : std::nan(""));
     }
-    lengths.push_back(std::sqrt(squares));
     at = std::min(text.find_first_not_of(' ', end + (vector ? 1 : 0)), text.size());
   }
+  return directions;
+}
+
+std::vector<double> lengths_of(const std::string& text) {
+  std::vector<double> lengths;
+  for (const std::vector<double>& direction : directions_of(text)) {
+    double squares = 0;
+    for (const double value : direction) squares += value * value;
+    lengths.push_back(std::sqrt(squares));
+  }
   return lengths;
+}
+
+/// The axis of space that a direction is along, to a thousandth; none where it is oblique.
+std::optional<std::size_t> axis_of(const std::vector<double>& direction) {
+  constexpr double exact = 1e-3;
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < direction.size(); ++i)
+    if (std::abs(direction[i]) > std::abs(direction[most])) most = i;
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    if (i != most && std::abs(direction[i]) > exact * std::abs(direction[most])) return std::nullopt;
+  return most;
+}
+
+/// Of a volume whose directions are all stated in three dimensions.
+void require_upright(const Bytes& bytes, const Fields& fields, bool ordered) {
+  const auto found = fields.find("space directions");
+  if (found == fields.end()) return;
+  const std::vector<std::vector<double>> directions = directions_of(found->second);
+  if (directions.size() != 3) return;
+  std::string order;  // the slowest first, as --axes has it
+  bool reversed = false;
+  for (const std::vector<double>& direction : directions) {
+    if (direction.size() != 3) return;
+    for (const double value : direction)
+      if (!std::isfinite(value)) return;
+    const auto axis = axis_of(direction);
+    if (!axis || order.find("xyz"[*axis]) != std::string::npos) {
+      bytes.fail("its axes lie obliquely in space (space directions: " + excerpt(found->second) +
+                 "); resample it to axes along x, y and z (3D Slicer: Resample Scalar/Vector/DWI Volume)");
+    }
+    order.insert(0, 1, "xyz"[*axis]);
+    reversed = reversed || direction[*axis] < 0;
+  }
+  if (reversed) {
+    bytes.fail("its axes run backwards (space directions: " + excerpt(found->second) +
+               "), so that it would be read mirrored or turned; turn them: unu flip -a N for each such axis N, from 0");
+  }
+  if (order != "zyx" && !ordered) {
+    bytes.fail("its axes are in another order (space directions: " + excerpt(found->second) + "); give --axes " +
+               order);
+  }
 }
 
 /// The words in quotes.
@@ -181,10 +232,11 @@ std::vector<double> stated_mm(const Fields& fields, std::size_t axes) {
 
 }  // namespace
 
-Head take_nrrd_head(Bytes& bytes, std::vector<double>& voxel_mm) {
+Head take_nrrd_head(Bytes& bytes, std::vector<double>& voxel_mm, bool ordered) {
   if (!bytes.line().starts_with(nrrd_magic)) bytes.fail("is no NRRD volume");
   const Fields fields = take_fields(bytes);
   require_plain(bytes, fields);
+  require_upright(bytes, fields, ordered);
   Head head;
   set_type(bytes, field(bytes, fields, "type"), head);
   const std::vector<std::uint64_t> shape = shape_of(bytes, field(bytes, fields, "sizes"));

@@ -199,6 +199,12 @@ void decode(const Imf::Header& layout, const Chunks& chunks, Image& image) {
   input.readPixels(window.min.y, window.max.y);
 }
 
+std::string channel_remedy(const Imf::ChannelList& channels) {
+  if (channels.begin() == channels.end()) return "write it again";
+  const std::string name = printable(channels.findChannel("R") != nullptr ? "R" : channels.begin().name());
+  return "to take " + name + ": oiiotool -a FILE --ch 'Y=" + name + "' -o FILE.Y.exr";
+}
+
 namespace {
 
 std::string only_channel(const Imf::Header& header) {
@@ -209,7 +215,8 @@ std::string only_channel(const Imf::Header& header) {
     names += (count == 0 ? "" : ", ") + printable(one.name());
   }
   if (count == 1) return header.channels().begin().name();
-  throw std::runtime_error("has the channels " + names + "; one of intensity is read (Y)");
+  throw std::runtime_error("has the channels " + names + "; one of intensity is read (Y); " +
+                           channel_remedy(header.channels()));
 }
 
 }  // namespace

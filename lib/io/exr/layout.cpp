@@ -29,7 +29,8 @@ void check_channels(const Imf::ChannelList& channels) {
     if (it.channel().xSampling != 1 || it.channel().ySampling != 1) throw std::runtime_error("has subsampled channels");
   }
   if (channels.findChannel(channel) != nullptr) return;
-  throw std::runtime_error("has no channel Y, but" + (names.empty() ? " none" : names));
+  throw std::runtime_error("has no channel Y, but" + (names.empty() ? " none" : names) + "; " +
+                           channel_remedy(channels));
 }
 
 }  // namespace

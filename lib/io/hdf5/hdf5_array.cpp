@@ -24,23 +24,47 @@ namespace {
 using hdf5::api;
 using hdf5::Handle;
 
-/// Names that a shell and Python take as they are; else a word for them.
-std::string pasted(const std::string& name, const char* word) {
+/// Names of printable ASCII as a shell takes them; else a word for them.
+bool is_shown(const std::string& name) {
+  return std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= ' ' && c < 0x7f; });
+}
+
+std::string replaced(const std::string& text, char wanted, const std::string& by) {
+  std::string out;
+  for (const char c : text) out += c == wanted ? by : std::string(1, c);
+  return out;
+}
+
+/// A word of the shell: in apostrophes where it has more than letters, figures and signs that the shell leaves alone.
+std::string shell_word(const std::string& name) {
   const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("/._-+").find(static_cast<char>(c)) != std::string_view::npos;
   });
-  return plain ? name : word;
+  return plain ? name : "'" + replaced(name, '\'', "'\\''") + "'";
+}
+
+/// A file name that no program takes for an option.
+std::string shell_file(const std::string& name) {
+  if (!is_shown(name)) return "FILE";
+  return shell_word(name.starts_with('-') ? "./" + name : name);
+}
+
+/// A text of Python, in quotation marks.
+std::string python_text(const std::string& text) {
+  return "\"" + (is_shown(text) ? replaced(replaced(text, '\\', "\\\\"), '"', "\\\"") : std::string("DATASET")) + "\"";
 }
 
 /// What unpacks a dataset: Python knows LZF, and other filters by a package of it. h5repack knows neither.
 std::string unpacking(H5Z_filter_t filter, const std::string& name, const std::string& path) {
   constexpr H5Z_filter_t lzf = 32000;
-  const std::string file = pasted(name, "FILE");
-  const std::string data = "\"" + pasted(path, "DATASET") + "\"";
-  return std::string("; unpack a copy in Python, by h5py") + (filter == lzf ? "" : " and hdf5plugin") + ": cp " + file +
-         " plain.h5 && python3 -c 'import h5py" + (filter == lzf ? "" : ", hdf5plugin") +
-         "; f = h5py.File(\"plain.h5\", \"a\"); v = f[" + data + "][()]; a = dict(f[" + data + "].attrs); del f[" +
-         data + "]; f[" + data + "] = v; f[" + data + "].attrs.update(a)'";
+  const std::string data = python_text(path);
+  return std::string("; unpack a copy in Python, by h5py") + (filter == lzf ? "" : " and hdf5plugin") + ": cp " +
+         shell_file(name) + " plain.h5 && python3 -c '" +
+         replaced(std::string("import h5py") + (filter == lzf ? "" : ", hdf5plugin") +
+                      "; f = h5py.File(\"plain.h5\", \"a\"); v = f[" + data + "][()]; a = dict(f[" + data +
+                      "].attrs); del f[" + data + "]; f[" + data + "] = v; f[" + data + "].attrs.update(a)",
+                  '\'', "'\\''") +
+         "'";
 }
 
 /// Throws Fault::data for values that are in other files or packed by no known filter.

@@ -97,7 +97,8 @@ TEST_CASE("a folder of EXR images, as Dr.TVAM writes its patterns: intensities a
         Fault::data);
   };
   CHECK(has(refused(Image(3, 3), {"Y"}), "0011.exr: has 3 x 3 pixels, but those before have 3 x 2"));
-  CHECK(has(refused(Image(3, 2), {"R", "G", "B"}), "0011.exr: has the channels B, G, R; one of intensity is read"));
+  CHECK(has(refused(Image(3, 2), {"R", "G", "B"}),
+            "0011.exr: has the channels B, G, R; one of intensity is read (Y); to take R: oiiotool"));
   Image endless(3, 2);
   endless.values[1] = std::numeric_limits<float>::infinity();
   CHECK(has(refused(endless, {"Z"}), "0011.exr: has a pixel that is not a finite number"));

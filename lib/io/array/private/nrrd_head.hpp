@@ -15,7 +15,9 @@ inline constexpr std::string_view nrrd_magic = "NRRD000";
 /// The bytes that follow are the values, unpacked where they are packed. Throws Fault::data: not such a file, a field
 /// that is missing or not understood, values in another file, text or bzip2, other than scalars. voxel_mm: the edges
 /// that it states (spacings or space directions), along its own axes, the fastest first; in mm where it names no unit.
-/// Empty where it states none for every axis, or in a unit that is no length.
-[[nodiscard]] Head take_nrrd_head(Bytes& bytes, std::vector<double>& voxel_mm);
+/// Empty where it states none for every axis, or in a unit that is no length. Also Fault::data: axes that its space
+/// directions state to be oblique, or reversed, or, without `ordered` (an order of the axes that was asked for), to be
+/// others than x, y and z, the fastest first.
+[[nodiscard]] Head take_nrrd_head(Bytes& bytes, std::vector<double>& voxel_mm, bool ordered = false);
 
 }  // namespace vam::io::arrays
