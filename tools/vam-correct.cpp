@@ -104,6 +104,7 @@ void declare(cli::App& app, Options& o) {
   app.option("--sensitivity", "FILE.vdb", o.field, "Write the volume 'sensitivity'.").writes({".vdb"});
   cli::add_report(app, o.report);
   cli::add_threads(app);
+  app.usual({"--output", "--dose", "--uncertainty", "--column-offset", "--before", "--sensitivity", "--report"});
 }
 
 io::SparseVolume read_dose(const std::string& path) {

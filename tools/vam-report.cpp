@@ -83,6 +83,7 @@ void declare(cli::App& app, Options& o) {
       .was("--projections");
   cli::add_printer(app, o.printer);
   cli::add_threads(app);
+  app.usual({"--output", "--title", "--max-sections", "--max-images", "--printer", "--set"});
 }
 
 void run(const cli::App& app, Options& o) {

@@ -198,7 +198,10 @@ std::string help_text(const Declaration& tool, bool all) {
                   : brief_entry(positional.value_name, details(positional));
   }
   if (!tool.positionals.empty()) text += "\n";
-  if (whole) {
+  if (!all && !has_plain_form(tool)) {  // each command has options of its own
+    text += "Options of a command, e.g.: " + tool.manual.name + " " + tool.subcommands.front().manual.name +
+            " --help\n" + "Common options: " + names_of_all() + ";\n";
+  } else if (whole) {
     for (const Group& group : tool.groups) text += help_text(group) + "\n";
     text += help_text(Group{"Common options", options_of_all()});
   } else {

@@ -59,6 +59,7 @@ void declare(cli::App& app, Options& options) {
   cli::add_report(app, options.report);
   cli::add_printer(app, options.printer);
   cli::add_threads(app);
+  app.usual({"--shape", "--unit", "--up", "--scale", "--no-preview", "--report", "--printer", "--set"});
 }
 
 }  // namespace vam::plan_tool

@@ -34,6 +34,8 @@ void declare(cli::App& app, Options& options) {
   app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);
+  app.usual({"--output", "--angles", "--detector-bins", "--filter", "--cutoff", "--negative", "--absorption",
+             "--printer-absorption", "--printer", "--set"});
 }
 
 }  // namespace vam::sinogram_tool

@@ -338,6 +338,9 @@ TEST_CASE("required options of a form are shown as such and refused where missin
   CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; see --help\n");
   CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; see --help\n");
   CHECK(said({"scan", "--help"}, stdout).starts_with("Usage: vam-demo scan [OPTIONS] --flips FILE FRAMES\n"));
+  CHECK(said({"--help"}, stdout).find("\nOptions of a command, e.g.: vam-demo scan --help\nCommon options: --memory") !=
+        std::string::npos);
+  CHECK(said({"--help=all"}, stdout).find("\n  --memory GIB\n") != std::string::npos);
 }
 
 TEST_CASE("an option that stands for others is a form of its own without them") {
