@@ -4,8 +4,10 @@
 
 #include <string>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/grey_share.hpp"
@@ -20,6 +22,22 @@ inline void warn_of_grey(const io::SparseVolume& target, const std::string& path
        ": the target is grey, or its voxels are too coarse for it: " + format_number(100 * share, 2) +
        " % of its voxels above 0 are between 0 and 1 and no surface, and are taken for surface that nothing is asked "
        "of; --grey-target takes the target as the dose of every voxel");
+}
+
+/// What a target's 1 is in the unit of the dose: a target prescribes relative doses unless it states otherwise.
+inline double grey_unit(const io::SparseVolume& target, const io::SparseVolume& dose, const std::string& file) {
+  const std::string relative = "relative";
+  if (dose.units == target.units) return 1;
+  const auto unit = dose_unit_mj_cm3(dose.metadata);
+  if (target.units == relative && unit && *unit > 0) return *unit;
+  if (dose.units == relative || target.units != relative) {
+    throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units + ", but the target is in " + target.units +
+                                 "; make both in mJ/cm3: set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
+                                 "vam-dose, whose dose is of one turn without --exposure-plan or --shown"};
+  }
+  throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units +
+                               ", but the target prescribes relative doses; compute the dose from the projections of "
+                               "vam-optimize --grey-target with vam-dose"};
 }
 
 }  // namespace vam::tool

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
+#include "grey_options.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/page.hpp"
 #include "printer.hpp"
@@ -24,6 +25,7 @@ struct Options {
   std::string title;
   int sections = 24;
   int projections = 36;
+  tool::GreyChoice grey;
   cli::PrinterOptions printer;
 };
 
@@ -48,7 +50,9 @@ cli::Manual manual() {
        "its verdict, every figure with its expanded uncertainty, the print in three dimensions in the colours of its "
        "deviation, sections through its middle with the dimensions of print and design, and the histogram of the "
        "deviation, the outermost bins of which hold what is beyond.",
-       "The first target and the first dose are scored as by vam-score, with the settings of the printer file."},
+       "The first target and the first dose are scored as by vam-score, with the settings of the printer file. With "
+       "--grey-target the target is a dose for every voxel: the page has the verdict and the figures of vam-score "
+       "--grey-target, and neither a print in three dimensions nor what prints."},
       {{"A print from design to dose:",
         "vam-slice --shape gyroid --voxel 0.3 -o part.vdb\n"
         "vam-optimize part.vdb --angles 120 --iterations 12 --trace trace.csv -o light.exr --report light.json\n"
@@ -81,9 +85,10 @@ void declare(cli::App& app, Options& o) {
   app.option("--max-sections", "N", o.sections, {1, 200}, "Maximum number of sections of a volume.").was("--sections");
   app.option("--max-images", "N", o.projections, {1, 360}, "Maximum number of images of a stack or video.")
       .was("--projections");
+  tool::add_grey_target(app, o.grey);
   cli::add_printer(app, o.printer);
   cli::add_threads(app);
-  app.usual({"--output", "--title", "--max-sections", "--max-images", "--printer", "--set"});
+  app.usual({"--output", "--title", "--max-sections", "--max-images", "--grey-target", "--printer", "--set"});
 }
 
 void run(const cli::App& app, Options& o) {
@@ -95,8 +100,8 @@ void run(const cli::App& app, Options& o) {
   page.title = o.title;
   page.style = report_tool::page_style;
   page.script = report_tool::page_script;
-  page.body =
-      report_tool::content(report_tool::gather(o.files), printer, {o.title, app.history(), o.sections, o.projections});
+  page.body = report_tool::content(report_tool::gather(o.files), printer,
+                                   {o.title, app.history(), o.sections, o.projections, o.grey});
   io::write_text(o.output, plot::html(page));
 }
 

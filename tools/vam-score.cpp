@@ -81,29 +81,16 @@ void require_met(const std::vector<model::Condition>& conditions,
 
 std::vector<model::Condition> conditions_of(const Options& options) {
   if (options.require.empty()) return {};
-  return model::parse_conditions(options.require, options.grey ? score::GreyScore::names() : score::Score::names());
-}
-
-/// What a target's 1 is in the unit of the dose: a target prescribes relative doses unless it states otherwise.
-double unit_of(const io::SparseVolume& target, const io::SparseVolume& dose, const std::string& file) {
-  const std::string relative = "relative";
-  if (dose.units == target.units) return 1;
-  const auto unit = tool::dose_unit_mj_cm3(dose.metadata);
-  if (target.units == relative && unit && *unit > 0) return *unit;
-  if (dose.units == relative || target.units != relative) {
-    throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units + ", but the target is in " + target.units +
-                                 "; make both in mJ/cm3: set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
-                                 "vam-dose, whose dose is of one turn without --exposure-plan or --shown"};
-  }
-  throw Error{Fault::data, io::input_name(file) + ": is in " + dose.units + ", but the target prescribes relative doses; compute the dose from the projections of vam-optimize --grey-target with vam-dose"};
+  return model::parse_conditions(options.require,
+                                 options.grey.is_target ? score::GreyScore::names() : score::Score::names());
 }
 
 void score_grey(const Options& options, const model::Printer& printer,
                 const std::vector<model::Condition>& conditions) {
   const Inputs in = read(options);
-  score::GreyOptions how = score_tool::grey_options(options);
+  score::GreyOptions how = options.grey.options();
   how.circle = tool::judged_circle(in.target(), printer);
-  how.unit = unit_of(in.target(), in.dose(), options.input);
+  how.unit = tool::grey_unit(in.target(), in.dose(), options.input);
   const score::GreyScore result = tool::score_grey_volumes(in.dose(), in.target(), how);
   io::write_report(options.report, "vam-score-grey/1", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
@@ -115,7 +102,7 @@ void run(const cli::App& app, Options& options) {
   const std::vector<model::Condition> conditions = conditions_of(options);
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, "-")) return;
-  if (options.grey) return score_grey(options, printer, conditions);
+  if (options.grey.is_target) return score_grey(options, printer, conditions);
   require_files_for_outputs(options);
   const Inputs in = read(options);
   const std::string& file = options.target.empty() ? options.input : options.target;

@@ -99,10 +99,14 @@ std::string GreyScore::table() const {
                   format_figure(values[name].get<double>()).c_str(), meaning.c_str());
     text += line;
   }
+  return text + "verdict      " + verdict() + "\n";
+}
+
+std::string GreyScore::verdict() const {
   const double within = 100 * (1 - figure("ver"));
-  return text + "verdict      " + (wrong_ == 0 ? "met" : "not met") + ": " + format_number(within, 4) + " % of " +
+  return std::string(is_met() ? "met" : "not met") + ": " + format_number(within, 4) + " % of " +
          std::to_string(part_ + void_) + " voxels are within " + format_number(options_.band, 3) +
-         " of the target, the farthest is " + format_number(largest_, 3) + " away\n";
+         " of the target, the farthest is " + format_number(largest_, 3) + " away";
 }
 
 }  // namespace vam::score

@@ -37,6 +37,9 @@ class GreyScore {
   [[nodiscard]] double figure(const std::string& name) const;
   /// Throws Fault::data when no voxel of the target is above 0.
   [[nodiscard]] Json figures() const;
+  [[nodiscard]] bool is_met() const { return wrong_ == 0; }
+  /// "not met: 99 % of 1000 voxels are within 0.1 of the target, the farthest is 0.2 away".
+  [[nodiscard]] std::string verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
   [[nodiscard]] std::string table() const;
 

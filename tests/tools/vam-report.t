@@ -49,6 +49,15 @@ vam-sinogram fin.vdb --angles 30 --filter ram-lak --negative clip | vam-dose --l
 ok 'a page of a part with a fin' vam-report fin.vdb fin-dose.vdb -o fin.html
 is 'the design has the fin' "$(grep -o 'spans 4 x 4 x [0-9.]* mm' fin.html | grep -c 'x \(2.9\|3\)')" 1
 ok 'sections of what prints' grep -q 'Part as printed, sections across z' fin.html
+# A target that is a dose for every voxel, here met nowhere but in the void, and one beyond the coverage of a part.
+vam-score dose.vdb --target part.vdb --grey-target --band 0.2 >table.grey
+ok 'a page of a grey target' vam-report part.vdb dose.vdb --grey-target --band 0.2 -o grey.html
+is 'the page begins with the verdict of vam-score --grey-target' \
+  "$(sed -n 's/.*<p class="verdict bad">\(.*\)<.p>/\1/p' grey.html)" "$(sed -n 's/^verdict *//p' table.grey)"
+is 'it has its figures, and nothing that prints' "$(grep -c '<th>cv</th>' grey.html) $(grep -c 'Part as printed' grey.html)" '1 0'
+vam-convert dose.vdb --stretch-z 1 -o dose.npy 2>/dev/null || vam-convert dose.vdb -o dose.npy
+vam-convert dose.npy --voxel 0.25 --stretch-z 1 --value-unit mJ/cm3 -o prescribed.vdb
+fails 65 "dose: is in relative, but the target is in mJ/cm3; make both in mJ/cm3" vam-report prescribed.vdb dose.vdb --grey-target -o x.html
 mkdir folder && cp part.vdb dose.vdb score.json part.off folder
 ok 'a page of a folder' vam-report folder -o folder.html --title 'A box'
 is 'the page has its title' "$(grep -c '<title>A box</title>' folder.html)" 1

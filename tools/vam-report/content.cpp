@@ -25,6 +25,18 @@ namespace vam::report_tool {
 
 namespace {
 
+/// Of a grey target.
+std::optional<score::GreyScore> judge_grey(const Volumes& volumes, const model::Printer& printer,
+                                           const tool::GreyChoice& grey) {
+  const io::SparseVolume* dose = volumes.find("dose");
+  const io::SparseVolume* target = volumes.find("target");
+  if (dose == nullptr || target == nullptr) return std::nullopt;
+  score::GreyOptions how = grey.options();
+  how.circle = tool::judged_circle(*target, printer);
+  how.unit = tool::grey_unit(*target, *dose, "dose");
+  return tool::score_grey_volumes(*dose, *target, how);
+}
+
 /// A dose with its target, and what it is worth.
 struct Judged {
   score::ScoreOptions how;
@@ -41,10 +53,13 @@ std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printe
   return Judged{how, tool::score_print(*dose, *target, how)};
 }
 
+std::string verdict(bool good, const std::string& words) {
+  return "<p class=\"verdict " + std::string(good ? "good" : "bad") + "\">" + page_text(words) + "</p>\n";
+}
+
 std::string verdict(const Judged& judged) {
   const score::Verdict verdict = judged.score.verdict();
-  return "<p class=\"verdict " + std::string(score::prints(verdict) && score::is_whole(verdict) ? "good" : "bad") +
-         "\">" + page_text(score::words(verdict)) + "</p>\n";
+  return report_tool::verdict(score::prints(verdict) && score::is_whole(verdict), score::words(verdict));
 }
 
 std::string images(const std::vector<std::string>& paths) {
@@ -63,7 +78,7 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
   std::string made = "<div class=\"images\">\n";
   constexpr int bodies_and_sections = 3;
   Progress progress("drawing", bodies_and_sections + std::ssize(sources.stacks) + std::ssize(sources.videos));
-  if (const io::SparseVolume* target = volumes.find("target")) {
+  if (const io::SparseVolume* target = volumes.find("target"); target != nullptr && !wanted.grey.is_target) {
     std::optional<PrintedDose> print;
     if (judged) print = {volumes.find("dose"), judged->score.print_threshold()};
     made += body_view(*target, print);
@@ -76,7 +91,7 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
   }
   progress.tick();
   if (inspection) made += inspection->histogram;
-  made += section_views(volumes, wanted.sections);
+  made += section_views(volumes, wanted.sections, !wanted.grey.is_target);
   if (judged) made += cure_views(volumes, judged->how, judged->score.print_threshold(), wanted.sections);
   progress.tick();
   const auto show = [&](const std::vector<std::string>& paths, io::FileType type) {
@@ -95,16 +110,19 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
 }  // namespace
 
 std::string content(const Sources& sources, const model::Printer& printer, const Wanted& wanted) {
-  const Volumes volumes = read_volumes(sources.volumes);
-  const std::optional<Judged> judged = judge(volumes, printer);
+  const bool is_grey = wanted.grey.is_target;
+  const Volumes volumes = read_volumes(sources.volumes, is_grey ? io::TargetKind::grey : io::TargetKind::coverage);
+  const std::optional<Judged> judged = is_grey ? std::nullopt : judge(volumes, printer);
+  const std::optional<score::GreyScore> grey = is_grey ? judge_grey(volumes, printer, wanted.grey) : std::nullopt;
   std::string made = "<h1>" + page_text(wanted.title) + "</h1>\n";
   if (judged) made += verdict(*judged);
+  if (grey) made += verdict(grey->is_met(), grey->verdict());
   const std::optional<InspectionViews> inspection = inspection_views(sources.reports);
   if (inspection) made += inspection->verdict;
   made += views(sources, volumes, judged, inspection, wanted);
   if (inspection) made += inspection->figures;
-  if (judged) {
-    made += "<h2>Figures of merit</h2>\n" + figures_table(judged->score.figures());
+  if (judged || grey) {
+    made += "<h2>Figures of merit</h2>\n" + figures_table(judged ? judged->score.figures() : grey->figures());
   }
   if (!sources.reports.empty()) made += "<h2>Reports</h2>\n";
   for (const std::string& report : sources.reports) made += report_table(report);

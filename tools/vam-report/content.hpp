@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "grey_options.hpp"
 #include "model/printer.hpp"
 #include "vam-report/sources.hpp"
 
@@ -14,6 +15,7 @@ struct Wanted {
   std::string history;  // of this command
   int sections = 0;     // of a volume, at most
   int projections = 0;  // of a stack or video, at most
+  tool::GreyChoice grey = {};
 };
 
 /// HTML of the body. Throws what the readers of its files throw.

@@ -46,11 +46,11 @@ const io::SparseVolume* Volumes::find(const std::string& name) const {
   return nullptr;
 }
 
-Volumes read_volumes(const std::vector<std::string>& paths) {
+Volumes read_volumes(const std::vector<std::string>& paths, io::TargetKind kind) {
   Volumes all;
   for (const std::string& path : paths) {
     std::vector<io::SparseVolume> read = io::read_volumes(path);
-    io::require_usable(path, read);
+    io::require_usable(path, read, kind);
     for (io::SparseVolume& grid : read) {
       all.files.push_back(file_name(path));
       all.grids.push_back(std::move(grid));
@@ -68,12 +68,12 @@ Volumes read_volumes(const std::vector<std::string>& paths) {
   return all;
 }
 
-std::string section_views(const Volumes& volumes, int count) {
+std::string section_views(const Volumes& volumes, int count, bool outlined) {
   std::string views;
   for (std::size_t n = 0; n < volumes.grids.size(); ++n) {
     const io::SparseVolume& volume = volumes.grids[n];
     Within within;
-    if (volume.name() == "dose") within.target = volumes.find("target");
+    if (outlined && volume.name() == "dose") within.target = volumes.find("target");
     const io::SparseVolume* insert = volumes.find("insert");
     const bool around = volume.name() == "dose" || volume.name() == "target";
     if (around && insert != nullptr && insert->grid() == volume.grid()) within.insert = insert;

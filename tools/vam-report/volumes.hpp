@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
 #include "score/score.hpp"
@@ -20,10 +21,11 @@ struct Volumes {
 
 /// Target and insert take the dose's grid, with void around. Throws what read_volumes throws; Fault::data where the
 /// voxels of target and dose lie elsewhere.
-[[nodiscard]] Volumes read_volumes(const std::vector<std::string>& paths);
+[[nodiscard]] Volumes read_volumes(const std::vector<std::string>& paths, io::TargetKind kind);
 
-/// HTML: axial and coronal sections of every grid, the dose with the target's outline, both with the insert.
-[[nodiscard]] std::string section_views(const Volumes& volumes, int count);
+/// HTML: axial and coronal sections of every grid, the dose with the target's outline if `outlined`, both with the
+/// insert.
+[[nodiscard]] std::string section_views(const Volumes& volumes, int count, bool outlined);
 
 /// HTML: axial sections of what the dose cures at the threshold, and of what is missing; both must be there.
 [[nodiscard]] std::string cure_views(const Volumes& volumes, const score::ScoreOptions& how, double threshold,

@@ -11,7 +11,7 @@ namespace vam::score_tool {
 namespace {
 
 Inputs read_grids(const Options& options) {
-  const io::TargetKind kind = options.grey ? io::TargetKind::grey : io::TargetKind::coverage;
+  const io::TargetKind kind = options.grey.is_target ? io::TargetKind::grey : io::TargetKind::coverage;
   Inputs in;
   if (!options.target.empty()) {
     in.volumes.push_back(io::read_volume(options.input, options.grid));

@@ -8,22 +8,6 @@ namespace vam::score_tool {
 
 namespace {
 
-void declare_grey(cli::App& app, Options& options) {
-  app.group("Grey target");
-  app.flag("--grey-target", options.grey,
-           "The target specifies a relative dose for every voxel, to be met within --band.");
-  app.option("--band", "EPSILON", options.grey_how.band, cli::non_negative,
-             "Maximum deviation of the dose from the target.")
-      .needs({"--grey-target"});
-  app.choice("--void", options.void_rule, {"met", "below", "free"},
-             "Void, where the target is 0: must be 0 within --band (met) or not exceed --dose-low (below), or is not "
-             "scored (free).")
-      .needs({"--grey-target"});
-  app.option("--dose-low", "DOSE", options.grey_how.void_limit, cli::non_negative,
-             "LOW: upper bound on the dose of the void with --void below.")
-      .needs({"--grey-target"});
-}
-
 void declare_print(cli::App& app, Options& options) {
   app.group("Print");
   app.option("--mesh", "FILE", options.print,
@@ -65,7 +49,7 @@ void declare(cli::App& app, Options& options) {
              "Write a volume (grid lit_fraction): the fraction of stage angles from which each voxel is lit.")
       .was("--reach")
       .writes_as({".vdb"});
-  declare_grey(app, options);
+  tool::add_grey_target(app, options.grey);
   declare_print(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
@@ -79,16 +63,8 @@ void declare(cli::App& app, Options& options) {
              "--printer", "--set", "--report"});
 }
 
-score::GreyOptions grey_options(const Options& options) {
-  score::GreyOptions how = options.grey_how;
-  how.void_rule = options.void_rule == "met"     ? score::VoidRule::met
-                  : options.void_rule == "below" ? score::VoidRule::below
-                                                 : score::VoidRule::free;
-  return how;
-}
-
 void check(const cli::App& app, const Options& options) {
-  if (!options.grey) return;
+  if (!options.grey.is_target) return;
   for (const char* flag :
        {"--critical-dose", "--trim", "--surface", "--absolute", "--sinogram", "--mesh", "--lit-fraction"}) {
     if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to --grey-target; omit it"};

@@ -7,7 +7,7 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "score/grey_score.hpp"
+#include "grey_options.hpp"
 #include "score/score.hpp"
 
 namespace vam::score_tool {
@@ -23,17 +23,13 @@ struct Options {
   std::string print;
   std::string print_as = "mesh";
   std::optional<double> print_at;
-  bool grey = false;
-  std::string void_rule = "met";
-  score::GreyOptions grey_how;
+  tool::GreyChoice grey;
   score::ScoreOptions how;
   cli::PrinterOptions printer;
 };
 
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
-/// The circle is not known yet.
-[[nodiscard]] score::GreyOptions grey_options(const Options& options);
 /// Throws Fault::usage for options that a grey target has no use for.
 void check(const cli::App& app, const Options& options);
 
