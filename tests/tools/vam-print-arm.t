@@ -252,7 +252,7 @@ fails 64 'omit --exposure-plan' vam-dose frames.exr --shown whole --exposure-pla
 
 # A disk that fills during the print.
 mkdir small
-if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=400k none small 2>/dev/null; then
+if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=200k none small 2>/dev/null; then
   trap 'umount small 2>/dev/null; rm -rf "$scratch"' EXIT
   print --turns 50 --run small/run --light "sim:?log=$PWD/full-leds" >out 2>errors
   is 'a full disk ends a print' "$? $(grep -c 'No space left on device' errors)" '74 1'
