@@ -86,9 +86,9 @@ inline model::PrintPieces print_pieces(const io::SparseVolume& dose, const io::S
       const float* d = doses.data() + product(s, grid.slice_size());
       const float* f = wanted.data() + product(s, grid.slice_size());
       for (std::size_t i = 0; i < grid.slice_size(); ++i) {
-        const bool part = f[i] >= model::half_surface;
-        const bool judged = part || circle.contains(static_cast<int>(i % width), static_cast<int>(i / width));
-        slices[s][i] = model::printed_bits(part, judged && d[i] >= threshold);
+        const bool judged =
+            f[i] >= model::half_surface || circle.contains(static_cast<int>(i % width), static_cast<int>(i / width));
+        slices[s][i] = model::printed_bits(f[i], judged && d[i] >= threshold);
       }
     });
     pieces.add(slices);

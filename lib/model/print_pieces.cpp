@@ -70,15 +70,15 @@ bool has(std::uint8_t voxel, std::uint8_t bits) { return (voxel & bits) == bits;
 class Neighbourhood {
  public:
   void set(int dx, int dy, int dz) { cured_[index(dx, dy, dz)] = true; }
-  /// Whether they are in more than one piece without the voxel in the middle.
-  [[nodiscard]] bool is_severed() {
+  /// Whether there are none, or they are in more than one piece without the voxel in the middle.
+  [[nodiscard]] bool is_broken() {
     int pieces = 0;
     for (int i = 0; i < size; ++i) {
       if (!cured_[i]) continue;
       ++pieces;
       clear(i);
     }
-    return pieces > 1;
+    return pieces != 1;
   }
 
  private:
@@ -98,13 +98,13 @@ class Neighbourhood {
 
 }  // namespace
 
-std::vector<std::size_t> severing_voxels(int width, int height, const std::uint8_t* const* slices) {
+std::vector<std::size_t> broken_voxels(int width, int height, const std::uint8_t* const* slices) {
   constexpr std::uint8_t print = printed::part | printed::cured;
   std::vector<std::size_t> voxels;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const std::size_t at = product(y, width) + static_cast<std::size_t>(x);
-      if (slices[1][at] != printed::part) continue;
+      if ((slices[1][at] & print) != printed::part) continue;
       Neighbourhood around;
       for (int dz = -1; dz <= 1; ++dz) {
         if (slices[dz + 1] == nullptr) continue;
@@ -114,17 +114,17 @@ std::vector<std::size_t> severing_voxels(int width, int height, const std::uint8
           }
         }
       }
-      if (around.is_severed()) voxels.push_back(at);
+      if (around.is_broken()) voxels.push_back(at);
     }
   }
   return voxels;
 }
 
 /// Nullptr beyond the volume.
-std::int64_t PrintPieceCounter::severing(const Slice* below, const Slice& slice, const Slice* above) const {
+std::int64_t PrintPieceCounter::broken(const Slice* below, const Slice& slice, const Slice* above) const {
   const auto bits = [](const Slice* of) { return of == nullptr ? nullptr : of->data(); };
   const std::array<const std::uint8_t*, 3> slices{bits(below), slice.data(), bits(above)};
-  return std::ssize(severing_voxels(width_, height_, slices.data()));
+  return std::ssize(broken_voxels(width_, height_, slices.data()));
 }
 
 void PrintPieceCounter::add(const std::vector<Slice>& slices) {
@@ -133,21 +133,21 @@ void PrintPieceCounter::add(const std::vector<Slice>& slices) {
   std::vector<const Slice*> all;
   for (const Slice& slice : last_) all.push_back(&slice);
   for (const Slice& slice : slices) all.push_back(&slice);
-  std::vector<std::int64_t> severing(all.size(), 0);
+  std::vector<std::int64_t> broken(all.size(), 0);
   parallel_for(count_of(slices), [&](int k) {
     const auto runs = [&](std::uint8_t bits) {
       return runs_of(width_, height_, [&](std::size_t i) { return has(slices[k][i], bits); });
     };
-    parts[k] = runs(printed::part);
+    parts[k] = runs(printed::edge);
     prints[k] = runs(printed::cured);
   });
   // Of the last two, one has been counted already, and the last of all waits for the one above it.
   const int first = last_.empty() ? 0 : count_of(last_) - 1;
   parallel_for(count_of(all) - 1 - first, [&](int n) {
     const int k = first + n;
-    severing[k] = this->severing(k > 0 ? all[k - 1] : nullptr, *all[k], all[k + 1]);
+    broken[k] = this->broken(k > 0 ? all[k - 1] : nullptr, *all[k], all[k + 1]);
   });
-  for (const std::int64_t voxels : severing) severing_ += voxels;
+  for (const std::int64_t voxels : broken) broken_ += voxels;
   for (std::size_t k = 0; k < slices.size(); ++k) {
     part_.add(parts[k]);
     print_.add(prints[k]);
@@ -159,8 +159,8 @@ void PrintPieceCounter::add(const std::vector<Slice>& slices) {
 
 PrintPieces PrintPieceCounter::found() const {
   constexpr std::int64_t least = PrintPieces::least_voxels;
-  PrintPieces found{.part = part_.count(least), .print = print_.count(least), .severing = severing_};
-  if (!last_.empty()) found.severing += severing(last_.size() > 1 ? &last_.front() : nullptr, last_.back(), nullptr);
+  PrintPieces found{.part = part_.count(least), .print = print_.count(least), .broken = broken_};
+  if (!last_.empty()) found.broken += broken(last_.size() > 1 ? &last_.front() : nullptr, last_.back(), nullptr);
   return found;
 }
 

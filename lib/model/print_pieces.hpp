@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/dose_metrics.hpp"
+
 namespace vam::model {
 
 /// Voxels of a row that are of a solid: [begin, end).
@@ -54,25 +56,27 @@ class PieceCounter {
 namespace printed {
 inline constexpr std::uint8_t part = 1;   // at least half covered
 inline constexpr std::uint8_t cured = 2;  // receives the threshold
+inline constexpr std::uint8_t edge = 4;   // at least a quarter covered
 }  // namespace printed
-[[nodiscard]] constexpr std::uint8_t printed_bits(bool part, bool cured) {
-  return static_cast<std::uint8_t>((part ? printed::part : 0) | (cured ? printed::cured : 0));
+[[nodiscard]] constexpr std::uint8_t printed_bits(float coverage, bool cured) {
+  return static_cast<std::uint8_t>((coverage >= static_cast<float>(half_surface) ? printed::part : 0) |
+                                   (coverage >= 0.25F ? printed::edge : 0) | (cured ? printed::cured : 0));
 }
 
-/// Which voxels of the middle one of three slices of printed:: bits sever, as PrintPieces counts them, by their
+/// Which voxels of the middle one of three slices of printed:: bits are broken, as PrintPieces counts them, by their
 /// numbers; nullptr beyond the volume.
-[[nodiscard]] std::vector<std::size_t> severing_voxels(int width, int height, const std::uint8_t* const* slices);
+[[nodiscard]] std::vector<std::size_t> broken_voxels(int width, int height, const std::uint8_t* const* slices);
 
 /// Counted are pieces of at least so many voxels: smaller ones are rounded tips and edges.
 struct PrintPieces {
   static constexpr std::int64_t least_voxels = 8;
-  int part = 0;
-  int print = 0;
-  /// Voxels of the part that do not cure and between which and around which its cured voxels fall apart: those at the
-  /// foot of a wall that stands free in the print, or hangs on by its ends.
-  std::int64_t severing = 0;
+  int part = 0;   // of voxels that are at least a quarter covered: rods of a voxel's width hold together
+  int print = 0;  // of voxels that cure
+  /// Voxels of the part that do not cure, and around which none of it cures, as in a hole of a wall, or what cures
+  /// falls apart, as at the foot of a wall that stands free in the print or hangs on by its ends.
+  std::int64_t broken = 0;
 
-  [[nodiscard]] bool is_as_part() const { return print == part && severing < least_voxels; }
+  [[nodiscard]] bool is_as_part() const { return print == part && broken < least_voxels; }
 };
 
 /// Slice by slice, from the lowest up.
@@ -86,12 +90,12 @@ class PrintPieceCounter {
 
  private:
   using Slice = std::vector<std::uint8_t>;
-  [[nodiscard]] std::int64_t severing(const Slice* below, const Slice& slice, const Slice* above) const;
+  [[nodiscard]] std::int64_t broken(const Slice* below, const Slice& slice, const Slice* above) const;
 
   int width_, height_;
   PieceCounter part_, print_;
-  std::vector<Slice> last_;    // up to two
-  std::int64_t severing_ = 0;  // in all but the last slice
+  std::vector<Slice> last_;  // up to two
+  std::int64_t broken_ = 0;  // in all but the last slice
 };
 
 }  // namespace vam::model

@@ -39,8 +39,7 @@ class Window {
   }
   [[nodiscard]] std::vector<std::uint8_t> bits(int k) const {
     std::vector<std::uint8_t> all(is_in(k) ? grid_.slice_size() : 0);
-    for (std::size_t at = 0; at < all.size(); ++at)
-      all[at] = model::printed_bits(coverage(k)[at] >= model::half_surface, cures(k, at));
+    for (std::size_t at = 0; at < all.size(); ++at) all[at] = model::printed_bits(coverage(k)[at], cures(k, at));
     return all;
   }
 
@@ -71,7 +70,7 @@ void add_missing(const Window& window, int k, const std::array<const std::uint8_
   for (const std::size_t at : window.lost(k)) {
     if (!window.cures(k, at)) shares[at] = coverage[at];
   }
-  for (const std::size_t at : model::severing_voxels(grid.nx, grid.ny, bits.data())) shares[at] = coverage[at];
+  for (const std::size_t at : model::broken_voxels(grid.nx, grid.ny, bits.data())) shares[at] = coverage[at];
 }
 
 }  // namespace

@@ -39,9 +39,9 @@ struct ViewOptions {
 [[nodiscard]] ImageFigure view_images(io::ImageSource& images, const ViewOptions& options);
 
 /// What prints where the dose reaches the threshold: cured as wanted, missing, overcured. Voxels that the surface cuts
-/// are right either way, but for those of a wall that is lost or severed (missing.hpp). Without `at` and a sheet it is
-/// a section in which much is missing, if any. Void outside the writable circle is shown, but does not count. An insert
-/// is hatched, and does not count. Throws Fault::data when the grids differ.
+/// are right either way, but for those of a wall that is lost, cut or missing (missing.hpp). Without `at` and a sheet
+/// it is a section in which much is missing, if any. Void outside the writable circle is shown, but does not count. An
+/// insert is hatched, and does not count. Throws Fault::data when the grids differ.
 [[nodiscard]] ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
                                     const model::Circle& circle, const ViewOptions& options,
                                     const io::SparseVolume* insert = nullptr);

@@ -47,7 +47,7 @@ const std::vector<Figure>& figure_list() {
       {"unresolved_gaps", "gaps of which no voxel is wholly outside, relative to the part; they are not judged"},
       {"part_pieces", "separate pieces of the part"},
       {"print_pieces", "separate pieces of the print; pieces below 8 voxels are not counted"},
-      {"severing_voxels", "voxels of the part that do not cure and where its walls are cut therefore"},
+      {"broken_voxels", "voxels of the part that do not cure and where its walls are cut or missing"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
@@ -142,7 +142,7 @@ double Score::figure(const std::string& name) const {
   if (name == "unresolved_gaps") return unresolved().gap_share();
   if (name == "part_pieces") return pieces_ ? pieces_->part : none;
   if (name == "print_pieces") return pieces_ ? pieces_->print : none;
-  if (name == "severing_voxels") return pieces_ ? static_cast<double>(pieces_->severing) : none;
+  if (name == "broken_voxels") return pieces_ ? static_cast<double>(pieces_->broken) : none;
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
   if (is_of_exposure(name)) {
@@ -206,7 +206,8 @@ Json Score::figures() const {
 Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
   Verdict verdict{whole_.metrics(), with_cut_.metrics(), {}, {}, unresolved(), pieces_};
-  if (std::isfinite(duration_s)) verdict.seconds = duration_s;
+  if (std::isfinite(duration_s) && !options_.threshold) verdict.seconds = duration_s;  // else that of another print
+  verdict.threshold = options_.threshold;
   return verdict;
 }
 

@@ -22,10 +22,11 @@ bool keeps_pieces(const Verdict& verdict) { return !verdict.pieces || verdict.pi
 std::string broken(const model::PrintPieces& pieces) {
   std::string text;
   if (pieces.print != pieces.part) {
-    text += "; the print is in " + std::to_string(pieces.print) + " pieces, the part in " + std::to_string(pieces.part);
+    text += "; the print is in " + std::to_string(pieces.print) + (pieces.print == 1 ? " piece" : " pieces") +
+            ", the part in " + std::to_string(pieces.part);
   }
-  if (pieces.severing >= model::PrintPieces::least_voxels) {
-    text += "; walls are cut where " + std::to_string(pieces.severing) + " voxels of the part do not cure";
+  if (pieces.broken >= model::PrintPieces::least_voxels) {
+    text += "; walls are cut or missing where " + std::to_string(pieces.broken) + " voxels of the part do not cure";
   }
   return text;
 }

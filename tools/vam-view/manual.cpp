@@ -23,7 +23,7 @@ cli::Manual manual() {
        "circle are excluded.",
        "--cure-map shows what prints at a threshold: correctly cured (grey), missing (blue) and overcured (vermilion); "
        "without --at the section nearest to the middle with much missing, if any. Walls that no voxel nearby is half "
-       "covered by, and where walls are severed, are missing, too. "
+       "covered by, and where walls are cut, are missing, too. "
        "--render shows the same in three dimensions, the print beside the target; without --target it shows the "
        "surface of any grid. With an output in .mp4 it is a movie: the print as it grows, from where the first resin "
        "gels to the end of the exposure, at a constant intensity. --compare shows two volumes beside each other in the "

@@ -68,6 +68,13 @@ GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
   const auto samples = tiff_field(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
   if (samples > most_samples) refuse(name, "it has " + std::to_string(samples) + " samples a pixel");
   if (bits > 16) refuse(name, "it has " + std::to_string(bits) + " bits a sample; convert it first");
+  if (const int pages = TIFFNumberOfDirectories(tiff.get()); pages > 1) {
+    throw Error{Fault::data, name + ": holds " + std::to_string(pages) + " pages, where one image was expected; save " +
+                                 "each as a file of its own, as by tiffsplit, or give the file instead of the folder"};
+  }
+  if (bits == 16 && !is_upright(tiff.get())) {
+    throw Error{Fault::data, name + ": states that it is turned or mirrored; turn it, as by convert -auto-orient"};
+  }
   GreyImage image(static_cast<int>(width), static_cast<int>(height), bits == 16 ? 16 : 8);
   (bits == 16 ? decode_wide : decode_narrow)(tiff.get(), name, image);
   return image;

@@ -69,6 +69,10 @@ struct TiffPages::State {
     if (!is_plain(tiff.get())) {
       fail("page " + std::to_string(page) + " is not grey in strips, 0 black; convert it, as by tiffcp -s");
     }
+    if (!is_upright(tiff.get())) {
+      fail("page " + std::to_string(page) +
+           " states that it is turned or mirrored; turn it, as by convert -auto-orient");
+    }
     if (static_cast<std::size_t>(TIFFScanlineSize(tiff.get())) != row.size()) {
       fail("page " + std::to_string(page) + " is damaged");
     }

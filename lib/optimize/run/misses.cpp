@@ -56,9 +56,8 @@ model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& probl
     std::vector<std::vector<std::uint8_t>> slices(count, std::vector<std::uint8_t>(product(slab.width, slab.height)));
     parallel_for(count, [&](int lane) {
       for (std::size_t i = lane; i < dose[s].values.size(); i += lanes) {
-        const bool part = problem.target[s].values[i] >= model::half_surface;
         const bool cured = dose[s].values[i] >= threshold && problem.labels[s][i] != Label::outside;
-        slices[lane][i / lanes] = model::printed_bits(part, cured);
+        slices[lane][i / lanes] = model::printed_bits(problem.target[s].values[i], cured);
       }
     });
     counter.add(slices);

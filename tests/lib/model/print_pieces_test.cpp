@@ -81,21 +81,21 @@ TEST_CASE("a wall without its foot is a piece of its own; one that hangs on by i
       std::vector<std::uint8_t> slice(width * height, 0);
       for (int i = 0; i < width * height; ++i) {
         const bool part = k < 3 || i % width == 4;
-        slice[i] = model::printed_bits(part, part && (k != 3 || i / width < foot));
+        slice[i] = model::printed_bits(part ? 1 : 0, part && (k != 3 || i / width < foot));
       }
       counter.add({slice});
     }
     return counter.found();
   };
   CHECK(pieces(height).print == 1);
-  CHECK(pieces(height).severing == 0);
+  CHECK(pieces(height).broken == 0);
   CHECK(pieces(height).is_as_part());
   CHECK(pieces(2).part == 1);
   CHECK(pieces(2).print == 1);
-  CHECK(pieces(2).severing == height - 3);  // the one beside those that cure is joined by them
+  CHECK(pieces(2).broken == height - 3);  // the one beside those that cure is joined by them
   CHECK(!pieces(2).is_as_part());
   CHECK(pieces(0).print == 2);
-  CHECK(pieces(0).severing == height);
+  CHECK(pieces(0).broken == height);
 }
 
 TEST_CASE("rough faces and holes in walls cut nothing, however the slices come") {
@@ -107,7 +107,7 @@ TEST_CASE("rough faces and holes in walls cut nothing, however the slices come")
       const bool part = k < 5 || i % size == 5;
       const bool rough = k == 4 && i % 3 != 0 && i % size != 5;
       const bool hole = k > 5 && k < 8 && i / size % 4 == 2;
-      slice[i] = model::printed_bits(part, part && !rough && !hole);
+      slice[i] = model::printed_bits(part ? 1 : 0, part && !rough && !hole);
     }
     slices.push_back(slice);
   }
@@ -115,7 +115,38 @@ TEST_CASE("rough faces and holes in walls cut nothing, however the slices come")
   together.add(slices);
   model::PrintPieceCounter apart(size, size);
   for (const auto& slice : slices) apart.add({slice});
-  CHECK(together.found().severing == 0);
-  CHECK(apart.found().severing == 0);
+  CHECK(together.found().broken == 0);
+  CHECK(apart.found().broken == 0);
   CHECK(together.found().print == 1);
+}
+
+TEST_CASE(
+    "a wall that does not cure, or has a wide hole, is broken; a rod of a voxel's width holds the part together") {
+  constexpr int size = 12;
+  const auto found = [&](int low, int high) {  // of a wall at x = 5, no voxel of it cures within this range
+    model::PrintPieceCounter counter(size, size);
+    for (int k = 0; k < size; ++k) {
+      std::vector<std::uint8_t> slice(size * size, 0);
+      for (int i = 0; i < size * size; ++i) {
+        const auto within = [&](int at) { return at >= low && at < high; };
+        const bool wall = i % size == 5;
+        slice[i] = model::printed_bits(wall ? 0.8F : 0.1F, wall && !(within(k) && within(i / size)));
+      }
+      counter.add({slice});
+    }
+    return counter.found();
+  };
+  CHECK(found(0, 0).broken == 0);
+  CHECK(found(4, 6).broken == 0);
+  CHECK(found(3, 8).broken == 9);  // all but the rim of 5 x 5
+  CHECK(!found(3, 8).is_as_part());
+  CHECK(found(0, size).broken == size * size);
+  model::PrintPieceCounter thin(size, size);
+  for (int k = 0; k < size; ++k) {
+    std::vector<std::uint8_t> slice(size * size, model::printed_bits(k < 4 || k > 7 ? 1 : 0, k < 4 || k > 7));
+    if (k >= 4 && k <= 7) slice[size * 6 + 6] = model::printed_bits(0.4F, false);
+    thin.add({slice});
+  }
+  CHECK(thin.found().part == 1);
+  CHECK(thin.found().print == 2);
 }

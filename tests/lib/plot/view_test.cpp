@@ -227,12 +227,12 @@ TEST_CASE("the cure map tells what is missing and what is too much, but not wher
   const std::vector<float> covered{1, 1, 0.5F, 0, 0};
   target.write_slices(0, 1, covered.data());
   SparseVolume dose("dose", grid);
-  const std::vector<float> doses{1, 0.4F, 0.2F, 0.6F, 0.1F};
+  const std::vector<float> doses{0.4F, 1, 0.2F, 0.6F, 0.1F};
   dose.write_slices(0, 1, doses.data());
   const vam::model::Circle all{2, 0, 2};
   const ImageFigure figure = view_cure(dose, target, 0.5, all, {});
   const auto& seen = figure.panels[0].picture.values;
-  CHECK(seen == std::vector<Rgb>{{150, 150, 150}, paint::blue, paint::white, paint::vermilion, paint::white});
+  CHECK(seen == std::vector<Rgb>{paint::blue, {150, 150, 150}, paint::white, paint::vermilion, paint::white});
   CHECK(figure.legend[1].words == "missing (40 % of the part seen)");  // 1 of 2.5 voxels
   CHECK(figure.legend[2].words == "overcured (50 % of the void seen)");
   // Void outside the circle is seen, but not judged.
@@ -249,7 +249,7 @@ TEST_CASE("the cure map tells what is missing and what is too much, but not wher
   }
 }
 
-TEST_CASE("the cure map shows walls that no voxel is half covered by, and where walls are severed") {
+TEST_CASE("the cure map shows walls that no voxel is half covered by, and where walls are cut") {
   const auto grid = vam::model::centred_grid(3, 3, 9, 1.0, 0);
   std::vector<float> covered(grid.size(), 0.0F);
   std::vector<float> doses(grid.size(), 0.2F);

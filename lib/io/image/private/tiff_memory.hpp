@@ -28,4 +28,10 @@ Value tiff_field(TIFF* tiff, std::uint32_t tag) {
   return value;
 }
 
+/// Rows from the top, columns from the left, as it is without a statement.
+inline bool is_upright(TIFF* tiff) {
+  const auto orientation = tiff_field(tiff, TIFFTAG_ORIENTATION);
+  return orientation == 0 || orientation == ORIENTATION_TOPLEFT;
+}
+
 }  // namespace vam::io
