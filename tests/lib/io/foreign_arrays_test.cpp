@@ -80,11 +80,11 @@ std::string mrc(std::int32_t mode, const std::string& values, std::int32_t exten
 
 // One strip a page; the pages' values begin at byte 8, page after page, their lists follow them.
 std::string tiff(std::uint16_t bits, std::uint16_t format, const std::string& values, bool big_endian = false,
-                 std::uint16_t photometric = 1, std::uint32_t second_width = 4) {
+                 std::uint16_t photometric = 1, std::uint32_t second_width = 4, std::uint16_t orientation = 1) {
   const auto number = [&](auto value) { return big_endian ? big(little(value)) : little(value); };
   const auto page = static_cast<std::uint32_t>(values.size() / 2);
   const auto lists = static_cast<std::uint32_t>(8 + values.size());
-  const std::uint32_t list_bytes = 2 + 9 * 12 + 4;
+  const std::uint32_t list_bytes = 2 + 10 * 12 + 4;
   std::string bytes =
       (big_endian ? std::string("MM") : std::string("II")) + number(std::uint16_t{42}) + number(lists) + values;
   for (std::uint32_t p = 0; p < 2; ++p) {
@@ -92,13 +92,14 @@ std::string tiff(std::uint16_t bits, std::uint16_t format, const std::string& va
       bytes += number(tag) + number(static_cast<std::uint16_t>(wide ? 4 : 3)) + number(std::uint32_t{1});
       bytes += wide ? number(value) : number(static_cast<std::uint16_t>(value)) + std::string(2, '\0');
     };
-    bytes += number(std::uint16_t{9});
+    bytes += number(std::uint16_t{10});
     entry(256, p == 0 ? 4 : second_width, true);
     entry(257, 3, true);
     entry(258, bits, false);
     entry(259, 1, false);
     entry(262, photometric, false);
     entry(273, 8 + p * page, true);
+    entry(274, orientation, false);
     entry(278, 3, true);
     entry(279, page, true);
     entry(339, format, false);
@@ -161,6 +162,7 @@ TEST_CASE("TIFF files of several pages, whole numbers and floats") {
   check_counted(tiff(32, 3, counted<float>(true), true));
   CHECK(has(array_refusal(tiff(16, 1, counted<std::uint16_t>(), false, 0)), "page 0 is not grey in strips"));
   CHECK(has(array_refusal(tiff(16, 1, counted<std::uint16_t>(), false, 1, 3)), "page 1 differs from page 0"));
+  CHECK(has(array_refusal(tiff(16, 1, counted<std::uint16_t>(), false, 1, 4, 4)), "page 0 states that it is turned"));
   CHECK(has(array_refusal(tiff(12, 1, counted<std::uint16_t>())), "12 bits"));
   // Cut anywhere in the list of the second page, which the first one's names.
   const std::string whole = tiff(8, 1, counted<std::uint8_t>());

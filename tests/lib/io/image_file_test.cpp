@@ -111,6 +111,7 @@ struct TiffOf {
   std::uint32_t width, height, bits, photometric, samples;
   std::uint32_t format = 1;  // whole numbers
   std::uint32_t planes = 1;  // the samples of a pixel side by side
+  std::uint32_t orientation = 1;
   [[nodiscard]] std::string with(const std::string& pixels) const {
     const auto put = [](std::uint32_t value, int bytes) {
       std::string text;
@@ -118,12 +119,13 @@ struct TiffOf {
       return text;
     };
     const auto size = static_cast<std::uint32_t>(pixels.size());
-    const std::array<std::array<std::uint32_t, 2>, 11> tags{{{256, width},
+    const std::array<std::array<std::uint32_t, 2>, 12> tags{{{256, width},
                                                              {257, height},
                                                              {258, bits},
                                                              {259, 1},
                                                              {262, photometric},
                                                              {273, 8},
+                                                             {274, orientation},
                                                              {277, samples},
                                                              {278, height},
                                                              {279, size},
@@ -165,6 +167,13 @@ TEST_CASE("TIFF of other programs: grey from either end, colours as luma, what i
   CHECK(has(refused({1, 1, 16, 5, 4}, 8), "16-bit TIFF is read as grey or RGB"));
   CHECK(has(refused({1, 1, 16, 1, 1, 2}, 2), "16-bit TIFF is read as grey or RGB"));
   CHECK(has(refused({1, 1, 16, 1, 2, 1, 2}, 4), "16-bit TIFF is read as grey or RGB"));
+  CHECK(levels({1, 2, 8, 1, 1, 1, 1, 4}, "\1\2") == Levels{2, 1});  // from the bottom
+  CHECK(has(refused({1, 2, 16, 1, 1, 1, 1, 4}, 4), "states that it is turned or mirrored"));
+  const std::string one = TiffOf{1, 1, 8, 1, 1}.with("\5");
+  std::string two = one + one.substr(9);
+  for (int i = 0; i < 4; ++i) two[one.size() - 4 + i] = static_cast<char>(one.size() >> 8 * i);
+  CHECK(has(error_of([&] { (void)read_image(folder.write("c.tif", two)); }, vam::Fault::data),
+            "c.tif: holds 2 pages, where one image was expected"));
   CHECK(has(refused({1, 1, 32, 1, 1}, 4), "it has 32 bits a sample"));
   CHECK(has(refused({1, 1, 8, 1, 9}, 9), "it has 9 samples a pixel"));
   CHECK(has(refused({16384, 16385, 8, 1, 1}, 1), "16384 x 16385 pixels; images of up to 2^28"));
