@@ -37,17 +37,8 @@ model::StackInfo posed(model::StackInfo info, const Options& options) {
 
 namespace {
 
-/// A target of --grey-target: a dose for every voxel, in a unit or above the 1 of coverage.
-bool is_dose(const io::SparseVolume& target) {
-  if (target.units != "relative") return true;
-  const model::Grid& grid = target.grid();
-  std::vector<float> slice(grid.slice_size());
-  for (int k = 0; k < grid.nz; ++k) {
-    target.read_slices(k, 1, slice.data());
-    if (*std::max_element(slice.begin(), slice.end()) > 1 + model::coverage_rounding) return true;
-  }
-  return false;
-}
+/// A target of --grey-target in a unit of dose.
+bool is_dose(const io::SparseVolume& volume) { return volume.name() == "target" && volume.units != "relative"; }
 
 /// A part whose coverage is judged; of a dose only the place of its voxels is known.
 const io::SparseVolume* part_of(const io::SparseVolume& target, const Options& options) {
@@ -67,7 +58,8 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     return place;
   }
   place.like = io::read_volumes(options.like);
-  io::require_usable(options.like, place.like, io::TargetKind::grey);
+  const bool grey = std::any_of(place.like.begin(), place.like.end(), is_dose);
+  io::require_usable(options.like, place.like, grey ? io::TargetKind::grey : io::TargetKind::coverage);
   const io::SparseVolume* like = &place.like.front();
   for (const io::SparseVolume& volume : place.like) {
     if (volume.name() == "target") like = &volume, place.target = part_of(volume, options);
