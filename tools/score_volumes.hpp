@@ -6,18 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "base/index.hpp"
 #include "base/memory.hpp"
-#include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "facts.hpp"
 #include "io/vdb/covered.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
-#include "model/print_pieces.hpp"
 #include "model/printer.hpp"
 #include "optics/writable_radius.hpp"
+#include "score/cured_pieces.hpp"
 #include "score/grey_score.hpp"
 #include "score/score.hpp"
 
@@ -68,39 +66,13 @@ inline score::Score score_volumes(const io::SparseVolume& dose, const io::Sparse
   return with_volumes(score::Score(how, target.grid().nx, target.grid().ny), dose, target);
 }
 
-/// The pieces of the part and of what receives the threshold of the print within the circle.
-inline model::PrintPieces print_pieces(const io::SparseVolume& dose, const io::SparseVolume& target,
-                                       const model::Circle& circle, double threshold) {
-  constexpr int slab = 16;
-  const model::Grid& grid = target.grid();
-  std::vector<float> doses(grid.slice_size() * slab);
-  std::vector<float> wanted(grid.slice_size() * slab);
-  const auto width = static_cast<std::size_t>(grid.nx);
-  model::PrintPieceCounter pieces(grid.nx, grid.ny);
-  for (int k = 0; k < grid.nz; k += slab) {
-    const int count = std::min(slab, grid.nz - k);
-    dose.read_slices(k, count, doses.data());
-    target.read_slices(k, count, wanted.data());
-    std::vector<std::vector<std::uint8_t>> slices(count, std::vector<std::uint8_t>(grid.slice_size()));
-    parallel_for(count, [&](int s) {
-      const float* d = doses.data() + product(s, grid.slice_size());
-      const float* f = wanted.data() + product(s, grid.slice_size());
-      for (std::size_t i = 0; i < grid.slice_size(); ++i) {
-        const bool judged =
-            f[i] >= model::half_surface || circle.contains(static_cast<int>(i % width), static_cast<int>(i / width));
-        slices[s][i] = model::printed_bits(f[i], judged && d[i] >= threshold);
-      }
-    });
-    pieces.add(slices);
-  }
-  return pieces.found();
-}
-
 /// Against coverage, and by the pieces of the print.
 inline score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target,
                                 const score::ScoreOptions& how) {
   score::Score result = score_volumes(dose, target, how);
-  result.set_pieces(print_pieces(dose, target, how.circle, result.print_threshold()));
+  const model::Grid& grid = target.grid();
+  const score::CuredPieces start(how.circle, result.print_threshold(), grid.nx, grid.ny);
+  result.set_pieces(with_volumes(start, dose, target).found());
   return result;
 }
 

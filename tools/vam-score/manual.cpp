@@ -13,16 +13,15 @@ std::vector<std::string> description() {
       "if it is positive, a threshold dose exists that prints the part exactly. IPDR = max_G x - min_G x. CV = sigma_G "
       "/ mean_G. IoU = |print and part| / |print or part| at the threshold that maximises it.",
       "The last line is the verdict in words: whether the part will print (PW > 0 and, where the critical dose is "
-      "given or the dose is that of a print, at that dose), by what margin, from how many "
-      "voxels, the figures with the voxels that the surface cuts included, and the duration of the print if the resin "
-      "is known. The exit status depends on --require only. Gaps of the target of which no voxel is three quarters "
-      "free have no void to judge, and cause a warning. Where only voxels that the surface cuts do not cure, or cure, "
-      "a print may be in more or fewer pieces than the part, or its walls may be cut: pieces of 8 voxels or more are "
-      "counted (part_pieces, of voxels at least a quarter covered, and print_pieces; voxels that share a corner are of "
-      "one piece), and the voxels of the part "
-      "that do not cure and around which no others cure, or those that do fall apart (broken_voxels). If there are 8 "
-      "of these, or the "
-      "numbers of pieces differ, the part will not print as designed.",
+      "given or the dose is that of a print, at that dose), by what margin, from how many voxels, the figures with "
+      "the voxels that the surface cuts included, and the duration of the print if the resin is known. The exit "
+      "status depends on --require only. Gaps of the target of which no voxel is three quarters free have no void to "
+      "judge, and cause a warning. Where only voxels that the surface cuts do not cure, or cure, a print may be in "
+      "more or fewer pieces than the part, or its walls may be cut: pieces of 8 voxels or more are counted "
+      "(part_pieces, of voxels at least a quarter covered, and print_pieces; voxels that share a corner are of one "
+      "piece), and the voxels of the part that do not cure and around which no others cure, or those that do fall "
+      "apart (broken_voxels). If there are 8 of these, or the numbers of pieces differ, the part will not print as "
+      "designed.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",
       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "

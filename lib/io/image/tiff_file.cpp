@@ -72,7 +72,7 @@ GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
     throw Error{Fault::data, name + ": holds " + std::to_string(pages) + " pages, where one image was expected; save " +
                                  "each as a file of its own, as by tiffsplit, or give the file instead of the folder"};
   }
-  if (bits == 16 && !is_upright(tiff.get())) {
+  if (!(bits == 16 ? is_upright : has_rows)(tiff.get())) {
     throw Error{Fault::data, name + ": states that it is turned or mirrored; turn it, as by convert -auto-orient"};
   }
   GreyImage image(static_cast<int>(width), static_cast<int>(height), bits == 16 ? 16 : 8);

@@ -169,6 +169,8 @@ TEST_CASE("TIFF of other programs: grey from either end, colours as luma, what i
   CHECK(has(refused({1, 1, 16, 1, 2, 1, 2}, 4), "16-bit TIFF is read as grey or RGB"));
   CHECK(levels({1, 2, 8, 1, 1, 1, 1, 4}, "\1\2") == Levels{2, 1});  // from the bottom
   CHECK(has(refused({1, 2, 16, 1, 1, 1, 1, 4}, 4), "states that it is turned or mirrored"));
+  for (const std::uint32_t exchanged : {5U, 6U, 7U, 8U})
+    CHECK(has(refused({1, 2, 8, 1, 1, 1, 1, exchanged}, 2), "states that it is turned or mirrored"));
   const std::string one = TiffOf{1, 1, 8, 1, 1}.with("\5");
   std::string two = one + one.substr(9);
   for (int i = 0; i < 4; ++i) two[one.size() - 4 + i] = static_cast<char>(one.size() >> 8 * i);

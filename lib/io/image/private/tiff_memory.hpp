@@ -34,4 +34,7 @@ inline bool is_upright(TIFF* tiff) {
   return orientation == 0 || orientation == ORIENTATION_TOPLEFT;
 }
 
+/// Upright, or only mirrored or turned by 180 degrees, which libtiff undoes in images of 8 bits.
+inline bool has_rows(TIFF* tiff) { return tiff_field(tiff, TIFFTAG_ORIENTATION) <= ORIENTATION_BOTLEFT; }
+
 }  // namespace vam::io
