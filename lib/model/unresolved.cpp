@@ -55,6 +55,19 @@ struct Place {
   }
 };
 
+/// Whether a voxel that is half covered lies within `reach` voxels of one in the middle one of 2 reach + 1 slices.
+bool has_solid_within(int reach, const float* const* slices, int width, int height, int i, int j) {
+  for (int w = 0; w <= 2 * reach; ++w) {
+    if (slices[w] == nullptr) continue;
+    for (int v = std::max(j - reach, 0); v <= std::min(j + reach, height - 1); ++v) {
+      const float* row = slices[w] + product(v, width);
+      const auto solid = [](float c) { return c >= half; };
+      if (std::any_of(row + std::max(i - reach, 0), row + std::min(i + reach + 1, width), solid)) return true;
+    }
+  }
+  return false;
+}
+
 /// What a slice holds is added to the sums; their size is its own.
 template <class Sums>
 void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
@@ -88,21 +101,22 @@ std::vector<std::size_t> lost_walls(int width, int height, const float* const* s
   return voxels;
 }
 
-/// Of the middle one of three slices.
+/// Of the middle one of 2 reach + 1 slices.
 UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) const {
   Slice sums;
-  const float* coverage = slices[1];
+  const float* coverage = slices[reach];
   for (int j = 0; j < height_; ++j) {
     for (int i = 0; i < width_; ++i, ++coverage) {
       const float covered = *coverage;
       sums.whole += covered;
       if (label_of(covered) != Label::surface) continue;
-      const Place place{width_, height_, slices, i, j};
+      const Place place{width_, height_, slices + reach - 1, i, j};
       if (!place.near_part()) {
         sums.part += covered;
         if (place.is_of_lost_wall(covered)) {
           sums.walls.voxels += covered;
           sums.walls.most = std::max(sums.walls.most, covered);
+          if (!has_solid_within(reach, slices, width_, height_, i, j)) sums.walls.far += covered;
         }
       }
       if (!place.near_void()) {
@@ -119,16 +133,17 @@ UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) c
 
 /// All but the first and the last, which are neighbours only.
 std::vector<UnresolvedFinder::Slice> UnresolvedFinder::judged(const std::vector<const float*>& slices) const {
-  std::vector<Slice> found(slices.size() < 3 ? 0 : slices.size() - 2);
+  std::vector<Slice> found(std::max(count_of(slices) - 2 * reach, 0));
   parallel_for(count_of(found), [&](int k) { found[k] = of_slice(&slices[k]); });
   return found;
 }
 
-/// Those of which the neighbours above are still to come, and one below them.
+/// Those of which neighbours above are still to come, and their neighbours below.
 std::vector<const float*> UnresolvedFinder::open() const {
-  std::vector<const float*> slices;
-  if (added_ < 2) slices.push_back(nullptr);
-  for (std::size_t at = 0; at < kept_.size(); at += product(width_, height_)) slices.push_back(kept_.data() + at);
+  const int open = std::min(added_, reach);
+  const int kept = std::min(added_, 2 * reach);
+  std::vector<const float*> slices(reach - (kept - open), nullptr);
+  for (int k = 0; k < kept; ++k) slices.push_back(kept_.data() + product(k, product(width_, height_)));
   return slices;
 }
 
@@ -140,14 +155,14 @@ void UnresolvedFinder::add(int count, const float* slices) {
   slices_.insert(slices_.end(), next.begin(), next.end());
   added_ += count;
   std::vector<float> last;
-  const std::size_t keep = std::min(added_, 2);
+  const std::size_t keep = std::min(added_, 2 * reach);
   for (std::size_t k = all.size() - keep; k < all.size(); ++k) last.insert(last.end(), all[k], all[k] + size);
   kept_ = std::move(last);
 }
 
 Unresolved UnresolvedFinder::found() const {
   std::vector<const float*> last = open();
-  last.push_back(nullptr);
+  last.insert(last.end(), reach, nullptr);
   std::vector<Slice> slices = slices_;
   const std::vector<Slice> top = judged(last);
   slices.insert(slices.end(), top.begin(), top.end());
@@ -160,6 +175,7 @@ Unresolved UnresolvedFinder::found() const {
     all.gaps += one.gaps;
     all.whole += one.whole;
     add_slice(all.lost_walls, one.walls, &LostWalls::most, k);
+    all.lost_walls.far += one.walls.far;
     add_slice(all.lost_gaps, one.lost, &LostGaps::widest, k);
     if (one.part + one.gaps <= most) continue;
     most = one.part + one.gaps;

@@ -17,6 +17,7 @@ struct LostWalls {
   float most = 0;     // the largest one, about the thickness of the wall in voxels
   int first = 0;      // slices [first, end) hold them
   int end = 0;
+  double far = 0;  // of the sum, what has no half covered voxel within three: rods, hairs, not sharp edges
 };
 
 /// Free shares of voxels that are free by three quarters or less, and so are their 26 neighbours. Shares below 1/64,
@@ -48,7 +49,9 @@ struct Unresolved {
   /// Rounded edges and tips are less of a part; with more of it, a verdict on the voxels is none on the part.
   [[nodiscard]] bool is_much() const { return share() > 0.02; }
   /// Walls will be missing in the print: more than specks.
-  [[nodiscard]] bool loses_walls() const { return lost_share() > 1e-3; }
+  [[nodiscard]] bool loses_walls() const { return loses_much() || loses_rods(); }
+  [[nodiscard]] bool loses_much() const { return lost_share() > 1e-3; }
+  [[nodiscard]] bool loses_rods() const { return lost_walls.far > 0.5; }
   /// Gaps will be shut in the print: more than tips of grooves and corners between struts.
   [[nodiscard]] bool shuts_gaps() const;
 };
@@ -74,13 +77,15 @@ class UnresolvedFinder {
     LostGaps lost;
   };
 
+  static constexpr int reach = 3;  // slices below and above one that it is judged by
+
   [[nodiscard]] Slice of_slice(const float* const* slices) const;
   [[nodiscard]] std::vector<Slice> judged(const std::vector<const float*>& slices) const;
   [[nodiscard]] std::vector<const float*> open() const;
 
   int width_, height_;
-  std::vector<float> kept_;    // the last two slices
-  std::vector<Slice> slices_;  // all but the last slice
+  std::vector<float> kept_;    // the last slices
+  std::vector<Slice> slices_;  // all but the last ones
   int added_ = 0;
 };
 

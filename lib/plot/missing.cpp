@@ -70,7 +70,8 @@ void add_missing(const Window& window, int k, const std::array<const std::uint8_
   for (const std::size_t at : window.lost(k)) {
     if (!window.cures(k, at)) shares[at] = coverage[at];
   }
-  for (const std::size_t at : model::broken_voxels(grid.nx, grid.ny, bits.data())) shares[at] = coverage[at];
+  for (const std::size_t at : model::torn_voxels(model::Torn::part, grid.nx, grid.ny, bits.data()))
+    shares[at] = coverage[at];
 }
 
 }  // namespace

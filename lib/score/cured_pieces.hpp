@@ -20,7 +20,6 @@ class CuredPieces {
 
  private:
   std::vector<bool> inside_;  // of a slice, whether the circle has it
-  double threshold_;
   model::PrintPieceCounter counter_;
 };
 

@@ -45,9 +45,11 @@ const std::vector<Figure>& figure_list() {
       {"outside_max_dose", "maximum dose of void voxels outside the box"},
       {"unresolved_part", "fraction of the part in walls of which no voxel is wholly inside; they are not judged"},
       {"unresolved_gaps", "gaps of which no voxel is wholly outside, relative to the part; they are not judged"},
-      {"part_pieces", "separate pieces of the part"},
+      {"part_pieces", "separate pieces of the part, thin rods included"},
+      {"part_pieces_at_half", "separate pieces of the part where it is half covered; narrow gaps part them"},
       {"print_pieces", "separate pieces of the print; pieces below 8 voxels are not counted"},
       {"broken_voxels", "voxels of the part that do not cure and where its walls are cut or missing"},
+      {"shut_voxels", "voxels of the void that cure and where its gaps are shut"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
@@ -141,8 +143,10 @@ double Score::figure(const std::string& name) const {
   if (name == "unresolved_part") return unresolved().part_share();
   if (name == "unresolved_gaps") return unresolved().gap_share();
   if (name == "part_pieces") return pieces_ ? pieces_->part : none;
+  if (name == "part_pieces_at_half") return pieces_ ? pieces_->part_at_half : none;
   if (name == "print_pieces") return pieces_ ? pieces_->print : none;
   if (name == "broken_voxels") return pieces_ ? static_cast<double>(pieces_->broken) : none;
+  if (name == "shut_voxels") return pieces_ ? static_cast<double>(pieces_->shut) : none;
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
   if (is_of_exposure(name)) {

@@ -17,17 +17,25 @@ bool holds_threshold(const Verdict& verdict) {
   return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
 }
 
+bool is_certain(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_certain(); }
+
 bool keeps_pieces(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_as_part(); }
 
-std::string broken(const model::PrintPieces& pieces) {
+std::string in_pieces(int count) { return std::to_string(count) + (count == 1 ? " piece" : " pieces"); }
+
+std::string pieces_text(const model::PrintPieces& pieces) {
   std::string text;
-  if (pieces.print != pieces.part) {
-    text += "; the print is in " + std::to_string(pieces.print) + (pieces.print == 1 ? " piece" : " pieces") +
-            ", the part in " + std::to_string(pieces.part);
+  if (pieces.is_in_other_pieces()) {
+    text += "; the print is in " + in_pieces(pieces.print) + ", the part in " + std::to_string(pieces.part);
+  } else if (!pieces.is_certain()) {
+    text += "; the print is in " + in_pieces(pieces.print) +
+            ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) + " or " +
+            std::to_string(pieces.part_at_half);
   }
-  if (pieces.broken >= model::PrintPieces::least_voxels) {
+  if (pieces.loses_walls()) {
     text += "; walls are cut or missing where " + std::to_string(pieces.broken) + " voxels of the part do not cure";
   }
+  if (pieces.shuts_gaps()) text += "; gaps are shut where " + std::to_string(pieces.shut) + " voxels of the void cure";
   return text;
 }
 
@@ -36,14 +44,17 @@ std::string answer(const Verdict& verdict) {
   if (verdict.whole.part == 0) return "not judged, as no voxel is wholly inside the part";
   if (!prints(verdict)) return "will not print";
   if (un.loses_walls() || un.shuts_gaps() || !keeps_pieces(verdict)) return "will not print as designed";
-  return un.is_much() ? "may print" : "will print";
+  return un.is_much() || !is_certain(verdict) ? "may print" : "will print";
 }
 
 std::string unjudged(const model::Unresolved& un) {
   const auto percent = [](double share) { return format_number(100 * share, 3) + " % of the part"; };
   std::string text;
-  if (un.loses_walls())
+  if (un.loses_much()) {
     text += "; " + percent(un.lost_share()) + " is in walls too thin for the voxels and will be missing";
+  } else if (un.loses_rods()) {
+    text += "; walls or rods too thin for the voxels will be missing";
+  }
   if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
   if (un.is_much())
     text += "; walls and gaps too thin for the voxels are not judged: " + percent(un.share()) +
@@ -57,7 +68,7 @@ bool prints(const Verdict& verdict) { return verdict.whole.pw > 0 && holds_thres
 
 bool is_whole(const Verdict& verdict) {
   const model::Unresolved& un = verdict.unresolved;
-  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much() && keeps_pieces(verdict);
+  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much() && is_certain(verdict) && keeps_pieces(verdict);
 }
 
 std::string words(const Verdict& verdict) {
@@ -74,7 +85,7 @@ std::string words(const Verdict& verdict) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);
   }
-  if (prints(verdict) && verdict.pieces) line += broken(*verdict.pieces);
+  if (prints(verdict) && verdict.pieces) line += pieces_text(*verdict.pieces);
   line += unjudged(verdict.unresolved);
   if (verdict.seconds) line += "; duration " + format_number(*verdict.seconds, 4) + " s";
   return line;

@@ -65,8 +65,8 @@ std::vector<std::string> verdict() {
       "is yes or no, or unsure with the reason: the process window is narrower than 0.03, or more than 2 % of the part "
       "is too thin to be seen. It includes a lower bound like that of --certify, computed on voxels of twice that "
       "size.",
-      "The verdict counts the pieces of the print and its broken walls as vam-score does, except where rays are level "
-      "(telecentric or parallel): slices are then computed one by one, and vam-score judges the volume."};
+      "The verdict counts the pieces of the print, its broken walls and shut gaps as vam-score does, except with "
+      "--slices, where vam-score judges the joined volume."};
 }
 
 std::vector<std::string> printer_and_poses() {

@@ -127,8 +127,10 @@ std::string unseen(const Level& level) {
 std::vector<std::string> lost(const model::Unresolved& target) {
   std::vector<std::string> doubts;
   if (target.loses_walls()) {
-    doubts.push_back(format_number(100 * target.lost_share(), 3) +
-                     " % of the part is in walls too thin for the target's voxels and will be missing");
+    const std::string what = target.loses_much()
+                                 ? format_number(100 * target.lost_share(), 3) + " % of the part is in walls"
+                                 : "walls or rods are";
+    doubts.push_back(what + " too thin for the target's voxels and will be missing");
   }
   if (target.shuts_gaps()) doubts.emplace_back("gaps too narrow for the target's voxels will be shut");
   if (target.is_much()) {

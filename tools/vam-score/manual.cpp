@@ -17,11 +17,13 @@ std::vector<std::string> description() {
       "the voxels that the surface cuts included, and the duration of the print if the resin is known. The exit "
       "status depends on --require only. Gaps of the target of which no voxel is three quarters free have no void to "
       "judge, and cause a warning. Where only voxels that the surface cuts do not cure, or cure, a print may be in "
-      "more or fewer pieces than the part, or its walls may be cut: pieces of 8 voxels or more are counted "
-      "(part_pieces, of voxels at least a quarter covered, and print_pieces; voxels that share a corner are of one "
-      "piece), and the voxels of the part that do not cure and around which no others cure, or those that do fall "
-      "apart (broken_voxels). If there are 8 of these, or the numbers of pieces differ, the part will not print as "
-      "designed.",
+      "more or fewer pieces than the part, its walls may be cut, or its gaps shut. Pieces of 8 voxels or more are "
+      "counted: of the print (print_pieces, of the dose at the threshold, interpolated linearly), and of the part, "
+      "where a voxel holds 1/32 of it and voxels that share a corner are of one piece (part_pieces), and of "
+      "its coverage at a half (part_pieces_at_half); between these two lies the number that the part truly has. "
+      "Voxels of the part that do not cure are counted where none around them cure, or those that do fall apart "
+      "(broken_voxels), and so are voxels of the void that cure (shut_voxels). With 3 of either, or pieces that are "
+      "more or fewer than the part can have, the part will not print as designed.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",
       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "

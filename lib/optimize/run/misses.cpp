@@ -47,20 +47,27 @@ std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem
   return slices;
 }
 
-model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem) {
-  const auto threshold = static_cast<float>(problem.demands.window.threshold());
-  const Slab& slab = dose[0];
-  model::PrintPieceCounter counter(slab.width, slab.height);
+std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int count) {
+  const std::size_t size = product(dose.width, dose.height);
+  std::vector<float> slices(product(count, size));
+  unpack(dose, count, slices.data());
+  for (std::size_t at = 0; at < slices.size(); ++at) {
+    if (labels[at % size * lanes + at / size] == Label::outside) slices[at] = 0;
+  }
+  return slices;
+}
+
+model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem, const SliceReader& reader) {
+  model::PrintPieceCounter counter(dose[0].width, dose[0].height, problem.demands.window.threshold());
   for (std::size_t s = 0; s < dose.size(); ++s) {
-    const int count = std::min(lanes, problem.slices - static_cast<int>(s) * lanes);
-    std::vector<std::vector<std::uint8_t>> slices(count, std::vector<std::uint8_t>(product(slab.width, slab.height)));
-    parallel_for(count, [&](int lane) {
-      for (std::size_t i = lane; i < dose[s].values.size(); i += lanes) {
-        const bool cured = dose[s].values[i] >= threshold && problem.labels[s][i] != Label::outside;
-        slices[lane][i / lanes] = model::printed_bits(problem.target[s].values[i], cured);
-      }
-    });
-    counter.add(slices);
+    const int first = static_cast<int>(s) * lanes;
+    const int count = std::min(lanes, problem.slices - first);
+    std::vector<float> target;
+    for (int k = first; k < first + count; ++k) {
+      const std::vector<float> slice = reader.read(k).target;
+      target.insert(target.end(), slice.begin(), slice.end());
+    }
+    counter.add(count, target.data(), judged_doses(dose[s], problem.labels[s], count).data());
   }
   return counter.found();
 }

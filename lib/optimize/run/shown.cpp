@@ -2,17 +2,16 @@
 #include "optimize/run/shown.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/index.hpp"
 #include "model/figures.hpp"
 #include "optimize/run/private/division.hpp"
-#include "optimize/run/private/pass_light.hpp"
+#include "optimize/run/private/shown_pass.hpp"
 #include "optimize/run/private/tally.hpp"
-#include "optimize/target/exclusions.hpp"
 
 namespace vam::optimize {
 
@@ -29,46 +28,44 @@ class Frames {
   Image dark_;
 };
 
-/// The light of the pass; the problem loses what inserts fill and hide.
-PassLight light_of(const VolumeTask& task, const light::Operator& clear, const Pass& pass, PassInput& input,
-                   Ledger& ledger) {
-  std::unique_ptr<light::Operator> around;
-  if (!input.inserts.empty()) {
-    exclude(input.problem, input.inserts);
-    around = task.around(input.inserts);
-    for (const auto voxels : exclude_dark(input.problem, *around)) ledger.add_dark(voxels);
+/// The pieces of the pass's own slices.
+void count(const ShownPass& shown, const Pass& pass, const SliceReader& reader, model::PrintPieceCounter& pieces) {
+  for (std::size_t s = 0; s < shown.dose.size(); ++s) {
+    const int first = pass.low + static_cast<int>(s) * lanes;
+    const int slices = std::min(lanes, pass.high - first);
+    const std::vector<float> doses = judged_doses(shown.dose[s], shown.problem.labels[s], slices);
+    const std::size_t size = doses.size() / static_cast<std::size_t>(slices);
+    for (int k = std::max(first, pass.first); k < std::min(first + slices, pass.last); ++k) {
+      pieces.add(1, reader.read(k).target.data(), doses.data() + product(k - first, size));
+    }
   }
-  return {clear, std::move(around), task.blur_px, pass.slices()};
 }
 
 /// What prints if the resin sets at that dose: figures, and voxels on the wrong side of it slice by slice.
 VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, const Frames& frames, double threshold) {
   const int slices = task.source.slices;
-  const light::Shape object = light.object();
-  const SliceReader reader(task.source, object);
+  const SliceReader reader(task.source, light.object());
   const Division division = division_of(task, light);
   std::vector<int> each_its_own(slices);
   std::iota(each_its_own.begin(), each_its_own.end(), 0);
   const std::vector<int> once(slices, 1);
   Ledger ledger;
   VolumeOutcome outcome;
+  std::optional<model::PrintPieceCounter> pieces;
+  if (!task.demands.grey) pieces.emplace(light.object().width, light.object().height, threshold);
   for (int first = 0; first < slices;) {
     const Pass pass = division.from(first, slices);
-    PassInput input = read_pass(
-        pass, [](int k) { return k; }, reader, object, task.circle, task.demands,
-        light.couples_slices() || task.blur_px > 0);
-    const PassLight shown = light_of(task, light, pass, input, ledger);
-    const std::vector<Slab> sinograms = collapse_images(
-        pass, [&](int k) { return frames[k]; }, shown.sharp());
-    std::vector<Slab> dose = slabs(sinograms.size(), object.width, object.height);
-    shown.blurred().adjoint(sinograms, dose);
-    add_delivered(input.problem, dose);
-    input.problem.demands.window = {threshold, threshold};
-    tally(dose, input.problem, pass, {task.part, each_its_own, {0, slices}, once}, ledger);
-    if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(dose, input.problem);
+    ShownPass shown = shown_pass(
+        task, light, reader, pass, [](int k) { return k; }, [&](int k) { return frames[k]; });
+    for (const auto voxels : shown.dark) ledger.add_dark(voxels);
+    shown.problem.demands.window = {threshold, threshold};
+    tally(shown.dose, shown.problem, pass, {task.part, each_its_own, {0, slices}, once}, ledger);
+    if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
+    if (pieces) count(shown, pass, reader, *pieces);
     first = pass.last;
   }
   ledger.complete(outcome, task.demands.grey, each_its_own);
+  if (pieces) outcome.pieces = pieces->found();
   return outcome;
 }
 
@@ -85,6 +82,7 @@ void judge_shown(const VolumeTask& task, const light::Operator& light, std::span
   outcome.with_cut = judged.with_cut;
   outcome.outside = judged.outside;
   outcome.wrong = std::move(judged.wrong);
+  outcome.pieces = judged.pieces;
   outcome.asked = std::move(judged.asked);
   outcome.surface.reset();
   model::LightEfficiency seen;

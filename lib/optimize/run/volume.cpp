@@ -13,6 +13,7 @@
 #include "optimize/run/private/division.hpp"
 #include "optimize/run/private/finished.hpp"
 #include "optimize/run/private/ledger.hpp"
+#include "optimize/run/private/light_pieces.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/run/private/pass_light.hpp"
 #include "optimize/run/private/tally.hpp"
@@ -62,6 +63,7 @@ class VolumeRun {
       mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
     }
     schedule_ = scheduled(task, digests, light.image(), division_.halo == 0 && !division_.whole);
+    if (!division_.whole && !task.demands.grey && !task.slices) pieces_.emplace(task_, light_, reader_);
     times_.assign(schedule_.slice_of_job.size(), 0);
     for (int k = asked_.from; k < asked_.to; ++k) ++times_[schedule_.job_of_slice[k]];
     needed_.assign(times_.size(), false);
@@ -89,6 +91,7 @@ class VolumeRun {
       work = {};
     }
     ledger_.complete(outcome_, task_.demands.grey, schedule_.job_of_slice);
+    if (pieces_) outcome_.pieces = pieces_->found();
     for (std::size_t k = 0; k < outcome_.asked.size(); ++k) {
       outcome_.asked[k].peak = static_cast<double>(finished_.peaks()[k]);
     }
@@ -244,7 +247,7 @@ class VolumeRun {
     if (whole) outcome_.surface = work.method->surface_miss(state.dose);
     tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, asked_, times_}, ledger_);
     if (light_.couples_slices() && !task_.demands.grey) outcome_.wrong = wrong_voxels(state.dose, problem);  // one pass
-    if (whole && !task_.demands.grey) outcome_.pieces = print_pieces(state.dose, problem);
+    if (whole && !task_.demands.grey) outcome_.pieces = print_pieces(state.dose, problem, reader_);
     hand_out(state, pass, light);
   }
 
@@ -302,8 +305,12 @@ class VolumeRun {
   std::vector<bool> needed_;  // is a job in a pass with one of them?
   double first_limit_ = 0;    // of the intensity
   Ledger ledger_;
-  VolumeOutcome outcome_;  // filled in pass by pass; the ledger has what is of all of them
-  Finished finished_{schedule_, asked_, task_.write};
+  VolumeOutcome outcome_;              // filled in pass by pass; the ledger has what is of all of them
+  std::optional<LightPieces> pieces_;  // of slices that are optimised apart
+  Finished finished_{schedule_, asked_, [this](int k, const Image& image) {
+                       if (pieces_) pieces_->add(schedule_.job_of_slice[k], image);
+                       task_.write(k, image);
+                     }};
   Progress progress_{task_.title, 0};
 };
 

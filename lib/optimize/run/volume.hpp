@@ -74,7 +74,7 @@ struct VolumeOutcome {
   model::DoseMetrics with_cut;               // with the voxels that the surface cuts: part from half coverage on
   std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
-  std::optional<model::PrintPieces> pieces;  // where slices share light; none of a grey target
+  std::optional<model::PrintPieces> pieces;  // none of a grey target, nor of a part of the slices
   std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
   std::optional<SurfaceMiss> surface;        // where slices share light
   double eigenvalue = 0;                     // Method::eigenvalue() of the last pass

@@ -40,6 +40,7 @@ TEST_CASE("walls are lost where neither a voxel nor its 26 neighbours are half c
     CHECK(lost.first == 0);
     CHECK(lost.end == 8);
     CHECK(lost.most == 0.25F);
+    CHECK(lost.far == doctest::Approx(2 * 0.25));  // slices 6 and 7 are four and five above the pillar
   }
   set(values, 4, 3, 7, 0.5F);  // half covered: it and its neighbours, below it too
   CHECK(found(values, 4).lost_walls.voxels == doctest::Approx(2 * 0.25 + 0.1));

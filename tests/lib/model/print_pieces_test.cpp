@@ -23,9 +23,10 @@ struct Solid {
 int counted(const Solid& solid, std::int64_t least) {
   model::PieceCounter counter;
   for (int z = 0; z < solid.nz; ++z) {
-    counter.add(model::runs_of(solid.nx, solid.ny, [&](std::size_t i) {
-      return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0;
-    }));
+    counter.add(
+        model::runs_of(solid.nx, solid.ny,
+                       [&](std::size_t i) { return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0; }),
+        [](const model::VoxelPair&) { return true; });
   }
   return counter.count(least);
 }
@@ -72,25 +73,54 @@ TEST_CASE("pieces are those of a flood fill, at every density") {
   }
 }
 
+namespace {
+
+/// Slices of coverage and dose.
+class Print {
+ public:
+  Print(int size, int height) : size_(size), pixels_(static_cast<std::size_t>(size) * height) {}
+  /// cover(pixel) 0...1 and cures(pixel), of the next slice.
+  template <class Cover, class Cures>
+  void add(const Cover& cover, const Cures& cures) {
+    for (int i = 0; i < static_cast<int>(pixels_); ++i) {
+      coverage_.push_back(cover(i));
+      dose_.push_back(cures(i) ? 1.0F : 0.5F);
+    }
+  }
+  [[nodiscard]] model::PrintPieces found(int a_pass) const {
+    model::PrintPieceCounter counter(size_, static_cast<int>(pixels_) / size_, 0.8);
+    for (std::size_t at = 0; at < dose_.size(); at += a_pass * pixels_) {
+      const int count = std::min(a_pass, static_cast<int>((dose_.size() - at) / pixels_));
+      counter.add(count, coverage_.data() + at, dose_.data() + at);
+    }
+    return counter.found();
+  }
+
+ private:
+  int size_;
+  std::size_t pixels_;
+  std::vector<float> coverage_, dose_;
+};
+
+}  // namespace
+
 TEST_CASE("a wall without its foot is a piece of its own; one that hangs on by its end is cut") {
   constexpr int width = 9;
   constexpr int height = 12;
   const auto pieces = [&](int foot) {  // so many voxels of the wall's foot cure
-    model::PrintPieceCounter counter(width, height);
+    Print print(width, height);
     for (int k = 0; k < 8; ++k) {
-      std::vector<std::uint8_t> slice(width * height, 0);
-      for (int i = 0; i < width * height; ++i) {
-        const bool part = k < 3 || i % width == 4;
-        slice[i] = model::printed_bits(part ? 1 : 0, part && (k != 3 || i / width < foot));
-      }
-      counter.add({slice});
+      const auto part = [&](int i) { return k < 3 || i % width == 4; };
+      print.add([&](int i) { return part(i) ? 1.0F : 0.0F; },
+                [&](int i) { return part(i) && (k != 3 || i / width < foot); });
     }
-    return counter.found();
+    return print.found(1);
   };
   CHECK(pieces(height).print == 1);
   CHECK(pieces(height).broken == 0);
   CHECK(pieces(height).is_as_part());
   CHECK(pieces(2).part == 1);
+  CHECK(pieces(2).part_at_half == 1);
   CHECK(pieces(2).print == 1);
   CHECK(pieces(2).broken == height - 3);  // the one beside those that cure is joined by them
   CHECK(!pieces(2).is_as_part());
@@ -100,53 +130,98 @@ TEST_CASE("a wall without its foot is a piece of its own; one that hangs on by i
 
 TEST_CASE("rough faces and holes in walls cut nothing, however the slices come") {
   constexpr int size = 10;
-  std::vector<std::vector<std::uint8_t>> slices;
+  Print print(size, size);
   for (int k = 0; k < size; ++k) {
-    std::vector<std::uint8_t> slice(size * size, 0);
-    for (int i = 0; i < size * size; ++i) {
-      const bool part = k < 5 || i % size == 5;
-      const bool rough = k == 4 && i % 3 != 0 && i % size != 5;
-      const bool hole = k > 5 && k < 8 && i / size % 4 == 2;
-      slice[i] = model::printed_bits(part ? 1 : 0, part && !rough && !hole);
-    }
-    slices.push_back(slice);
+    const auto part = [&](int i) { return k < 5 || i % size == 5; };
+    print.add([&](int i) { return part(i) ? 1.0F : 0.0F; },
+              [&](int i) {
+                const bool rough = k == 4 && i % 3 != 0 && i % size != 5;
+                const bool hole = k > 5 && k < 8 && i / size % 4 == 2;
+                return part(i) && !rough && !hole;
+              });
   }
-  model::PrintPieceCounter together(size, size);
-  together.add(slices);
-  model::PrintPieceCounter apart(size, size);
-  for (const auto& slice : slices) apart.add({slice});
-  CHECK(together.found().broken == 0);
-  CHECK(apart.found().broken == 0);
-  CHECK(together.found().print == 1);
+  for (const int a_pass : {1, 2, 3, 16}) {
+    CHECK(print.found(a_pass).broken == 0);
+    CHECK(print.found(a_pass).shut == 0);
+    CHECK(print.found(a_pass).print == 1);
+  }
 }
 
 TEST_CASE(
     "a wall that does not cure, or has a wide hole, is broken; a rod of a voxel's width holds the part together") {
   constexpr int size = 12;
   const auto found = [&](int low, int high) {  // of a wall at x = 5, no voxel of it cures within this range
-    model::PrintPieceCounter counter(size, size);
+    Print print(size, size);
     for (int k = 0; k < size; ++k) {
-      std::vector<std::uint8_t> slice(size * size, 0);
-      for (int i = 0; i < size * size; ++i) {
-        const auto within = [&](int at) { return at >= low && at < high; };
-        const bool wall = i % size == 5;
-        slice[i] = model::printed_bits(wall ? 0.8F : 0.1F, wall && !(within(k) && within(i / size)));
-      }
-      counter.add({slice});
+      const auto wall = [&](int i) { return i % size == 5; };
+      const auto within = [&](int at) { return at >= low && at < high; };
+      print.add([&](int i) { return wall(i) ? 0.8F : 0.1F; },
+                [&](int i) { return wall(i) && !(within(k) && within(i / size)); });
     }
-    return counter.found();
+    return print.found(16);
   };
   CHECK(found(0, 0).broken == 0);
   CHECK(found(4, 6).broken == 0);
   CHECK(found(3, 8).broken == 9);  // all but the rim of 5 x 5
   CHECK(!found(3, 8).is_as_part());
   CHECK(found(0, size).broken == size * size);
-  model::PrintPieceCounter thin(size, size);
-  for (int k = 0; k < size; ++k) {
-    std::vector<std::uint8_t> slice(size * size, model::printed_bits(k < 4 || k > 7 ? 1 : 0, k < 4 || k > 7));
-    if (k >= 4 && k <= 7) slice[size * 6 + 6] = model::printed_bits(0.4F, false);
-    thin.add({slice});
-  }
-  CHECK(thin.found().part == 1);
-  CHECK(thin.found().print == 2);
+  const auto blocks = [&](bool rod_cures) {  // with a rod between them that has 0.4 of its voxels
+    Print print(size, size);
+    for (int k = 0; k < size; ++k) {
+      const bool block = k < 4 || k > 7;
+      const auto rod = [&](int i) { return i == size * 6 + 6; };
+      print.add([&](int i) { return block    ? 1.0F
+                                    : rod(i) ? 0.4F
+                                             : 0.0F; },
+                [&](int i) { return block || (rod(i) && rod_cures); });
+    }
+    return print.found(5);
+  };
+  CHECK(blocks(false).part == 1);
+  CHECK(blocks(false).part_at_half == 2);
+  CHECK(blocks(false).print == 2);
+  CHECK(!blocks(false).is_certain());  // a rod, or a gap
+  CHECK(!blocks(false).is_in_other_pieces());
+  CHECK(blocks(true).print == 1);
+}
+
+TEST_CASE("a channel is shut where it cures, and where what is left of it falls apart") {
+  constexpr int size = 12;
+  const auto found = [&](int from, int to) {  // of a block with a channel one voxel wide that cures there
+    Print print(size, size);
+    for (int k = 0; k < size; ++k) {
+      const auto free = [&](int i) { return k == 6 && i / size == 6; };
+      print.add([&](int i) { return free(i) ? 0.2F : 1.0F; },
+                [&](int i) { return !free(i) || (i % size >= from && i % size < to); });
+    }
+    return print.found(4);
+  };
+  CHECK(found(0, 0).shut == 0);
+  CHECK(found(3, 4).shut == 1);
+  CHECK(found(3, 4).is_as_part());
+  CHECK(found(1, 11).shut == 10 - 2);  // the ones beside what is left of it close its ends only
+  CHECK(found(1, 11).shuts_gaps());
+  CHECK(!found(1, 11).is_as_part());
+}
+
+TEST_CASE("a field is joined across an edge or a corner where it is between them, by closed forms") {
+  const auto pieces = [](std::vector<float> below, std::vector<float> slice) {
+    model::FieldPieces counter(2, 2, 1);
+    counter.add(std::move(below));
+    counter.add(std::move(slice));
+    return counter.count(1);
+  };
+  // The saddle of 2, b, b, 2 is their mean: 1 at b = 0.
+  CHECK(pieces({0, 0, 0, 0}, {2, 0.01F, 0.01F, 2}) == 1);
+  CHECK(pieces({0, 0, 0, 0}, {2, -0.01F, -0.01F, 2}) == 2);
+  CHECK(pieces({2, 0, 0.01F, 0}, {0.01F, 0, 2, 0}) == 1);
+  CHECK(pieces({2, 0, -0.01F, 0}, {-0.01F, 0, 2, 0}) == 2);
+  CHECK(pieces({2, 0.01F, 0, 0}, {0.01F, 2, 0, 0}) == 1);
+  CHECK(pieces({2, -0.01F, 0, 0}, {-0.01F, 2, 0, 0}) == 2);
+  // The saddle of 4, b, c, 1.1 for b = c: (4.4 - b^2) / (5.1 - 2 b) = 1 at b = 1 - sqrt(0.3).
+  CHECK(pieces({0, 0, 0, 0}, {4, 0.453F, 0.453F, 1.1F}) == 1);
+  CHECK(pieces({0, 0, 0, 0}, {4, 0.452F, 0.452F, 1.1F}) == 2);
+  // The middle of eight.
+  CHECK(pieces({2.5F, 0.5F, 0.5F, 0.51F}, {0.5F, 0.5F, 0.5F, 2.5F}) == 1);
+  CHECK(pieces({2.5F, 0.5F, 0.5F, 0.49F}, {0.5F, 0.5F, 0.5F, 2.5F}) == 2);
 }

@@ -75,6 +75,35 @@ TEST_CASE("more slices than a pass come out in order, each as if alone") {
   CHECK(worst < 1e-5F * largest);
 }
 
+// Nine walls of seven slices, each a disc of its own size, with void between them; the sixth wall has a slit.
+TEST_CASE("pieces and torn voxels are those of the volume, whatever the passes, jobs and halos are") {
+  std::vector<std::vector<float>> slices;
+  for (int k = 0; k < 90; ++k) {
+    const double radius = k % 10 < 2 || k % 10 > 8 ? 0 : 6 + k / 10;
+    slices.push_back(vam::oracle::draw(
+        size, [=](double x, double y) { return std::hypot(x, y - 8) < radius && (k / 10 != 5 || std::abs(x) > 2); }));
+  }
+  for (const double blur_px : {0.0, 0.3}) {
+    CAPTURE(blur_px);
+    VolumeTask task;
+    task.blur_px = blur_px;
+    task.limits.iterations = 12;
+    task.make = [](double most) { return make_method("apg", {.max_intensity = most}); };
+    const auto result = run(slices, task);
+    vam::model::PrintPieceCounter counter(size, size, task.demands.window.threshold());
+    for (std::size_t k = 0; k < slices.size(); ++k) counter.add(1, slices[k].data(), dose_of(result.images[k]).data());
+    REQUIRE(result.outcome.pieces);
+    const vam::model::PrintPieces& found = *result.outcome.pieces;
+    CHECK(found.part == 10);
+    CHECK(found.part_at_half == 10);
+    CHECK(found.print == 10);
+    CHECK(found.print == counter.found().print);
+    if (blur_px > 0) continue;
+    CHECK(found.broken == counter.found().broken);
+    CHECK(found.shut == counter.found().shut);
+  }
+}
+
 TEST_CASE("a slice barely touched by the part is printed from half coverage on") {
   auto cut = [](float coverage) {
     auto slice = vam::oracle::wheel(size);

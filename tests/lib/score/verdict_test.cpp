@@ -77,14 +77,27 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   CHECK(words(slit).starts_with("will not print as designed: "));
   CHECK(words(slit).find("gaps too narrow for the voxels will be shut") != std::string::npos);
   CHECK(is_whole(verdict()));
+  Verdict hair = verdict();
+  hair.unresolved.whole = 1e6;
+  hair.unresolved.lost_walls.far = hair.unresolved.lost_walls.voxels = 3;
+  CHECK(words(hair).starts_with("will not print as designed: "));
+  CHECK(words(hair).ends_with("; walls or rods too thin for the voxels will be missing"));
   Verdict cut = verdict();
-  cut.pieces = {.part = 1, .print = 1};
+  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1};
   CHECK(words(cut) == words(verdict()));
   CHECK(is_whole(cut));
   cut.pieces->print = 2;
   CHECK(words(cut).starts_with("will not print as designed: "));
   CHECK(words(cut).ends_with("; the print is in 2 pieces, the part in 1"));
   CHECK(!is_whole(cut));
+  cut.pieces->part_at_half = 2;  // a rod that is not seen, or a gap
+  CHECK(words(cut).starts_with("may print: "));
+  CHECK(words(cut).ends_with(
+      "; the print is in 2 pieces, and the voxels are too coarse to tell whether the part is in 1 or 2"));
+  CHECK(!is_whole(cut));
+  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .shut = 8};
+  CHECK(words(cut).starts_with("will not print as designed: "));
+  CHECK(words(cut).ends_with("; gaps are shut where 8 voxels of the void cure"));
   cut.whole.pw = -0.1;  // pieces of what does not print at all say nothing
   CHECK(words(cut).find("pieces") == std::string::npos);
   thin.whole.pw = -0.1;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "base/image.hpp"
@@ -18,8 +19,8 @@ class Finished {
  public:
   using Write = std::function<void(int k, const Image& image)>;  // takes the slices asked for, in order
 
-  Finished(const Schedule& schedule, model::ImageRange slices, const Write& write)
-      : schedule_(schedule), asked_(slices), write_(write) {}
+  Finished(const Schedule& schedule, model::ImageRange slices, Write write)
+      : schedule_(schedule), asked_(slices), write_(std::move(write)) {}
 
   /// The projections of the jobs that follow those already taken; every slice whose turn has come is written.
   /// Throws Fault::data for values that are not finite.
@@ -37,7 +38,7 @@ class Finished {
  private:
   const Schedule& schedule_;
   model::ImageRange asked_;
-  const Write& write_;
+  Write write_;
   std::map<int, Image> held_;
   int jobs_ = 0;
   int slices_ = 0;  // dealt with

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pieces of a print whose slices are optimised apart: their doses are computed once more, in ascending order, as
+// their projections are handed out.
+#pragma once
+
+#include <deque>
+
+#include "model/print_pieces.hpp"
+#include "optimize/run/private/division.hpp"
+#include "optimize/run/volume.hpp"
+#include "optimize/target/slice_reader.hpp"
+
+namespace vam::optimize {
+
+class LightPieces {
+ public:
+  /// All are referred to. Not for a grey target, nor for a part of the slices.
+  LightPieces(const VolumeTask& task, const light::Operator& light, const SliceReader& reader);
+  /// Of the next slice, which that job stands for.
+  void add(int job, const Image& image);
+  /// After the last slice.
+  [[nodiscard]] model::PrintPieces found();
+
+ private:
+  /// Slices that follow each other and have one dose.
+  struct Alike {
+    Image image;
+    int job, slice, count;
+  };
+
+  void count(const Pass& pass);
+
+  const VolumeTask& task_;
+  const light::Operator& light_;
+  const SliceReader& reader_;
+  Division division_;
+  std::deque<Alike> held_;  // from number first_ on
+  int first_ = 0;
+  int next_ = 0;    // the number of the first that is not counted
+  int slices_ = 0;  // so far
+  model::PrintPieceCounter pieces_;
+};
+
+}  // namespace vam::optimize

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The dose of a pass in the light of finished images.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "optimize/run/private/pass.hpp"
+#include "optimize/run/volume.hpp"
+
+namespace vam::optimize {
+
+struct ShownPass {
+  Problem problem;                 // without what inserts fill and hide
+  std::vector<std::int64_t> dark;  // part voxels of each slice behind an insert from everywhere; empty: no inserts
+  std::vector<Slab> dose;          // with what has been delivered
+};
+
+/// slice(job): the slice of the volume that the job computes; image(job): its projections, fluence.
+[[nodiscard]] ShownPass shown_pass(const VolumeTask& task, const light::Operator& light, const SliceReader& reader,
+                                   const Pass& pass, const std::function<int(int job)>& slice,
+                                   const std::function<Image(int job)>& image);
+
+}  // namespace vam::optimize
