@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/run/private/light_pieces.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "base/index.hpp"
-#include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/shown_pass.hpp"
 
 namespace vam::optimize {
@@ -35,18 +33,10 @@ void LightPieces::count(const Pass& pass) {
   const ShownPass shown = shown_pass(
       task_, light_, reader_, pass, [&](int number) { return of(number).slice; },
       [&](int number) { return of(number).image; });
-  for (std::size_t s = 0; s < shown.dose.size(); ++s) {
-    const int first = pass.low + static_cast<int>(s) * lanes;
-    const int count = std::min(lanes, pass.high - first);
-    const std::vector<float> doses = judged_doses(shown.dose[s], shown.problem.labels[s], count);
-    const std::size_t size = doses.size() / static_cast<std::size_t>(count);
-    for (int number = std::max(first, pass.first); number < std::min(first + count, pass.last); ++number) {
-      const std::vector<float> target = reader_.read(of(number).slice).target;
-      for (int n = 0; n < of(number).count; ++n) {
-        pieces_.add(1, target.data(), doses.data() + product(number - first, size));
-      }
-    }
-  }
+  for_each_dose(shown, pass, [&](int number, const float* dose) {
+    const std::vector<float> target = reader_.read(of(number).slice).target;
+    for (int n = 0; n < of(number).count; ++n) pieces_.add(1, target.data(), dose);
+  });
   next_ = pass.last;
   const int low = division_.from(next_, std::numeric_limits<int>::max()).low;
   for (; first_ < low; ++first_) held_.pop_front();

@@ -28,19 +28,6 @@ class Frames {
   Image dark_;
 };
 
-/// The pieces of the pass's own slices.
-void count(const ShownPass& shown, const Pass& pass, const SliceReader& reader, model::PrintPieceCounter& pieces) {
-  for (std::size_t s = 0; s < shown.dose.size(); ++s) {
-    const int first = pass.low + static_cast<int>(s) * lanes;
-    const int slices = std::min(lanes, pass.high - first);
-    const std::vector<float> doses = judged_doses(shown.dose[s], shown.problem.labels[s], slices);
-    const std::size_t size = doses.size() / static_cast<std::size_t>(slices);
-    for (int k = std::max(first, pass.first); k < std::min(first + slices, pass.last); ++k) {
-      pieces.add(1, reader.read(k).target.data(), doses.data() + product(k - first, size));
-    }
-  }
-}
-
 /// What prints if the resin sets at that dose: figures, and voxels on the wrong side of it slice by slice.
 VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, const Frames& frames, double threshold) {
   const int slices = task.source.slices;
@@ -61,7 +48,9 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
     shown.problem.demands.window = {threshold, threshold};
     tally(shown.dose, shown.problem, pass, {task.part, each_its_own, {0, slices}, once}, ledger);
     if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
-    if (pieces) count(shown, pass, reader, *pieces);
+    if (pieces) {
+      for_each_dose(shown, pass, [&](int k, const float* dose) { pieces->add(1, reader.read(k).target.data(), dose); });
+    }
     first = pass.last;
   }
   ledger.complete(outcome, task.demands.grey, each_its_own);

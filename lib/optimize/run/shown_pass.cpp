@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/run/private/shown_pass.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "base/index.hpp"
+#include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/pass_light.hpp"
 #include "optimize/target/exclusions.hpp"
 
@@ -28,6 +31,19 @@ ShownPass shown_pass(const VolumeTask& task, const light::Operator& light, const
   add_delivered(input.problem, shown.dose);
   shown.problem = std::move(input.problem);
   return shown;
+}
+
+void for_each_dose(const ShownPass& shown, const Pass& pass,
+                   const std::function<void(int job, const float* dose)>& visit) {
+  for (std::size_t s = 0; s < shown.dose.size(); ++s) {
+    const int first = pass.low + static_cast<int>(s) * lanes;
+    const int count = std::min(lanes, pass.high - first);
+    const std::vector<float> doses = judged_doses(shown.dose[s], shown.problem.labels[s], count);
+    const std::size_t size = doses.size() / static_cast<std::size_t>(count);
+    for (int job = std::max(first, pass.first); job < std::min(first + count, pass.last); ++job) {
+      visit(job, doses.data() + product(job - first, size));
+    }
+  }
 }
 
 }  // namespace vam::optimize
