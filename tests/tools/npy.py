@@ -5,7 +5,7 @@
                                           their place in C order, stored in order C or F
     npy.py show FILE                      shape, then the values in C order, on one line
     npy.py head FILE DICTIONARY           a header with that text and no values
-    npy.py cuts FILE                      FILE.0, FILE.1, ...: every beginning of it
+    npy.py cuts FILE STEP                 FILE.0, FILE.STEP, ...: its beginnings
 """
 import itertools
 import math
@@ -42,9 +42,9 @@ def show(path):
     print(*about["shape"], about["descr"], *("%g" % value for value in values))
 
 
-def cuts(path):
+def cuts(path, step):
     data = open(path, "rb").read()
-    for size in range(len(data)):
+    for size in range(0, len(data), int(step)):
         open("%s.%d" % (path, size), "wb").write(data[:size])
 
 

@@ -208,18 +208,19 @@ for kind in 'avi an AVI video' 'gif a GIF image' 'mpg an MPEG video' 'wmv a WMV 
 done
 
 # No beginning of a file is taken for the file, and none crashes.
-statuses() {  # statuses FILE: of all its beginnings
-  npy cuts "$1"
+statuses() {  # statuses FILE: of every fifth of its beginnings; what opens them is swept by damage_sweep_test.cpp
+  npy cuts "$1" 5
   for cut in "$1".*; do vam-convert "$cut" --voxel 1 -o x.vdb 2>>cut.err; echo $?; done | sort | uniq -c | tr -s ' '
   rm -f "$1".*
 }
 npy make cut.npy '<f4' 2,2,2
-is 'every cut of a .npy is status 65' "$(statuses cut.npy)" " $(wc -c <cut.npy) 65"
-is 'in one line each' "$(wc -l <cut.err)" "$(wc -c <cut.npy)"
+fifths() { echo $((($(wc -c <"$1") + 4) / 5)); }
+is 'every cut of a .npy is status 65' "$(statuses cut.npy)" " $(fifths cut.npy) 65"
+is 'in one line each' "$(wc -l <cut.err)" "$(fifths cut.npy)"
 is 'and none is a crash' "$(grep -c 'ended by signal\|reader failed' cut.err)" 0
 python3 -c 'import zipfile
 with zipfile.ZipFile("cut.npz", "w", zipfile.ZIP_DEFLATED) as z: z.write("cut.npy", "a.npy")'
-is 'every cut of a .npz is status 65' "$(statuses cut.npz)" " $(wc -c <cut.npz) 65"
+is 'every cut of a .npz is status 65' "$(statuses cut.npz)" " $(fifths cut.npz) 65"
 is 'nothing is left behind' "$(ls x.* 2>/dev/null)" ''
 python3 -c 'import zipfile
 with zipfile.ZipFile("bomb.npz", "w", zipfile.ZIP_DEFLATED) as z:

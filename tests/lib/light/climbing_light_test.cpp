@@ -205,6 +205,7 @@ TEST_CASE("an insert's shadow agrees with voxel-by-voxel ray traversal, for skew
   for (Bench b : {still, short_lens, posed(still, model::Moves::part, 0.6, 0.8),
                   posed(short_lens, model::Moves::vial, 0.9, -0.4), posed(still, model::Moves::vial, 0.9, 0.8)}) {
     b.slow.opaque = opaque;
+    b.slow.rays = 4;  // their grain is small beside that
     const std::vector<Slab> inserts = insert_of(b);
     const Difference d = compare(b, smooth, inserts);
     CHECK(d.rms < 2e-2);

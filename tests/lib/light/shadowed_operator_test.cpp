@@ -93,7 +93,7 @@ TEST_CASE("a handle around a screwdriver's shaft: at least 98 % of the voxels ar
     return r < 34 + 4 * std::cos(6 * std::atan2(y, x)) && r >= 12;
   });
   const Slab insert = packed(shaft, size);
-  const ShadowedOperator light(parts::turn(size, 180), 0, 64, {&insert, 1});
+  const ShadowedOperator light(parts::turn(size, 120), 0, 64, {&insert, 1});
   auto problem = parts::make_problem(handle.data(), 1, size, size, parts::circle(size), {});
   exclude(problem, {&insert, 1});
   CHECK(exclude_dark(problem, light) ==

@@ -141,7 +141,8 @@ TEST_CASE("flat end faces lie where they are, flat, at any distance of the camer
   // Far cameras leave a face sharp at the axis and blurred at the rim; the trilinear surface of a sharp step lies
   // within 0.1 voxels of it, whatever the camera.
   constexpr double dome_mm = 0.15 * 0.05;
-  for (const double lens_mm : {100.0, 200.0, 300.0, 500.0}) {
+  for (const double lens_mm : {100.0, 500.0, 200.0, 300.0}) {
+    if (lens_mm == 200 && !is_whole()) break;
     oracle::ViewBench bench = narrow_bench();
     bench.rays = 2;
     bench.lens_mm = lens_mm;
@@ -195,8 +196,10 @@ TEST_CASE("noise, background, flicker and specks") {
     oracle::soil(bench, dirt, views);
     return reconstructed(bench, views_of(bench, views), bodies);
   };
-  judge("noise of 5 %", soiled({.noise = 0.05}), 0.037);
-  judge("background of 5 %", soiled({.background = 0.05}), 0.014);
+  if (is_whole()) {  // each is within the last row, or less than the next
+    judge("noise of 5 %", soiled({.noise = 0.05}), 0.037);
+    judge("background of 5 %", soiled({.background = 0.05}), 0.014);
+  }
   judge("background of 20 %", soiled({.background = 0.2}), 0.014);
   judge("25 specks", soiled({.specks = 25}), 0.05);
   // Drops on the window for three views, dark and bright ones.
@@ -239,7 +242,7 @@ TEST_CASE("bubbles that rise are removed") {
   const auto bodies = post();
   const oracle::ViewBench bench;
   constexpr std::array draws{25U, 11U, 3U, 6U, 12U, 22U};
-  const auto count = std::min(static_cast<std::size_t>(trials_or(3)), draws.size());
+  const auto count = std::min(static_cast<std::size_t>(trials_or(2)), draws.size());
   for (const unsigned draw : std::span(draws).first(count)) {
     const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, draw), 180);
     judge("15 bubbles, draw " + std::to_string(draw), reconstructed(bench, views_of(bench, bubbly), bodies), 0.05);

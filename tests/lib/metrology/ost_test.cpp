@@ -72,7 +72,7 @@ TEST_CASE("a sphere imaged through glass and resin, with noise and binning, is r
   const model::Printer printer = test::glass_rig();
   const double pixel_mm = 0.04;
   const auto camera = test::camera_bench(printer, 400, 192, pixel_mm);
-  const auto views = test::take_views(camera, ball, test::even_angles(120), 0.05, 4,
+  const auto views = test::take_views(camera, ball, test::even_angles(60), 0.05, 4,
                                       {.reach_mm = 5});  // noise 1 % of the brightest pixel
   OstOptions options;
   const AxisEstimate axis = find_axis(mean_view(views));

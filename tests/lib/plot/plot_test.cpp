@@ -137,10 +137,10 @@ TEST_CASE("text has the reported width, can be vertical, and stays on the canvas
   CHECK(std::abs(right - (10 + width)) < 5);
   Canvas upright(200, 200);
   upright.text({100, 190}, "Hxg", 20, paint::black, Align::begin, Align::middle, true);
+  const RgbImage along = upright.image();
   int top = 200;
-  for (int y = 0; y < 200; ++y) {
-    for (int x = 0; x < 200; ++x) top = upright.image()(x, y) != paint::white ? std::min(top, y) : top;
-    if (top < 200) break;
+  for (int y = 199; y >= 0; --y) {
+    for (int x = 0; x < 200; ++x) top = along(x, y) != paint::white ? y : top;
   }
   CHECK(std::abs(top - (190 - width)) < 6);
   canvas.text({-500, 900}, "beyond", 20);  // must not write outside
