@@ -77,7 +77,8 @@ cli::Manual manual() {
         "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
         "for n in 1 2 3 4; do vam-slice --shape box:x=6.$n,y=6.2,z=6.2 --voxel 0.2 --stretch-z 1 -o print.vdb; vam-sdf "
         "print.vdb "
-        "design.vdb --isovalue 0.5 --report run$n.json; done\nvam-sdf trend run1.json run2.json run3.json run4.json "
+        "design.vdb --isovalue 0.5 --samples 20000 --report run$n.json; done\nvam-sdf trend run1.json run2.json "
+        "run3.json run4.json "
         "--plot trend.png"},
        {"Compare an embossed badge that is 1 % too small with its design:",
         "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "

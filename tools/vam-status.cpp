@@ -55,12 +55,14 @@ cli::Manual manual() {
        "On a terminal vam-print prints this line itself; with --run-page it writes page.html into the run folder."},
       {{"The progress of a print, here a dry run:",
         "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\n"
-        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --set stage.device=sim: --set "
+        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --run-up 0.25 --set stage.device=sim: "
+        "--set "
         "stage.speed_deg_s=85 --run dry-run\n"
         "vam-status dry-run"},
        {"The same as a page:",
         "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\n"
-        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --set stage.device=sim: --set "
+        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --run-up 0.25 --set stage.device=sim: "
+        "--set "
         "stage.speed_deg_s=85 --run dry-run\n"
         "vam-status dry-run --page page.html"}},
       {"Dose. The page shows the dose in the middle slice, by horizontal rays and without blur; vam-dose --shown "

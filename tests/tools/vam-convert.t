@@ -215,12 +215,12 @@ statuses() {  # statuses FILE: of every fifth of its beginnings; what opens them
 }
 npy make cut.npy '<f4' 2,2,2
 fifths() { echo $((($(wc -c <"$1") + 4) / 5)); }
-is 'every cut of a .npy is status 65' "$(statuses cut.npy)" " $(fifths cut.npy) 65"
+is 'every fifth cut of a .npy is status 65' "$(statuses cut.npy)" " $(fifths cut.npy) 65"
 is 'in one line each' "$(wc -l <cut.err)" "$(fifths cut.npy)"
 is 'and none is a crash' "$(grep -c 'ended by signal\|reader failed' cut.err)" 0
 python3 -c 'import zipfile
 with zipfile.ZipFile("cut.npz", "w", zipfile.ZIP_DEFLATED) as z: z.write("cut.npy", "a.npy")'
-is 'every cut of a .npz is status 65' "$(statuses cut.npz)" " $(fifths cut.npz) 65"
+is 'every fifth cut of a .npz is status 65' "$(statuses cut.npz)" " $(fifths cut.npz) 65"
 is 'nothing is left behind' "$(ls x.* 2>/dev/null)" ''
 python3 -c 'import zipfile
 with zipfile.ZipFile("bomb.npz", "w", zipfile.ZIP_DEFLATED) as z:

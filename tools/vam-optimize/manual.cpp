@@ -119,28 +119,28 @@ std::vector<std::string> description() {
 std::vector<std::pair<std::string, std::string>> examples() {
   return {
       {"Projections of a gyroid for the default printer:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 -o part.vdb\n"
        "vam-optimize part.vdb -o sinogram.exr"},
       {"Will it print, for how long?",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --preview"},
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --preview"},
       {"Computed axial lithography, with the figures of merit of every iteration:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --method cal --iterations 20 --trace "
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --method cal --iterations 20 --trace "
        "trace.csv -o cal.exr"},
       {"Continue from that result until part and void are separated:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 -o part.vdb\n"
        "vam-optimize --method cal --iterations 20 part.vdb -o cal.exr\n"
        "vam-optimize --method cal --init cal.exr --until 'ver=0,pw>=0.02' --iterations 40 part.vdb -o better.exr"},
       {"Quantised to the 16 grey levels of a 4-bit projector:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --bits 4 --dither 1 -o coarse.exr"},
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --bits 4 --dither 1 -o coarse.exr"},
       {"Compensated for a beam 0.1 mm wide, and safe to interrupt:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 -o part.vdb\n"
        "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
       {"Robust to errors of the axis and of the lamp:",
-       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 60 --robust "
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 24 --robust "
        "'axis=0.5px,lamp=3%' "
        "--yield-printers 10 --report robust.json -o robust.exr"},
       {"A bound for any projections, and the regions of the part that determine it:",
-       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 30 --certify proof.vdb "
+       "vam-slice --shape gyroid:diameter=4,height=1 --voxel 0.25 | vam-optimize --angles 12 --certify proof.vdb "
        "--report proved.json -o best.exr\n"
        "vam-view proof.vdb -o proof.png"},
       {"A part three times as tall as the image, in three turns:",
@@ -152,14 +152,14 @@ std::vector<std::pair<std::string, std::string>> examples() {
       {"What is left after one turn in full light:",
        "vam-slice --print-printer --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 -o lab.toml\n"
        "export VAM_PRINTER=lab.toml\n"
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 -o part.vdb\n"
        "vam-optimize --angles 90 part.vdb -o whole.exr\n"
        "vam-dose whole.exr --like part.vdb -o turn.vdb\n"
        "vam-optimize --angles 90 part.vdb --delivered turn.vdb --init whole.exr --turns 1 -o rest.exr"},
       {"A part that sinks by 1 mm during the turn:",
        "seq 0 59 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { print 6 * $1 \",0,0,\" (-$1 / 59) "
        "\",part\" }' >sinking.csv\n"
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --angles 60 --poses sinking.csv -o "
+       "vam-slice --shape gyroid:diameter=5,height=2 --voxel 0.25 | vam-optimize --angles 60 --poses sinking.csv -o "
        "sinking.exr"},
       {"Graded stiffness: a bar whose dose rises from one grey image to the next, each met within 0.25:",
        "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "

@@ -65,12 +65,12 @@ std::vector<std::pair<std::string, std::string>> examples() {
       {"Black and white frames for a projector mounted upside down:",
        "vam-slice --shape disc-grid --voxel 0.195 | vam-sinogram --filter ram-lak --negative clip | vam-resample | "
        "vam-project --bits 1 --orientation rotate-180 -o black-white/"},
-      {"Black and white frames of four turns whose rounding errors cancel:",
+      {"Black and white frames of two turns whose rounding errors cancel:",
        "vam-slice --shape disc-grid --voxel 0.195 | vam-sinogram --filter ram-lak --negative clip | vam-resample | "
-       "vam-project --bits 1 --dither 4 --turns 4 -o cancelling/"},
+       "vam-project --bits 1 --dither 2 --turns 2 -o cancelling/"},
       {"Validation video of the middle slice:",
-       "vam-slice --shape disc-grid --voxel 0.195 | vam-sinogram --filter ram-lak --negative clip | vam-project "
-       "--flatland 0 -o flatland.mp4"},
+       "vam-slice --shape disc-grid --voxel 0.195 | vam-sinogram --angles 90 --filter ram-lak --negative clip | "
+       "vam-project --flatland 0 -o flatland.mp4"},
       {"The slices of a continuous print, 1000 mm/h at 50 um per slice, as a video of 5.56 frames per second:",
        "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 | vam-curethrough correct --max-irradiance 110 "
        "--min-irradiance 0.2 | vam-project --set projector.pixel_mm=0.05 -o slices.mkv"},
@@ -78,7 +78,8 @@ std::vector<std::pair<std::string, std::string>> examples() {
       {"A synchronised print of one turn, here a dry run on a simulated stage:",
        "vam-slice --shape disc-grid --voxel 0.195 | vam-sinogram --filter ram-lak --negative clip | vam-resample -o "
        "projector.exr\n"
-       "vam-stage spin --device sim: --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 "
+       "vam-stage spin --device sim: --speed 90 --run-up 0.25 | vam-project projector.exr -o null: --follow - --speed "
+       "90 "
        "--max-missed 0.1"}};
 }
 

@@ -33,10 +33,7 @@ parts::Light clipped(parts::Light light, float most) {
 }  // namespace
 
 // The table of tests/bench/printability at an eighth of its voxels: of its six shapes two, all in ctest --preset long.
-TEST_CASE(
-    "test parts print under method auto, judged by chief rays, and no worse than by fbp or dose-norm, limited or not, "
-    "or "
-    "resampled") {
+TEST_CASE("test parts print under method auto, judged by chief rays, and no worse than by other ways, limited or not") {
   const vam::model::Printer printer;
   const std::set<std::string> judged_as_resampled{"gyroid", "boat"};
   for (const auto& shape : parts::printed_shapes()) {
