@@ -208,7 +208,7 @@ for kind in 'avi an AVI video' 'gif a GIF image' 'mpg an MPEG video' 'wmv a WMV 
 done
 
 # No beginning of a file is taken for the file, and none crashes.
-statuses() {  # statuses FILE: of every fifth of its beginnings; what opens them is swept by damage_sweep_test.cpp
+statuses() {  # statuses FILE: of every fifth of its beginnings; array_test.cpp has all
   npy cuts "$1" 5
   for cut in "$1".*; do vam-convert "$cut" --voxel 1 -o x.vdb 2>>cut.err; echo $?; done | sort | uniq -c | tr -s ' '
   rm -f "$1".*

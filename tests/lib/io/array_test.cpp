@@ -206,6 +206,8 @@ TEST_CASE("archives: the only array, one of several by name") {
   none.add("notes", "x");
   CHECK(has(array_refusal(none.done()), "without an array"));
   CHECK(has(array_refusal(one.done().substr(0, one.done().size() - 30)), "truncated or damaged"));
+  const std::string whole = one.done();
+  for (std::size_t size = 0; size < whole.size(); ++size) CHECK(!array_refusal(whole.substr(0, size)).empty());
   std::string flipped = one.done();
   flipped[flipped.find('\1', 60)] = '\3';
   CHECK(has(array_refusal(flipped), "truncated or damaged"));
