@@ -40,16 +40,17 @@ inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& do
   if (!how.threshold && how.exposure->full_intensity_turns) how.threshold = printer.resin.critical_dose_mj_cm3;
 }
 
-/// What is added to a score of either kind, slab by slab: both on the same grid.
+/// What is added to a score, slab by slab: both on the same grid.
 template <class Score>
-Score with_volumes(Score result, const io::SparseVolume& dose, const io::SparseVolume& target) {
+Score with_volumes(Score result, const io::SparseVolume& dose, const io::SparseVolume& target,
+                   const char* title = "scoring") {
   constexpr int slab = 16;
   const model::Grid& grid = target.grid();
   require_memory(2.0 * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
                  target.name() + ": " + model::size_text(grid), "use larger voxels");
   std::vector<float> doses(grid.slice_size() * slab);
   std::vector<float> wanted(grid.slice_size() * slab);
-  Progress progress("scoring", grid.nz);
+  Progress progress(title, grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
     dose.read_slices(k, count, doses.data());
@@ -71,8 +72,10 @@ inline score::Score score_print(const io::SparseVolume& dose, const io::SparseVo
                                 const score::ScoreOptions& how) {
   score::Score result = score_volumes(dose, target, how);
   const model::Grid& grid = target.grid();
-  const score::CuredPieces start(how.circle, result.print_threshold(), grid.nx, grid.ny);
-  result.set_pieces(with_volumes(start, dose, target).found());
+  const double threshold = result.print_threshold();
+  if (!(threshold > 0)) return result;  // the part stays dark
+  const score::CuredPieces start(how.circle, threshold, grid.nx, grid.ny);
+  result.set_pieces(with_volumes(start, dose, target, "counting pieces").found());
   return result;
 }
 

@@ -69,6 +69,7 @@ void run(const cli::App& app, Options& options) {
   const model::StackInfo info = written_info(whole, slices, app, options);
   optimize::VolumeTask task = make_task(scene, in, options);
   task.slices = slices;
+  task.count_pieces = !options.bits;  // else those of the frames
   const auto light = make_light(scene, options);
   optimize_tool::require_independent(task, *light);
   optimize_tool::Beginning beginning(app, printer, whole, options);

@@ -8,7 +8,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "model/dose_metrics.hpp"
-#include "model/print_pieces.hpp"
+#include "model/torn.hpp"
 #include "model/unresolved.hpp"
 
 namespace vam::plot {

@@ -20,7 +20,7 @@ struct MissingPart {
 };
 
 /// Below the threshold are voxels wholly inside the part, those of walls that no voxel nearby is half covered by, and
-/// those at which a wall is cut or missing [model::LostWalls, model::PrintPieces]. Both volumes have the same grid.
+/// those at which a wall is cut or missing [model::LostWalls, model::TornSets]. Both volumes have the same grid.
 [[nodiscard]] MissingPart missing_part(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold);
 
 /// 1 in voxels of walls that no voxel nearby is half covered by, with a dose only in those below the threshold.

@@ -12,7 +12,7 @@ namespace vam::score {
 /// Gathers slices in ascending order.
 class CuredPieces {
  public:
-  /// Outside the circle only voxels of the part cure. threshold: in the dose's unit.
+  /// Outside the circle only voxels of the part cure. threshold: more than 0, in the dose's unit.
   CuredPieces(const model::Circle& circle, double threshold, int width, int height);
   /// `count` row-major slices of dose and of target coverage.
   void add(const float* dose, const float* target, int count);

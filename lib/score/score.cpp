@@ -48,8 +48,9 @@ const std::vector<Figure>& figure_list() {
       {"part_pieces", "separate pieces of the part, thin rods included"},
       {"part_pieces_at_half", "separate pieces of the part where it is half covered; narrow gaps part them"},
       {"print_pieces", "separate pieces of the print; pieces below 8 voxels are not counted"},
-      {"broken_voxels", "voxels of the part that do not cure and where its walls are cut or missing"},
-      {"shut_voxels", "voxels of the void that cure and where its gaps are shut"},
+      {"broken_voxels", "voxels at least half part that do not cure and where walls are cut or missing"},
+      {"shut_voxels", "voxels less than a quarter part that cure and where gaps are shut"},
+      {"prints", "1 if the part will print as designed, 0 if it will not or may not"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
@@ -145,6 +146,7 @@ double Score::figure(const std::string& name) const {
   if (name == "part_pieces") return pieces_ ? pieces_->part : none;
   if (name == "part_pieces_at_half") return pieces_ ? pieces_->part_at_half : none;
   if (name == "print_pieces") return pieces_ ? pieces_->print : none;
+  if (name == "prints") return score::prints(verdict()) && is_whole(verdict()) ? 1 : 0;
   if (name == "broken_voxels") return pieces_ ? static_cast<double>(pieces_->broken) : none;
   if (name == "shut_voxels") return pieces_ ? static_cast<double>(pieces_->shut) : none;
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
@@ -170,7 +172,7 @@ double Score::figure(const std::string& name) const {
 
 std::optional<ExposurePlan> Score::plan() const {
   if (!options_.exposure) return std::nullopt;
-  const model::DoseMetrics doses = judged().metrics(false);
+  const model::DoseMetrics doses = whole_.metrics(false);
   if (!(window_middle(doses) > 0)) return std::nullopt;
   return plan_exposure(doses, 1 / options_.exposure->full_intensity_turns.value_or(1), options_.exposure->printer, 1,
                        options_.aimed_at);
@@ -181,7 +183,7 @@ double Score::print_threshold() const {
   if (const auto plan = this->plan()) {
     return *options_.exposure->printer.resin.critical_dose_mj_cm3 / (plan->turns * plan->multiplier);
   }
-  return aimed_dose(judged().metrics(false), options_.aimed_at);
+  return aimed_dose(whole_.metrics(false), options_.aimed_at);
 }
 
 Json Score::figures() const {
@@ -209,7 +211,9 @@ Json Score::figures() const {
 
 Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
-  Verdict verdict{whole_.metrics(), with_cut_.metrics(), {}, {}, unresolved(), pieces_};
+  Verdict verdict{.whole = whole_.metrics(), .with_cut = with_cut_.metrics()};
+  verdict.unresolved = unresolved();
+  verdict.pieces = pieces_;
   if (std::isfinite(duration_s) && !options_.threshold) verdict.seconds = duration_s;  // else that of another print
   verdict.threshold = options_.threshold;
   return verdict;

@@ -19,7 +19,7 @@ bool holds_threshold(const Verdict& verdict) {
 
 bool is_certain(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_certain(); }
 
-bool keeps_pieces(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_as_part(); }
+bool is_as_part(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_as_part(); }
 
 std::string in_pieces(int count) { return std::to_string(count) + (count == 1 ? " piece" : " pieces"); }
 
@@ -33,9 +33,13 @@ std::string pieces_text(const model::PrintPieces& pieces) {
             std::to_string(pieces.part_at_half);
   }
   if (pieces.loses_walls()) {
-    text += "; walls are cut or missing where " + std::to_string(pieces.broken) + " voxels of the part do not cure";
+    text += "; walls are cut or missing: " + std::to_string(pieces.broken) +
+            " voxels that the part fills by half or more do not cure";
   }
-  if (pieces.shuts_gaps()) text += "; gaps are shut where " + std::to_string(pieces.shut) + " voxels of the void cure";
+  if (pieces.shuts_gaps()) {
+    text +=
+        "; gaps are shut: " + std::to_string(pieces.shut) + " voxels that the part fills by less than a quarter cure";
+  }
   return text;
 }
 
@@ -43,7 +47,7 @@ std::string answer(const Verdict& verdict) {
   const model::Unresolved& un = verdict.unresolved;
   if (verdict.whole.part == 0) return "not judged, as no voxel is wholly inside the part";
   if (!prints(verdict)) return "will not print";
-  if (un.loses_walls() || un.shuts_gaps() || !keeps_pieces(verdict)) return "will not print as designed";
+  if (un.loses_walls() || un.shuts_gaps() || !is_as_part(verdict)) return "will not print as designed";
   return un.is_much() || !is_certain(verdict) ? "may print" : "will print";
 }
 
@@ -68,7 +72,7 @@ bool prints(const Verdict& verdict) { return verdict.whole.pw > 0 && holds_thres
 
 bool is_whole(const Verdict& verdict) {
   const model::Unresolved& un = verdict.unresolved;
-  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much() && is_certain(verdict) && keeps_pieces(verdict);
+  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much() && is_certain(verdict) && is_as_part(verdict);
 }
 
 std::string words(const Verdict& verdict) {
@@ -93,10 +97,17 @@ std::string words(const Verdict& verdict) {
 
 void add_to(Json& figures, const Verdict& verdict) {
   figures["verdict"] = words(verdict);
+  figures["prints"] = prints(verdict) && is_whole(verdict) ? 1 : 0;
   figures["with_surface"] = {{"voxels", voxels(verdict.with_cut)},
                              {"ver", verdict.with_cut.ver},
                              {"pw", verdict.with_cut.pw},
                              {"iou", verdict.with_cut.iou}};
+  if (!verdict.pieces) return;
+  figures["part_pieces"] = verdict.pieces->part;
+  figures["part_pieces_at_half"] = verdict.pieces->part_at_half;
+  figures["print_pieces"] = verdict.pieces->print;
+  figures["broken_voxels"] = verdict.pieces->broken;
+  figures["shut_voxels"] = verdict.pieces->shut;
 }
 
 }  // namespace vam::score

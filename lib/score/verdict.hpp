@@ -16,9 +16,9 @@ namespace vam::score {
 
 /// Figures are relative (DoseStatistics::metrics(true)).
 struct Verdict {
-  model::DoseMetrics whole;       // of the voxels wholly in part or void
-  model::DoseMetrics with_cut;    // with those that the surface cuts, as part from half coverage on, else as void
-  std::optional<double> seconds;  // of the print; none: the resin is not known
+  model::DoseMetrics whole;     // of the voxels wholly in part or void
+  model::DoseMetrics with_cut;  // with those that the surface cuts, as part from half coverage on, else as void
+  std::optional<double> seconds = std::nullopt;    // of the print; none: the resin is not known
   std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
   model::Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
   std::optional<model::PrintPieces> pieces = std::nullopt;  // none: not counted

@@ -60,10 +60,13 @@ on_block 1.2 2.8 >foot.off
 for part in stand foot; do vam-slice $part.off --voxel 0.2 --stretch-z 1 -o $part.vdb 2>.log/$part; done
 vam-score --grid target foot.vdb --target stand.vdb --report foot.json >table
 json foot.json verdict >said
-ok "a wall without foot is no print as designed" grep -q '^will not print as designed: process window +1 .*; the print is in 2 pieces, the part in 1; walls are cut or missing where 40 voxels of the part do not cure; ' said
-is "with its pieces" "$(for key in part_pieces print_pieces broken_voxels; do json foot.json $key; done | tr '\n' ' ')" "1.0 2.0 40.0 "
+ok "a wall without foot is no print as designed" grep -q '^will not print as designed: process window +1 .*; the print is in 2 pieces, the part in 1; walls are cut or missing: 40 voxels that the part fills by half or more do not cure; ' said
+is "with its pieces" "$(for key in part_pieces print_pieces broken_voxels; do json foot.json $key; done | tr '\n' ' ')" "1 2 40 "
 vam-score --grid target foot.vdb --target stand.vdb --require 'pw>0,broken_voxels<=0' >table 2>why
 is "can be required to be whole" "$? $(cat why)" "1 vam-score: broken_voxels = 40, but broken_voxels<=0 is required"
+vam-score --grid target foot.vdb --target stand.vdb --require 'prints>=1' >table 2>why
+is "by its verdict, too" "$? $(cat why)" "1 vam-score: prints = 0, but prints>=1 is required"
+quiet "a part that will print as designed" vam-score --grid target stand.vdb --target stand.vdb --require 'prints>=1'
 # A fin that straddles two voxels, none of which is half covered, and a slot that leaves three quarters of one free.
 {
   printf 'OFF\n16 24 0\n'

@@ -65,7 +65,8 @@ std::vector<std::string> verdict() {
       "is yes or no, or unsure with the reason: the process window is narrower than 0.03, or more than 2 % of the part "
       "is too thin to be seen. It includes a lower bound like that of --certify, computed on voxels of twice that "
       "size.",
-      "The verdict counts the pieces of the print, its broken walls and shut gaps as vam-score does, except with "
+      "The verdict of a full run counts the pieces of the print, its broken walls and shut gaps as vam-score does, "
+      "except with "
       "--slices, where vam-score judges the joined volume."};
 }
 

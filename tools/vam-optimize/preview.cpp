@@ -154,7 +154,7 @@ Answer unsure(const std::vector<std::string>& reasons) {
 /// `target`: of its own voxels.
 Answer answer_of(const Level& level, const model::Unresolved& target, const model::DoseMetrics& doses, double least) {
   if (least >= 1) return {"no", "will not print, by any projections", {}};
-  if (doses.pw < 0) return {"no", "will not print", {}};
+  if (!(doses.pw > 0)) return {"no", "will not print", {}};
   std::vector<std::string> doubts = lost(target);
   if (level.pixels > 1 && level.unresolved.is_much()) doubts.push_back(unseen(level));
   if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");

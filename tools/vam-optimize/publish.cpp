@@ -93,9 +93,12 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
       report.erase(key);
   } else {
-    const score::Verdict verdict{
-        outcome.metrics,          outcome.with_cut,         plan ? std::optional(plan->seconds) : std::nullopt,
-        fixed_threshold(options), tool::unresolved(target), outcome.pieces};
+    score::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
+    if (outcome.all_cut) verdict.whole.part = 0;
+    if (plan) verdict.seconds = plan->seconds;
+    verdict.threshold = fixed_threshold(options);
+    verdict.unresolved = tool::unresolved(target);
+    verdict.pieces = outcome.pieces;
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(

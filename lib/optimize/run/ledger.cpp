@@ -66,7 +66,8 @@ void Ledger::complete(VolumeOutcome& outcome, bool grey, std::span<const int> jo
   with_cut.merge(total_);
   with_cut.merge(cut_);
   outcome.metrics = grey ? figures_.mean() : total_.metrics();
-  if (!grey && outcome.metrics.part == 0) outcome.metrics = with_cut.metrics();  // all of it is thin
+  outcome.all_cut = !grey && outcome.metrics.part == 0;
+  if (outcome.all_cut) outcome.metrics = with_cut.metrics();
   if (!grey) outcome.with_cut = with_cut.metrics();
   if (!grey) outcome.outside = outside_;
   for (const int job : job_of_slice) {

@@ -13,6 +13,7 @@ LightPieces::LightPieces(const VolumeTask& task, const light::Operator& light, c
       light_(light),
       reader_(reader),
       division_(division_of(task, light)),
+      target_(product(light.object().width, light.object().height)),
       pieces_(light.object().width, light.object().height, task.demands.window.threshold()) {}
 
 void LightPieces::add(int job, const Image& image) {
@@ -34,8 +35,8 @@ void LightPieces::count(const Pass& pass) {
       task_, light_, reader_, pass, [&](int number) { return of(number).slice; },
       [&](int number) { return of(number).image; });
   for_each_dose(shown, pass, [&](int number, const float* dose) {
-    const std::vector<float> target = reader_.read(of(number).slice).target;
-    for (int n = 0; n < of(number).count; ++n) pieces_.add(1, target.data(), dose);
+    task_.source.target(of(number).slice, 1, target_.data());
+    for (int n = 0; n < of(number).count; ++n) pieces_.add(1, target_.data(), dose);
   });
   next_ = pass.last;
   const int low = division_.from(next_, std::numeric_limits<int>::max()).low;

@@ -57,16 +57,13 @@ std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels,
   return slices;
 }
 
-model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem, const SliceReader& reader) {
+model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem, const VolumeSource& source) {
   model::PrintPieceCounter counter(dose[0].width, dose[0].height, problem.demands.window.threshold());
   for (std::size_t s = 0; s < dose.size(); ++s) {
     const int first = static_cast<int>(s) * lanes;
     const int count = std::min(lanes, problem.slices - first);
-    std::vector<float> target;
-    for (int k = first; k < first + count; ++k) {
-      const std::vector<float> slice = reader.read(k).target;
-      target.insert(target.end(), slice.begin(), slice.end());
-    }
+    std::vector<float> target(product(count, product(dose[s].width, dose[s].height)));
+    source.target(first, count, target.data());
     counter.add(count, target.data(), judged_doses(dose[s], problem.labels[s], count).data());
   }
   return counter.found();

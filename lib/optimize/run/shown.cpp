@@ -38,18 +38,22 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
   const std::vector<int> once(slices, 1);
   Ledger ledger;
   VolumeOutcome outcome;
+  const light::Shape object = light.object();
+  std::vector<float> target(product(object.width, object.height));
   std::optional<model::PrintPieceCounter> pieces;
-  if (!task.demands.grey) pieces.emplace(light.object().width, light.object().height, threshold);
+  if (!task.demands.grey && threshold > 0) pieces.emplace(object.width, object.height, threshold);
   for (int first = 0; first < slices;) {
     const Pass pass = division.from(first, slices);
     ShownPass shown = shown_pass(
         task, light, reader, pass, [](int k) { return k; }, [&](int k) { return frames[k]; });
-    for (const auto voxels : shown.dark) ledger.add_dark(voxels);
     shown.problem.demands.window = {threshold, threshold};
     tally(shown.dose, shown.problem, pass, {task.part, each_its_own, {0, slices}, once}, ledger);
     if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
     if (pieces) {
-      for_each_dose(shown, pass, [&](int k, const float* dose) { pieces->add(1, reader.read(k).target.data(), dose); });
+      for_each_dose(shown, pass, [&](int k, const float* dose) {
+        task.source.target(k, 1, target.data());
+        pieces->add(1, target.data(), dose);
+      });
     }
     first = pass.last;
   }
@@ -68,6 +72,7 @@ void judge_shown(const VolumeTask& task, const light::Operator& light, std::span
   const double dose = task.demands.grey ? threshold : aimed(judged.metrics);
   if (dose != threshold) judged = printed(task, light, shown, dose);
   outcome.metrics = judged.metrics;
+  outcome.all_cut = judged.all_cut;
   outcome.with_cut = judged.with_cut;
   outcome.outside = judged.outside;
   outcome.wrong = std::move(judged.wrong);

@@ -22,7 +22,7 @@ ShownPass shown_pass(const VolumeTask& task, const light::Operator& light, const
   if (!input.inserts.empty()) {
     exclude(input.problem, input.inserts);
     around = task.around(input.inserts);
-    shown.dark = exclude_dark(input.problem, *around);
+    (void)exclude_dark(input.problem, *around);
   }
   const PassLight passed(light, std::move(around), task.blur_px, pass.slices());
   const std::vector<Slab> sinograms = collapse_images(pass, image, passed.sharp());

@@ -63,7 +63,7 @@ class VolumeRun {
       mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
     }
     schedule_ = scheduled(task, digests, light.image(), division_.halo == 0 && !division_.whole);
-    if (!division_.whole && !task.demands.grey && !task.slices) pieces_.emplace(task_, light_, reader_);
+    if (counts_pieces() && !division_.whole) pieces_.emplace(task_, light_, reader_);
     times_.assign(schedule_.slice_of_job.size(), 0);
     for (int k = asked_.from; k < asked_.to; ++k) ++times_[schedule_.job_of_slice[k]];
     needed_.assign(times_.size(), false);
@@ -103,6 +103,7 @@ class VolumeRun {
   }
 
  private:
+  [[nodiscard]] bool counts_pieces() const { return task_.count_pieces && !task_.demands.grey && !task_.slices; }
   [[nodiscard]] int jobs() const { return count_of(schedule_.slice_of_job); }
   [[nodiscard]] int slice(int job) const { return schedule_.slice_of_job[job]; }
 
@@ -247,7 +248,7 @@ class VolumeRun {
     if (whole) outcome_.surface = work.method->surface_miss(state.dose);
     tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, asked_, times_}, ledger_);
     if (light_.couples_slices() && !task_.demands.grey) outcome_.wrong = wrong_voxels(state.dose, problem);  // one pass
-    if (whole && !task_.demands.grey) outcome_.pieces = print_pieces(state.dose, problem, reader_);
+    if (whole && counts_pieces()) outcome_.pieces = print_pieces(state.dose, problem, task_.source);
     hand_out(state, pass, light);
   }
 

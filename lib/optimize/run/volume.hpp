@@ -45,6 +45,7 @@ struct VolumeTask {
   Raising raising;     // of the limit, while the goal is not met
   double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
   bool watch = false;  // fill the trace
+  bool count_pieces = false;                         // of part and print
   std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
   std::function<std::unique_ptr<light::Operator>(std::span<const Slab>)>
       around;  // the operator of a pass with these inserts
@@ -71,10 +72,11 @@ struct VolumeOutcome {
   StopReason stop = StopReason::iterations;  // of the pass with most iterations; interrupted: there is no result
   std::vector<model::DoseMetrics> trace;     // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;                // of the result, at the common threshold
+  bool all_cut = false;                      // no voxel is wholly inside the part, and these are as with_cut
   model::DoseMetrics with_cut;               // with the voxels that the surface cuts: part from half coverage on
   std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
-  std::optional<model::PrintPieces> pieces;  // none of a grey target, nor of a part of the slices
+  std::optional<model::PrintPieces> pieces;  // when asked for; none of a grey target, nor of a part of the slices
   std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
   std::optional<SurfaceMiss> surface;        // where slices share light
   double eigenvalue = 0;                     // Method::eigenvalue() of the last pass

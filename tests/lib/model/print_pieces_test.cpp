@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -21,14 +23,14 @@ struct Solid {
 };
 
 int counted(const Solid& solid, std::int64_t least) {
-  model::PieceCounter counter;
+  model::PieceCounter counter(least);
   for (int z = 0; z < solid.nz; ++z) {
     counter.add(
         model::runs_of(solid.nx, solid.ny,
                        [&](std::size_t i) { return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0; }),
         [](const model::VoxelPair&) { return true; });
   }
-  return counter.count(least);
+  return counter.count();
 }
 
 int flooded(Solid solid, std::int64_t least) {
@@ -122,7 +124,7 @@ TEST_CASE("a wall without its foot is a piece of its own; one that hangs on by i
   CHECK(pieces(2).part == 1);
   CHECK(pieces(2).part_at_half == 1);
   CHECK(pieces(2).print == 1);
-  CHECK(pieces(2).broken == height - 3);  // the one beside those that cure is joined by them
+  CHECK(pieces(2).broken == height - 2);
   CHECK(!pieces(2).is_as_part());
   CHECK(pieces(0).print == 2);
   CHECK(pieces(0).broken == height);
@@ -162,7 +164,7 @@ TEST_CASE(
   };
   CHECK(found(0, 0).broken == 0);
   CHECK(found(4, 6).broken == 0);
-  CHECK(found(3, 8).broken == 9);  // all but the rim of 5 x 5
+  CHECK(found(3, 8).broken == 25);  // 9 of them are torn
   CHECK(!found(3, 8).is_as_part());
   CHECK(found(0, size).broken == size * size);
   const auto blocks = [&](bool rod_cures) {  // with a rod between them that has 0.4 of its voxels
@@ -198,18 +200,96 @@ TEST_CASE("a channel is shut where it cures, and where what is left of it falls 
   };
   CHECK(found(0, 0).shut == 0);
   CHECK(found(3, 4).shut == 1);
-  CHECK(found(3, 4).is_as_part());
-  CHECK(found(1, 11).shut == 10 - 2);  // the ones beside what is left of it close its ends only
-  CHECK(found(1, 11).shuts_gaps());
-  CHECK(!found(1, 11).is_as_part());
+  CHECK(!found(3, 4).is_as_part());
+  CHECK(found(3, 6).shut == 3);
+  CHECK(found(1, 11).shut == 10);
+  CHECK(found(7, size).shut == 5);  // blind: three of it are torn
+  CHECK(found(9, size).shut == 0);  // a rounded end
+}
+
+TEST_CASE("a cavity of one voxel that cures is shut, at the edge of the volume it is open") {
+  constexpr int size = 6;
+  for (const int at : {2, 5}) {
+    Print print(size, size);
+    for (int k = 0; k < size; ++k) {
+      const auto free = [&](int i) { return k == 3 && i == 3 * size + at; };
+      print.add([&](int i) { return free(i) ? 0.1F : 1.0F; }, [](int) { return true; });
+    }
+    CHECK(print.found(4).shut == (at == 2 ? 1 : 0));
+  }
+}
+
+TEST_CASE("a strut is cut at any length, also in a frame that holds together without it; a bite is not") {
+  constexpr int size = 12;
+  const auto broken = [&](int from, int to, bool all) {  // of a strut of 2 x 2 voxels, the upper two or all
+    Print print(size, size);
+    for (int k = 0; k < 8; ++k) {
+      const auto frame = [&](int i) { return i % size == 0 || i % size == size - 1 || i / size == 0; };
+      const auto strut = [&](int i) { return (i / size == 6 || i / size == 7) && (k == 3 || k == 4); };
+      print.add([&](int i) { return frame(i) || strut(i) ? 1.0F : 0.0F; },
+                [&](int i) {
+                  const bool lost = strut(i) && i % size >= from && i % size < to && (all || k == 4);
+                  return (frame(i) || strut(i)) && !lost;
+                });
+    }
+    CHECK(print.found(3).print == 1);
+    return print.found(3).broken;
+  };
+  for (const int length : {1, 2, 3, 6}) {
+    CAPTURE(length);
+    CHECK(broken(3, 3 + length, true) == 4 * length);
+    CHECK(broken(3, 3 + length, false) == 0);
+  }
+}
+
+TEST_CASE("holes of three voxels' width in a thin wall are rough where they are apart") {
+  constexpr int size = 14;
+  const auto broken = [&](int apart) {  // their middles
+    Print print(size, size);
+    for (int k = 0; k < 7; ++k) {
+      const auto wall = [&](int i) { return i / size == 6; };
+      const auto hole = [&](int i) {
+        for (int n = 0; n < 3; ++n) {
+          if (std::abs(i % size - 2 - n * apart) <= 1 && std::abs(k - 3) <= 1) return true;
+        }
+        return false;
+      };
+      print.add([&](int i) { return wall(i) ? 1.0F : 0.0F; }, [&](int i) { return wall(i) && !hole(i); });
+    }
+    return print.found(7).broken;
+  };
+  CHECK(broken(4) == 0);
+  CHECK(broken(1) == 15);
+}
+
+TEST_CASE("coverage counts from its limits on") {
+  using namespace model::printed;
+  CHECK(model::printed_bits(0.03F, false) == 0);
+  CHECK(model::printed_bits(1 / 32.0F, true) == (trace | cured));
+  CHECK(model::printed_bits(0.249F, false) == trace);
+  CHECK(model::printed_bits(0.25F, false) == (trace | edge));
+  CHECK(model::printed_bits(0.499F, false) == (trace | edge));
+  CHECK(model::printed_bits(0.5F, false) == (trace | edge | part));
+}
+
+TEST_CASE("a volume of one slice, and of one column") {
+  for (const auto& [width, height, slices] : {std::array{9, 1, 1}, std::array{1, 9, 1}, std::array{1, 1, 9}}) {
+    model::PrintPieceCounter counter(width, height, 1);
+    const std::vector<float> line(9, 1.0F);
+    counter.add(slices, line.data(), line.data());
+    CHECK(counter.found().part == 1);
+    CHECK(counter.found().print == 1);
+    CHECK(counter.found().is_as_part());
+  }
+  CHECK(model::PrintPieceCounter(4, 4, 1).found().part == 0);
 }
 
 TEST_CASE("a field is joined across an edge or a corner where it is between them, by closed forms") {
   const auto pieces = [](std::vector<float> below, std::vector<float> slice) {
-    model::FieldPieces counter(2, 2, 1);
+    model::FieldPieces counter(2, 2, 1, 1);
     counter.add(std::move(below));
     counter.add(std::move(slice));
-    return counter.count(1);
+    return counter.count();
   };
   // The saddle of 2, b, b, 2 is their mean: 1 at b = 0.
   CHECK(pieces({0, 0, 0, 0}, {2, 0.01F, 0.01F, 2}) == 1);

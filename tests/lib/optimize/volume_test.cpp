@@ -87,6 +87,7 @@ TEST_CASE("pieces and torn voxels are those of the volume, whatever the passes, 
     CAPTURE(blur_px);
     VolumeTask task;
     task.blur_px = blur_px;
+    task.count_pieces = true;
     task.limits.iterations = 12;
     task.make = [](double most) { return make_method("apg", {.max_intensity = most}); };
     const auto result = run(slices, task);

@@ -97,7 +97,7 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   CHECK(!is_whole(cut));
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .shut = 8};
   CHECK(words(cut).starts_with("will not print as designed: "));
-  CHECK(words(cut).ends_with("; gaps are shut where 8 voxels of the void cure"));
+  CHECK(words(cut).ends_with("; gaps are shut: 8 voxels that the part fills by less than a quarter cure"));
   cut.whole.pw = -0.1;  // pieces of what does not print at all say nothing
   CHECK(words(cut).find("pieces") == std::string::npos);
   thin.whole.pw = -0.1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pieces of a print whose slices are optimised apart: their doses are computed once more, in ascending order, as
-// their projections are handed out.
+// their projections are handed out. Memory: the projections of a pass, and its doses.
 #pragma once
 
 #include <deque>
@@ -16,7 +16,7 @@ class LightPieces {
  public:
   /// All are referred to. Not for a grey target, nor for a part of the slices.
   LightPieces(const VolumeTask& task, const light::Operator& light, const SliceReader& reader);
-  /// Of the next slice, which that job stands for.
+  /// The projections of the next slice, which that job computed.
   void add(int job, const Image& image);
   /// After the last slice.
   [[nodiscard]] model::PrintPieces found();
@@ -36,8 +36,9 @@ class LightPieces {
   Division division_;
   std::deque<Alike> held_;  // from number first_ on
   int first_ = 0;
-  int next_ = 0;    // the number of the first that is not counted
-  int slices_ = 0;  // so far
+  int next_ = 0;               // the number of the first that is not counted
+  int slices_ = 0;             // so far
+  std::vector<float> target_;  // slice
   model::PrintPieceCounter pieces_;
 };
 

@@ -28,6 +28,6 @@ struct OutsideSlices {
 
 /// Of a whole part: its pieces and those of its print at the threshold. Not of a grey target.
 [[nodiscard]] model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem,
-                                              const SliceReader& reader);
+                                              const VolumeSource& source);
 
 }  // namespace vam::optimize

@@ -2,7 +2,6 @@
 // The dose of a pass in the light of finished images.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -12,9 +11,8 @@
 namespace vam::optimize {
 
 struct ShownPass {
-  Problem problem;                 // without what inserts fill and hide
-  std::vector<std::int64_t> dark;  // part voxels of each slice behind an insert from everywhere; empty: no inserts
-  std::vector<Slab> dose;          // with what has been delivered
+  Problem problem;         // without what inserts fill and hide
+  std::vector<Slab> dose;  // with what has been delivered
 };
 
 /// slice(job): the slice of the volume that the job computes; image(job): its projections, fluence.

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a print has lost what it needs to be whole: walls and rods that are cut, gaps and channels that are shut.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "model/dose_metrics.hpp"
+#include "model/pieces.hpp"
+
+namespace vam::model {
+
+/// Of a voxel, as bits.
+namespace printed {
+inline constexpr std::uint8_t part = 1;   // at least half covered
+inline constexpr std::uint8_t cured = 2;  // receives the threshold
+inline constexpr std::uint8_t edge = 4;   // at least a quarter covered
+inline constexpr std::uint8_t trace = 8;  // at least 1/32 covered, as by a thin rod
+}  // namespace printed
+[[nodiscard]] constexpr std::uint8_t printed_bits(float coverage, bool cured) {
+  return static_cast<std::uint8_t>((coverage >= static_cast<float>(half_surface) ? printed::part : 0) |
+                                   (coverage >= 0.25F ? printed::edge : 0) |
+                                   (coverage >= 1 / 32.0F ? printed::trace : 0) | (cured ? printed::cured : 0));
+}
+
+/// Of the part what does not cure is lost, and what cures is left; of gaps, void that is less than a quarter covered
+/// and cures, and void that stays liquid.
+enum class Torn { part, gap };
+
+/// A slice of it, from three slices of printed:: bits.
+struct TornSlice {
+  std::vector<VoxelRun> lost;
+  std::vector<std::int64_t> torn;  // of each run: its torn voxels
+  std::vector<VoxelRun> rim;       // left, with a lost one among their 26 neighbours
+};
+
+/// slices: the middle one of three, nullptr beyond the volume, where nothing is lost and void is left.
+[[nodiscard]] TornSlice torn_slice(Torn what, int width, int height, const std::uint8_t* const* slices);
+/// The torn voxels of a slice, by their numbers: lost, and what is left among their 26 neighbours is nothing, as in a
+/// hole of a wall, or falls apart without them, as at the foot of a wall that hangs on by its ends.
+[[nodiscard]] std::vector<std::size_t> torn_voxels(Torn what, int width, int height, const std::uint8_t* const* slices);
+
+/// Sets of lost voxels that touch, slice by slice, from the lowest up. A set is torn if the left voxels that touch it
+/// are in more than one piece, as at a rod that is cut, or in none, as of a cavity, or if three or more of its voxels
+/// are torn: less is a rough edge. Memory: 50 bytes for each run of lost voxels.
+class TornSets {
+ public:
+  void add(const TornSlice& slice);
+  /// Of all torn sets.
+  [[nodiscard]] std::int64_t voxels() const;
+
+ private:
+  void note_touching(const std::vector<VoxelRun>& lost, std::size_t first_lost, const std::vector<VoxelRun>& rim,
+                     std::size_t first_rim);
+
+  RunSets lost_, rim_;
+  std::vector<std::int64_t> torn_;                             // of each lost run
+  std::vector<std::pair<std::size_t, std::size_t>> touching_;  // a lost run and one of the rim
+};
+
+}  // namespace vam::model
