@@ -9,12 +9,13 @@
 
 namespace vam {
 
-enum class Keys { any, distinct };
-
 /// The value of a text; discarded (is_discarded()) where the text is no JSON, or nested deeper than 64 levels: what
-/// walks a value calls itself once a level, and a file of 100 kB could end it. Keys::distinct: discarded, too, where an
-/// object has a key twice, of which one would be believed.
-[[nodiscard]] Json parse_json(std::string_view text, Keys keys = Keys::any);
+/// walks a value calls itself once a level, and a file of 100 kB could end it.
+[[nodiscard]] Json parse_json(std::string_view text);
+
+/// The same of what is evidence: throws Fault::data where an object has a key twice, of which only one would be
+/// believed. `name` begins the message.
+[[nodiscard]] Json parse_distinct(std::string_view text, const std::string& name);
 
 /// What stands at a key, or `otherwise` where there is none or something of another type.
 [[nodiscard]] double number_at(const Json& object, const char* key, double otherwise = 0);

@@ -138,6 +138,9 @@ sed 's/"voxel_mm": 0.3/"voxel_mm": 0.8/' r.json >s.json
 fails 65 's.json: changed after it was written' vam-check s.json
 python3 -c 'import json; json.dump(json.load(open("r.json")), open("t.json", "w"))'
 ok 'the layout of a report is not sealed' vam-check t.json
+sed 's/"voxel_mm": 0.3/"voxel_mm": 0.8, &/' r.json >twice.json
+fails 65 "twice.json: has the key 'voxel_mm' twice in one object, of which only one would count; write it again" vam-check twice.json
+fails 65 "twice.json: has the key 'voxel_mm' twice" vam-report part.vdb twice.json -o no.html
 # Damage by which a file is no longer of its kind.
 for cut in 3 200; do
   head -c $cut r.json >cut.json

@@ -47,7 +47,7 @@ std::vector<Showing> read_flips(const std::string& path) {
   for (const auto& line : split(io::read_all(path), '\n')) {
     ++number;
     if (line.empty()) continue;
-    const Json event = parse_json(line);
+    const Json event = parse_distinct(line, path + ":" + std::to_string(number));
     try {
       if (event.at("event") != "flip") continue;
       const Showing showing{event.at("t_monotonic_s"), event.at("frame")};

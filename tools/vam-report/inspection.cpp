@@ -84,7 +84,7 @@ InspectionViews views_of(const Json& report, const std::string& name) {
 
 std::optional<InspectionViews> inspection_views(const std::vector<std::string>& reports) {
   for (const std::string& path : reports) {
-    const Json report = parse_json(io::read_all(path));
+    const Json report = parse_distinct(io::read_all(path), path);
     if (!report.is_object() || report.value("schema", Json()) != "vam-sdf/1") continue;
     if (!report.contains("expanded_uncertainty")) continue;  // of a former release
     (void)io::require_seal(report, path);

@@ -63,7 +63,7 @@ std::string figures_table(const Json& figures) {
 }
 
 std::string report_table(const std::string& path) {
-  const Json report = parse_json(io::read_all(path));
+  const Json report = parse_distinct(io::read_all(path), path);
   if (!report.is_object()) throw Error{Fault::data, path + ": is not a JSON object"};
   (void)io::require_seal(report, path);
   const std::string schema = report.contains("schema") ? ", " + text_of(report["schema"]) : "";

@@ -62,7 +62,7 @@ AllSeries read_series(const std::vector<std::string>& runs) {
   AllSeries all;
   for (const std::string& run : runs) {
     const std::string path = report_in(run);
-    const Json report = parse_json(io::read_all(path));
+    const Json report = parse_distinct(io::read_all(path), path);
     if (!is_inspection(report)) {
       throw Error{Fault::data, path + ": is not a report of vam-sdf with uncertainties; measure the print anew"};
     }

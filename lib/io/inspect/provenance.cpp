@@ -110,7 +110,7 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
     const std::string folder = std::filesystem::path(path).parent_path().string();
     return inspect_capture(folder.empty() ? "." : folder, fast);
   }
-  if (const Json json = parse_json(text, Keys::distinct); json.is_object()) {
+  if (const Json json = parse_distinct(text, name); json.is_object()) {
     ProvenanceEntry finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};

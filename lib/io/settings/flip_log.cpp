@@ -24,9 +24,10 @@ constexpr double last_run_up_deg = -360;  // from this angle on missed blanks ar
 // SHA-256 of the sinogram of a run folder; empty where it is not known.
 std::string armed_sinogram(const std::string& run) {
   if (!std::filesystem::is_directory(run)) return "";
-  LogLines events((std::filesystem::path(run) / "events.jsonl").string());
+  const std::string path = (std::filesystem::path(run) / "events.jsonl").string();
+  LogLines events(path);
   for (std::string text; events.next(text);) {
-    const Json event = parse_json(text);
+    const Json event = parse_distinct(text, path);
     if (!event.is_object() || !event.contains("sinogram_sha256")) continue;
     if (event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
   }
@@ -66,7 +67,7 @@ void FlipLog::read() {
     ++line_;
     text.push_back('\n');
     hash_.add(text.data(), text.size());
-    const Json event = parse_json(text);
+    const Json event = parse_distinct(text, file_ + ":" + std::to_string(line_));
     try {
       if (event.at("event") == "display") begin_run();
       if (event.at("event") == "sinogram" || event.at("event") == "frames") {
@@ -157,7 +158,7 @@ std::optional<StatedFlips> stated_flips(const std::string& run) {
   const std::string file = (log.parent_path() / "summary.json").string();
   if (log.filename() != "flips.jsonl" || !has_regular_file(file)) return std::nullopt;
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
-  const Json summary = parse_json(read_all(file, Content::text, most_bytes));
+  const Json summary = parse_distinct(read_all(file, Content::text, most_bytes), file);
   if (!summary.is_object() || summary.value("schema", Json()) != "vam-print/1") return std::nullopt;  // being written
   StatedFlips stated;
   const Json reached = summary.value("reached", Json());
@@ -212,6 +213,8 @@ Showing read_showing(const std::string& run, const std::string& sinogram, std::o
   }
   return showing;
 }
+
+bool states_sinogram(const std::string& run) { return !hashes_of(run).empty(); }
 
 void require_sinogram_of(const std::string& run, const std::string& sinogram) {
   const std::set<std::string> hashes = hashes_of(run);

@@ -103,6 +103,9 @@ struct Showing {
 [[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram,
                                    std::optional<double> before_s = {});
 
+/// Does a run state the hash of its sinogram? Those of former versions do not.
+[[nodiscard]] bool states_sinogram(const std::string& run);
+
 /// Throws Fault::data when a sinogram is none of a run's, by the hashes in its events.jsonl and in the log of its
 /// flips; and for one that comes through a pipe ("-") where the run showed several. What states no hash is taken on
 /// trust.

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
 
 using namespace vam;
@@ -23,13 +24,25 @@ TEST_CASE("a text that is no JSON, or nested beyond 64 levels, is discarded") {
   }
 }
 
-TEST_CASE("a key that an object has twice is refused on request") {
+TEST_CASE("a key that an object has twice is refused by name in what is evidence") {
   const char* twice = R"({"a": [{"b": 1, "c": {"b": 2}}, {"b": 3, "d": 4, "b": 5}]})";
   CHECK_FALSE(parse_json(twice).is_discarded());
-  CHECK(parse_json(twice, Keys::distinct).is_discarded());
-  CHECK_FALSE(
-      parse_json(R"({"a": [{"b": 1, "c": {"b": 2}}, {"b": 3, "d": 4}], "b": 6})", Keys::distinct).is_discarded());
-  CHECK(parse_json(R"({"b": {"b": 1, "c": {}}, "b": 2})", Keys::distinct).is_discarded());
+  const auto refusal = [](const std::string& text) {
+    try {
+      (void)parse_distinct(text, "r.json");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string said =
+      R"(r.json: has the key 'b' twice in one object, of which only one would count; write it again)";
+  CHECK(refusal(twice) == said);
+  CHECK(refusal(R"({"b": {"b": 1, "c": {}}, "b": 2})") == said);
+  CHECK(refusal("{\"\x80\": 1, \"\x80\": 2}").empty());  // no JSON
+  CHECK(refusal(R"({"a": [{"b": 1, "c": {"b": 2}}, {"b": 3, "d": 4}], "b": 6})").empty());
+  CHECK(parse_distinct("no JSON", "r.json").is_discarded());
+  CHECK(parse_distinct(R"({"a": 1})", "r.json")["a"] == 1);
 }
 
 TEST_CASE("a number or a text at a key, whatever else may stand there") {

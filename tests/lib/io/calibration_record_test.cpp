@@ -165,7 +165,7 @@ TEST_CASE("a record by hand is held to units, status and single keys") {
   CHECK(has(refused("\"value\":12.0", "\"value\":1e-9"), "vial.radius_mm: 1e-09 is no radius of a vial"));
   CHECK(has(refused("\"pass\"", "\"PASS\""), "has the status 'PASS', not pass, warn or fail"));
   CHECK(has(refused("\"status\"", "\"state\""), "has the status ''"));
-  CHECK(has(refused("\"value\":511.3", "\"value\":511.3,\"value\":591.3"), "is not a vam-calibration/1 record"));
+  CHECK(has(refused("\"value\":511.3", "\"value\":511.3,\"value\":591.3"), "has the key 'value' twice"));
 }
 
 TEST_CASE("a record, or a folder of them, that is gone is an error and no default") {
