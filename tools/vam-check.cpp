@@ -36,8 +36,10 @@ cli::Manual manual() {
        "print (vam-formats(7), SEALS). If a file differs, the exit status is 65, "
        "after all others have been checked.",
        "Of the run folder of a print every file is verified against its SHA256SUMS; files that were changed, that "
-       "are lost or that are not in the list are named (all but resumed.json, which a resumption adds); flips.jsonl is "
-       "verified against summary.json, too, also where it is given alone. Of a folder of "
+       "are lost or that are not in the list are named, as are links (all but resumed.json, which a resumption adds, "
+       "and "
+       "sinogram.exr, a link that is verified against the hash in events.jsonl); flips.jsonl is verified against "
+       "summary.json, too, also where it is given alone. Of a folder of "
        "vam-capture every line of the manifest is verified against the one above, and every image "
        "against its line; images that are lost, exchanged or without a line are named; its manifest.jsonl stands for "
        "the folder.",

@@ -50,8 +50,9 @@ cli::Manual manual() {
        "calibration records. The page is one file, images included, and is opened directly (file:///...), without a "
        "server; it shows when it is no longer updated.",
        "The logs of a print that has ended are verified against its SHA256SUMS, and refused (65) if they were changed, "
-       "cut or lost since; vam-check verifies all files of the folder. Without that list the end is that in "
-       "summary.json, with a warning if events.jsonl does not tell of it.",
+       "cut or lost since; vam-check verifies all files of the folder. Without that list a warning says so of a print "
+       "that has ended or was killed, and the end is that in summary.json, with a warning if events.jsonl does not "
+       "tell of it.",
        "On a terminal vam-print prints this line itself; with --run-page it writes page.html into the run folder."},
       {{"The progress of a print, here a dry run:",
         "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\n"

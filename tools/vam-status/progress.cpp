@@ -39,7 +39,7 @@ constexpr std::streamoff tail_bytes = 65536;  // holds many entries
 void each_line(const std::string& file, bool only_tail, const std::function<void(const Json&)>& take) {
   io::LogLines lines(file, only_tail ? tail_bytes : 0);
   for (std::string text; lines.next(text);) {
-    const Json line = parse_json(text);
+    const Json line = parse_distinct(text, file);
     if (line.is_object()) take(line);
   }
 }
@@ -149,7 +149,8 @@ void RunFolder::read_events() {
 void RunFolder::read_summary() {
   if (!io::has_regular_file(file("summary.json"))) return;
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
-  const Json summary = parse_json(io::read_all(file("summary.json"), io::Content::text, most_bytes));
+  const Json summary =
+      parse_distinct(io::read_all(file("summary.json"), io::Content::text, most_bytes), file("summary.json"));
   if (!summary.is_object() || text_at(summary, "outcome").empty()) return;  // one that is being written
   progress_.outcome = text_at(summary, "outcome");
   progress_.status = static_cast<int>(number_at(summary, "status", 0));
@@ -189,13 +190,19 @@ void RunFolder::look_for_end() {
   const bool is_over = left_s(progress_, printer_.stage.speed_deg_s) < 0.5;
   const bool is_alive = held_.value_or(progress_.blanks == 0);
   progress_.abandoned = !progress_.outcome && !is_alive && (is_over || progress_.silent_s > silence_s);
+  if (is_alive || warned_ || !(progress_.outcome || progress_.abandoned) || io::has_run_sums(path_)) return;
+  warned_ = true;
+  warn(path_ +
+       ": has no SHA256SUMS, which a print writes when it has ended: it was killed, or the list is gone; its "
+       "logs are not verified");
 }
 
 void RunFolder::read_records() {
   progress_.records.clear();
   if (!io::has_regular_file(file("calibration.json"))) return;
   constexpr std::uint64_t most_bytes = 1U << 20U;
-  const Json records = parse_json(io::read_all(file("calibration.json"), io::Content::text, most_bytes));
+  const Json records =
+      parse_distinct(io::read_all(file("calibration.json"), io::Content::text, most_bytes), file("calibration.json"));
   if (!records.is_object()) return;
   for (const auto& [scan, record] : records.items()) {
     if (!record.is_object()) continue;

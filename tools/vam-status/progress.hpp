@@ -66,6 +66,7 @@ class RunFolder {
   model::Printer printer_;
   bool settled_ = false;
   std::optional<io::FlipLog> flips_;
+  bool warned_ = false;       // that there is no list of hashes
   std::optional<bool> held_;  // the events, by vam-print; none where there are none
   PrintProgress progress_;
 };

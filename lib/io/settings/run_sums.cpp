@@ -5,8 +5,12 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/json_text.hpp"
+#include "base/log.hpp"
 #include "base/system_error.hpp"
 #include "base/text.hpp"
+#include "io/settings/flip_log.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
@@ -17,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* list_name = "SHA256SUMS";
+constexpr const char* resumed_name = "resumed.json";
+constexpr const char* sinogram_name = "sinogram.exr";
 constexpr std::size_t digits = 64;
 
 std::string path_in(const std::string& folder, const std::string& name) { return (fs::path(folder) / name).string(); }
@@ -32,26 +38,86 @@ std::string name_of(const std::string& line) {
   return leaves ? "" : name;
 }
 
-// The regular files of a folder and those in it, links left out.
-std::vector<std::string> files_of(const std::string& folder) {
+// What a folder and those in it hold, links and the like too, but for the folders themselves.
+std::vector<std::string> entries_of(const std::string& folder) {
   std::error_code problem;
   std::vector<std::string> names;
   for (fs::recursive_directory_iterator entry(folder, problem), end; !problem && entry != end;
        entry.increment(problem)) {
-    if (fs::is_regular_file(entry->symlink_status())) names.push_back(fs::relative(entry->path(), folder).string());
+    if (!fs::is_directory(entry->symlink_status())) names.push_back(entry->path().lexically_relative(folder).string());
   }
   if (problem) throw system_error(Fault::no_input, folder + ": cannot read the folder", problem.value());
   std::sort(names.begin(), names.end());
   return names;
 }
 
+bool is_link(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_symlink(fs::symlink_status(path, ignored));
+}
+
+// Of a file in a folder, or a folder between, that is a link: what it leads to may change with it. Empty: none is.
+std::string link_problem(const std::string& folder, const std::string& name) {
+  fs::path path(folder);
+  for (const fs::path& part : fs::path(name)) {
+    path /= part;
+    if (is_link(path.string()))
+      return path.string() + ": is a link, where a print writes a file of its own; restore the original file";
+  }
+  return "";
+}
+
 std::string gone(const std::string& folder, const std::string& name) {
   try {
-    if (has_regular_file(path_in(folder, name))) return "";
+    if (has_regular_file(path_in(folder, name))) return link_problem(folder, name);
   } catch (const Error& error) {  // what stands in its place
     return error.what();
   }
   return path_in(folder, name) + ": is gone, but " + list_name + " lists it; restore it";
+}
+
+// What a resumption leaves says which print it was, so that what remains is given once.
+std::string resumed_problem(const std::string& path) {
+  try {
+    constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
+    const Json mark = parse_distinct(has_regular_file(path) ? read_all(path, Content::text, most_bytes) : "", path);
+    if (!text_at(mark, "utc").empty() && !text_at(mark, "resumed_by").empty()) return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return path +
+         ": does not say when and by which print this one was resumed (utc, resumed_by); restore it, or remove "
+         "it if the rest was not printed";
+}
+
+// What is wrong with a file that SHA256SUMS does not list.
+std::string unlisted_problem(const std::string& folder, const std::string& name) {
+  const std::string path = path_in(folder, name);
+  if (is_link(path)) return path + ": is a link, which no print leaves; remove it";
+  if (name == resumed_name) return resumed_problem(path);
+  return path + ": is not in " + list_name +
+         ": it was added after the print, or the list was cut; remove the file, or restore the list";
+}
+
+// vam-print leaves a link to the sinogram, in whose place copies of the folder have the file; the events have its hash.
+std::string sinogram_problem(const std::string& folder, bool by_name) {
+  const std::string path = path_in(folder, sinogram_name);
+  try {
+    if (!has_regular_file(path) || by_name) return "";
+  } catch (const Error& error) {
+    if (error.fault != Fault::no_input) return error.what();
+    std::error_code ignored;
+    warn(path + ": links to " + fs::read_symlink(path, ignored).string() +
+         ", which cannot be read, so that the sinogram was not verified; restore it, or remove the link");
+    return "";
+  }
+  try {
+    if (!is_link(path) && !states_sinogram(folder)) return unlisted_problem(folder, sinogram_name);
+    require_sinogram_of(folder, path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
 }
 
 }  // namespace
@@ -60,6 +126,7 @@ bool has_run_sums(const std::string& folder) { return has_regular_file(path_in(f
 
 RunSums read_run_sums(const std::string& folder) {
   const std::string path = path_in(folder, list_name);
+  if (const std::string problem = link_problem(folder, list_name); !problem.empty()) throw Error{Fault::data, problem};
   std::vector<std::string> lines = split(read_all(path, Content::text, std::uint64_t{256} << 20), '\n');
   if (!lines.empty() && lines.back().empty()) lines.pop_back();
   RunSums sums;
@@ -76,9 +143,14 @@ RunSums read_run_sums(const std::string& folder) {
 }
 
 void require_run_logs(const std::string& folder) {
+  const std::vector<const char*> counted{"events.jsonl", "flips.jsonl", "printer.toml"};
+  for (const char* name : counted) {  // while the print goes on, too
+    if (!has_regular_file(path_in(folder, name))) continue;
+    if (const std::string problem = link_problem(folder, name); !problem.empty()) throw Error{Fault::data, problem};
+  }
   if (!has_run_sums(folder)) return;
   const RunSums sums = read_run_sums(folder);
-  for (const char* name : {"events.jsonl", "flips.jsonl", "printer.toml"}) {
+  for (const char* name : counted) {
     const bool needed = std::string(name) == "events.jsonl" || has_regular_file(path_in(folder, name));
     if (!needed || sums.contains(name)) continue;
     throw Error{Fault::data, path_in(folder, list_name) + ": has no hash of " + name +
@@ -103,14 +175,18 @@ std::string sum_problem(const std::string& folder, const RunSums::value_type& fi
 
 std::vector<std::string> run_damage(const std::string& folder, const RunSums& sums, bool fast) {
   std::vector<std::string> damage;
+  const auto add = [&](const std::string& problem) {
+    const auto about = [](const std::string& text) { return text.substr(0, text.find(": ")); };
+    const bool told = !damage.empty() && about(damage.back()) == about(problem);  // of a folder that is a link
+    if (!problem.empty() && !told) damage.push_back(problem);
+  };
   for (const auto& file : sums) {
-    const std::string problem = fast ? gone(folder, file.first) : sum_problem(folder, file);
-    if (!problem.empty()) damage.push_back(problem);
+    add(fast ? gone(folder, file.first) : sum_problem(folder, file));
   }
-  for (const std::string& name : files_of(folder)) {
-    if (name == list_name || name == "resumed.json" || sums.contains(name)) continue;
-    damage.push_back(path_in(folder, name) + ": is not in " + list_name +
-                     ": it was added after the print, or the list was cut; remove the file, or restore the list");
+  const bool has_logs = damage.empty();
+  for (const std::string& name : entries_of(folder)) {
+    if (name == list_name || sums.contains(name)) continue;
+    add(name == sinogram_name ? sinogram_problem(folder, fast || !has_logs) : unlisted_problem(folder, name));
   }
   return damage;
 }

@@ -18,15 +18,16 @@ using RunSums = std::map<std::string, std::string>;
 [[nodiscard]] RunSums read_run_sums(const std::string& folder);
 
 /// The logs, records and settings of a print that has ended are what they were at its end. Throws Fault::data where one
-/// of the list was changed or is gone, or the list has no hash of those by which light is counted; nothing without a
-/// list, as of a print that was killed. Throws as read_run_sums() does.
+/// of the list was changed, is gone or a link, or the list has no hash of those by which light is counted; without a
+/// list, as of a print that was killed, only these must not be links. Throws as read_run_sums() does.
 void require_run_logs(const std::string& folder);
 
 /// What is wrong with a file of the list, as a line; empty: nothing.
 [[nodiscard]] std::string sum_problem(const std::string& folder, const RunSums::value_type& file);
 
-/// What differs, is gone or is not in the list, a line each; with `fast` no file is read. resumed.json, which a
-/// resumption adds, need not be in it.
+/// What differs, is gone, a link or not in the list, a line each; with `fast` no file of the list is read.
+/// resumed.json, which a resumption adds, need not be in it, nor sinogram.exr, a link or its copy, which is held to the
+/// hash in the events; warns where it leads nowhere.
 [[nodiscard]] std::vector<std::string> run_damage(const std::string& folder, const RunSums& sums, bool fast);
 
 }  // namespace vam::io
