@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
@@ -15,6 +16,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 #include "model/printer.hpp"
 #include "optics/writable_radius.hpp"
@@ -43,10 +45,25 @@ io::SparseVolume volume_of(const std::string& name, const solid::Part& part, con
   return volume;
 }
 
-void warn_of_size(const cli::App& app, const Options& options, const solid::Part& part,
-                  const solid::FillSummary& content, const model::Grid& grid, const solid::Writable& room) {
+/// As it will be printed.
+double largest_mm(const solid::Part& part, double stretch_z) {
+  const solid::Point size = part.extent.box.size();
+  return std::max({size[0], size[1], size[2] / stretch_z});
+}
+
+void judge_size(const cli::App& app, const Options& options, const solid::Part& part, const solid::FillSummary& content,
+                const model::Grid& grid, const solid::Writable& room) {
   const bool known = !part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit");
   const std::string doubt = solid::size_doubt(part, content, grid, options.placement.stretch_z, room, known);
+  // What was to fit is to be printed: vam-optimize takes no target without such a voxel.
+  if (options.placement.fit_writable && !model::half_covered(content.most)) {
+    throw Error{Fault::data, part.subject + ": at the size that fits, " +
+                                 format_number(largest_mm(part, options.placement.stretch_z), 3) + " mm, no voxel of " +
+                                 format_number(grid.voxel_mm) + " mm is at least half covered (" +
+                                 format_number(static_cast<double>(content.most), 2) + " at most); use voxels of " +
+                                 format_number(solid::resolving_voxel_mm(content, grid), 2) +
+                                 " mm, or thicken the part"};
+  }
   if (!doubt.empty()) return warn(doubt);
   for (const std::string& thin :
        solid::resolution_doubts(part.subject, content.unresolved, grid, options.placement.stretch_z))
@@ -58,8 +75,7 @@ solid::PlacementAdvice advice_for(const cli::App& app, const Options& options, c
                                   const solid::Writable& room) {
   solid::PlacementAdvice advice = slice_tool::advice(options);
   if (!part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit")) return advice;
-  const solid::Point size = part.extent.box.size();
-  const std::string unit = solid::finer_unit(std::max({size[0], size[1], size[2] / options.placement.stretch_z}), room);
+  const std::string unit = solid::finer_unit(largest_mm(part, options.placement.stretch_z), room);
   if (!unit.empty()) advice.unit = unit + " --unit states it; else ";
   return advice;
 }
@@ -67,9 +83,8 @@ solid::PlacementAdvice advice_for(const cli::App& app, const Options& options, c
 void warn_of_insert_size(const cli::App& app, const Options& options, const solid::Part& insert,
                          const solid::Writable& room) {
   if (!insert.repair || app.given("--insert-unit") || app.given("--insert-scale")) return;
-  const solid::Point size = insert.extent.box.size();
-  const double largest_mm = std::max({size[0], size[1], size[2] / options.placement.stretch_z});
-  const std::string doubt = solid::unit_doubt(insert.subject, "insert", largest_mm, room);
+  const double size_mm = largest_mm(insert, options.placement.stretch_z);
+  const std::string doubt = solid::unit_doubt(insert.subject, "insert", size_mm, room);
   if (!doubt.empty()) warn(doubt + "; --insert-unit states it");
 }
 
@@ -129,7 +144,7 @@ void run(const cli::App& app, Options& options) {
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", printed, grid, content));
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject, advice(options));
-  warn_of_size(app, options, part, content, grid, room);
+  judge_size(app, options, part, content, grid, room);
   Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
   report["place"] = lift_figures(options, lift_mm);
   if (!correction.rms_mm.empty()) {

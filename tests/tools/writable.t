@@ -15,8 +15,23 @@ accepted() {  # accepted NAME PART...: at two voxel sizes, by the default printe
 }
 accepted "a boat" --shape boat
 accepted "a gyroid" --shape gyroid
+accepted "a plate" --shape box:x=20,y=20,z=2
+accepted "a tilted plate" --shape box:x=20,y=20,z=2 --rotate 30,20,10
+accepted "a rod" --shape cylinder:diameter=2.5,height=100
 if [ -n "${VAM_BUNNY:-}" ]; then accepted "the bunny" "$VAM_BUNNY"; fi
 if [ -n "${VAM_SPOT:-}" ]; then accepted "the cow" "$VAM_SPOT"; fi
+
+# What no voxel would hold is refused, with the voxels that do, where it was written and vam-optimize refused it.
+for part in 'box:x=20,y=20,z=0.2' 'cylinder:diameter=30,height=0.3' 'cylinder:diameter=1,height=100' 'box:x=40,y=1,z=1' 'box:x=20,y=20,z=0.5 --rotate 90,0,0'; do
+  thin="vam-slice --shape $part --fit-writable -o thin.vdb --voxel"
+  rm -f thin.vdb
+  fails 65 'at the size that fits, [0-9.]+ mm, no voxel of 0.41 mm is at least half covered \(0.[0-9]+ at most\); use voxels of [0-9.]+ mm, or thicken the part' $thin 0.41
+  is 'and nothing is written' "$(ls thin.vdb 2>/dev/null)" ''
+  voxel=$(sed 's/.*use voxels of \([0-9.]*\) mm.*/\1/' .log/err)
+  ok "$part at $voxel mm" $thin "$voxel"
+  # Smaller voxels than the projector's pixels are no more than sliced.
+  awk "BEGIN { exit !($voxel < 0.065) }" || ok 'which vam-optimize takes' vam-optimize --angles 24 --iterations 1 --method fbp thin.vdb -o thin.exr
+done
 
 # One number: 80 columns of 0.065 mm with 115.115 mm to the lens are 5.1947 mm in air, 3.395 mm in the resin.
 disc='--shape cylinder:diameter=8,height=2 --voxel 0.2'

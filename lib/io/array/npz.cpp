@@ -34,8 +34,17 @@ std::vector<std::string> names_of(zip* archive) {
   return names;
 }
 
+void require_distinct(std::vector<std::string> names, const std::string& file) {
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice == names.end()) return;
+  throw Error{Fault::data, file + ": holds two arrays called " + excerpt(*twice) +
+                               ", of which only one would be read; save it again with numpy.savez()"};
+}
+
 std::string chosen(const std::vector<std::string>& names, const std::string& name, const std::string& file) {
   if (names.empty()) throw Error{Fault::data, file + ": is a zip archive without an array (.npy)"};
+  require_distinct(names, file);
   if (name.empty() && names.size() == 1) return names.front();
   if (std::find(names.begin(), names.end(), name) != names.end()) return name;
   const std::vector<std::string> some(names.begin(), names.begin() + std::min<std::ptrdiff_t>(std::ssize(names), 8));

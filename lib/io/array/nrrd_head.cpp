@@ -34,7 +34,10 @@ Fields take_fields(Bytes& bytes) {
     std::string value = line.substr(colon + 2);
     value.erase(0, std::min(value.find_first_not_of(' '), value.size()));
     value.erase(value.find_last_not_of(' ') + 1);
-    fields[line.substr(0, colon)] = value;
+    const std::string name = line.substr(0, colon);
+    if (!fields.try_emplace(name, value).second) {
+      bytes.fail("its header states " + excerpt(name) + " twice, of which only one would count" + remedy);
+    }
   }
   bytes.fail("its header does not end");
 }

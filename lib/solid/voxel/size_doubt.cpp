@@ -102,17 +102,22 @@ std::vector<std::string> resolution_doubts(const std::string& subject, const mod
   return doubts;
 }
 
+double resolving_voxel_mm(const FillSummary& content, const model::Grid& grid) {
+  return 0.5 * grid.voxel_mm * static_cast<double>(content.most);
+}
+
 std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
                        const Writable& room, bool unit_known) {
   const Point size = part.extent.box.size();
   const double largest_mm = std::max({size[0], size[1], size[2] / stretch_z});
   const std::string unit = unit_known ? "" : likely_unit(largest_mm, room);
   if (content.solid_voxels == 0) {
-    const double thinner = 0.5 * grid.voxel_mm * static_cast<double>(content.most);
     return part.subject + ": no voxel of " + format_number(grid.voxel_mm) + " mm is wholly inside the part, which is " +
            format_number(largest_mm, 3) + " mm large (a voxel is covered to " +
            format_number(static_cast<double>(content.most), 2) + " at most)" +
-           (unit.empty() ? "; voxels of " + format_number(thinner, 2) + " mm or thicker walls may help" : unit);
+           (unit.empty()
+                ? "; voxels of " + format_number(resolving_voxel_mm(content, grid), 2) + " mm or thicker walls may help"
+                : unit);
   }
   return unit_known ? "" : unit_doubt(part.subject, "part", largest_mm, room);
 }

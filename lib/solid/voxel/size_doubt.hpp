@@ -23,6 +23,10 @@ namespace vam::solid {
 /// writable width and one and a half. Else empty.
 [[nodiscard]] std::string finer_unit(double largest_mm, const Writable& room);
 
+/// Voxels that would be wholly inside a flat part of which none is: half as large as the part is thick, if it lies
+/// level.
+[[nodiscard]] double resolving_voxel_mm(const FillSummary& content, const model::Grid& grid);
+
 /// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
 /// is less than a tenth as large as the writable width. `unit_known`: the user has stated what a unit of the file is,
 /// or how large the part.
