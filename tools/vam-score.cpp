@@ -107,6 +107,7 @@ void run(const cli::App& app, Options& options) {
   const Inputs in = read(options);
   const std::string& file = options.target.empty() ? options.input : options.target;
   tool::warn_of_grey(in.target(), file);
+  options.how.target = io::input_name(file);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
   require_known(conditions, options);
   score::Score result = tool::score_print(in.dose(), in.target(), options.how);

@@ -188,9 +188,16 @@ double Score::print_threshold() const {
 
 Json Score::figures() const {
   const auto m = judged().metrics(!options_.absolute);
-  if (m.part == 0) throw Error{Fault::data, "the target has no voxel wholly inside the part; use smaller voxels"};
-  if (m.void_ == 0)
-    throw Error{Fault::data, "the target has no void inside the writable circle; there is nothing to compare"};
+  if (m.part == 0) {
+    throw Error{Fault::data, options_.target +
+                                 ": no voxel of it is wholly inside the part; slice it with smaller voxels, at "
+                                 "most half as large as its thinnest wall, or thicken the part"};
+  }
+  if (m.void_ == 0) {
+    throw Error{Fault::data, options_.target +
+                                 ": no voxel of it is void inside the writable circle, and there is nothing to "
+                                 "compare; scale the part down, or slice it with --extent writable"};
+  }
   if (m.max_dose == 0) throw Error{Fault::data, "the dose is 0 everywhere: the projections are dark, nothing prints"};
   Json json;
   json["part_voxels"] = m.part;

@@ -25,6 +25,7 @@ struct Exposure {
 };
 
 struct ScoreOptions {
+  std::string target = "target";        // begins the messages on it
   model::Circle circle;                 // the writable one; void outside it is not judged
   double voxel_mm = 0;                  // 0: not known
   bool surface = false;                 // surface voxels count too: part when at least half covered, else void

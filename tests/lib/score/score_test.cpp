@@ -109,11 +109,15 @@ TEST_CASE("empty parts and non-finite doses are errors") {
   Score empty(options(), 3, 3);
   const std::vector<float> nothing(9, 0.0F);
   empty.add(dose.data(), nothing.data(), 1);
-  CHECK_THROWS_WITH_AS((void)empty.figures(), doctest::Contains("no voxel wholly inside"), vam::Error);
-  Score full(options(), 3, 3);
+  CHECK_THROWS_WITH_AS((void)empty.figures(),
+                       doctest::Contains("target: no voxel of it is wholly inside the part; slice"), vam::Error);
+  ScoreOptions named = options();
+  named.target = "part.vdb";
+  Score full(named, 3, 3);
   const std::vector<float> everything(9, 1.0F);
   full.add(dose.data(), everything.data(), 1);
-  CHECK_THROWS_WITH_AS((void)full.figures(), doctest::Contains("no void"), vam::Error);
+  CHECK_THROWS_WITH_AS((void)full.figures(),
+                       doctest::Contains("part.vdb: no voxel of it is void inside the writable circle"), vam::Error);
   Score broken(options(), 3, 3);
   auto bad = dose;
   bad[4] = std::nanf("");
