@@ -11,7 +11,9 @@
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
+#include "base/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 
 namespace vam::io {
@@ -90,6 +92,28 @@ void require_ply_end(std::istream& stream, bool text, std::size_t faces, std::si
 
 }  // namespace
 
+namespace {
+
+// CGAL takes a line that is no vertex for the end of the file. text: in small letters.
+void check_stl_vertices(std::string_view text) {
+  constexpr std::string_view word = "vertex";
+  std::size_t line = 1;
+  std::size_t counted = 0;  // the line feeds up to here
+  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + word.size())) {
+    const std::size_t begin = text.find_last_of('\n', at) + 1;  // 0 in the first line
+    const std::string_view before = text.substr(begin, at - begin);
+    if (before.find_first_not_of(" \t") != before.npos) continue;  // in a name
+    line += static_cast<std::size_t>(std::count(text.data() + counted, text.data() + at, '\n'));
+    counted = at;
+    const std::string_view row = text.substr(at, std::min(text.find_first_of("\r\n", at), text.size()) - at);
+    if (begins_with_numbers(row.substr(word.size()), 3)) continue;
+    throw MeshProblem{"line " + std::to_string(line) + ": " + excerpt(row) +
+                      " is no vertex of three finite coordinates; mend the line, or save the mesh again"};
+  }
+}
+
+}  // namespace
+
 PolygonSoup parse_ascii_stl(const std::string& bytes) {
   const std::string text = lower_case(bytes);  // CGAL knows no capitals; names do not matter
   const std::size_t last_word = text.find_last_not_of(" \t\r\n");
@@ -98,6 +122,7 @@ PolygonSoup parse_ascii_stl(const std::string& bytes) {
   if (tail.find("endsolid") == std::string::npos) {
     throw MeshProblem{"the STL text does not end in 'endsolid'; it is truncated"};
   }
+  check_stl_vertices(text);
   std::istringstream stream(text);
   CgalSoup soup;
   if (!CGAL::IO::read_STL(stream, soup.points, soup.faces)) give_up("STL", converted(std::move(soup)));

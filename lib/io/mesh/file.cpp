@@ -105,9 +105,12 @@ void check_points(const PolygonSoup& soup) {
   }
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
     for (const double x : soup.points[i]) {
-      if (!std::isfinite(x))
-        throw MeshProblem{"vertex " + std::to_string(i) + " is not finite (of " + std::to_string(soup.points.size()) +
-                          ")"};
+      if (std::abs(x) <= farthest_point) continue;
+      throw MeshProblem{(soup.of_facets ? "facet " + std::to_string(i / 3) + " has a corner that is"
+                                        : "vertex " + std::to_string(i) + " is") +
+                        (std::isfinite(x) ? " at " + format_number(x, 3) : std::string(" not finite")) +
+                        " (counted from 0, of " + std::to_string(soup.points.size() / (soup.of_facets ? 3 : 1)) +
+                        "); the file is damaged, save the mesh again"};
     }
   }
 }

@@ -47,17 +47,15 @@ std::string joined(const std::string& bytes) {
   return text;
 }
 
-bool begins_with_numbers(std::string_view text, int count) {
-  for (; count > 0; --count) {
-    text = after_blanks(text);
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double number = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (problem != std::errc{} || !std::isfinite(number)) return false;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (!text.empty() && blanks.find(text.front()) == blanks.npos) return false;
+// An index of a face that is 0: "0", "0/1", "00".
+bool has_index_0(std::string_view values) {
+  while (!(values = after_blanks(values)).empty()) {
+    const std::string_view word = values.substr(0, std::min(values.find_first_of(blanks), values.size()));
+    values.remove_prefix(word.size());
+    const std::string_view index = word.substr(0, word.find('/'));
+    if (!index.empty() && index.find_first_not_of('0') == index.npos) return true;
   }
-  return true;
+  return false;
 }
 
 void check_line(std::string_view line, std::size_t number) {
@@ -72,9 +70,26 @@ void check_line(std::string_view line, std::size_t number) {
   if (text.front() == 'f' && values.find('.') != values.npos) {
     throw MeshProblem{"line " + std::to_string(number) + ": a face has an index that is no whole number"};
   }
+  if (text.front() == 'f' && has_index_0(values)) {
+    throw MeshProblem{"line " + std::to_string(number) +
+                      ": a face uses vertex 0, but vertices are counted from 1; mend the line, or save the mesh again"};
+  }
 }
 
 }  // namespace
+
+bool begins_with_numbers(std::string_view text, int count) {
+  for (; count > 0; --count) {
+    text = after_blanks(text);
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double number = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (problem != std::errc{} || !std::isfinite(number)) return false;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (!text.empty() && blanks.find(text.front()) == blanks.npos) return false;
+  }
+  return true;
+}
 
 std::string checked_obj(const std::string& bytes) {
   std::string text = bytes.find('\\') == std::string::npos ? bytes : joined(bytes);

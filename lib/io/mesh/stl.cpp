@@ -77,6 +77,7 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
                       " triangles that the header states; its count is damaged, or the file holds more than a mesh"};
   }
   PolygonSoup soup;
+  soup.of_facets = true;
   soup.points.reserve(3 * count);
   soup.faces.reserve(count);
   for (std::size_t t = 0; t < count; ++t) {

@@ -198,12 +198,33 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   std::string stl = slurp(folder / "box.stl");
   const float nan = NAN;
   std::memcpy(stl.data() + 84 + 12, &nan, sizeof nan);
-  CHECK(has(refusal(folder, stl), "vertex 0 is not finite"));
+  CHECK(has(refusal(folder, stl),
+            "facet 0 has a corner that is not finite (counted from 0, of 12); the file is damaged"));
+  const float far = 1e30F;
+  std::memcpy(stl.data() + 84 + 12, stl.data() + 84 + 24, sizeof far);
+  std::memcpy(stl.data() + 84 + 100 + 20, &far, sizeof far);
+  CHECK(has(refusal(folder, stl), "facet 2 has a corner that is at 1e+30 (counted from 0, of 12)"));
+  const auto text = [](const std::string& corner) {
+    return "solid vertex\n facet normal 0 0 1\n  outer loop\r\n vertex 0 0 0\n vertex 1 0 0\n VERTEX " + corner +
+           "\n  endloop\n endfacet\nendsolid vertex\n";
+  };
+  for (const char* corner : {"nan 0 0", "0 inf 0", "1e999 0 0", "0 0", "0,5 1 1"}) {
+    CHECK(has(refusal(folder, text(corner)),
+              std::string("line 6: 'vertex ") + corner + "' is no vertex of three finite coordinates; mend the line"));
+  }
+  CHECK(has(refusal(folder, text("1e30 0 0")), "is at 1e+30"));
+  CHECK(refusal(folder, text("+0 1e-3\t0")) == "no error");
   CHECK(refusal(folder, box_off("nan 0 0")) != "no error");
   CHECK(refusal(folder, box_off("1e999 0 0")) != "no error");
   std::string obj = box_obj();
   CHECK(has(refusal(folder, obj + "f 1 2 9\n"), "face 6 uses vertex 8 of 8 (counted from 0)"));
-  CHECK(has(refusal(folder, obj + "f 0 1 2\n"), "face 6 uses vertex 8 of 8"));
+  const auto lines = std::to_string(std::count(obj.begin(), obj.end(), '\n') + 1);
+  for (const char* face : {"f 0 1 2\n", "f 1 2 0", "f 1/1 0/2 3/1\n"}) {
+    CHECK(has(refusal(folder, obj + face),
+              "line " + lines + ": a face uses vertex 0, but vertices are counted from 1; mend the line"));
+  }
+  CHECK(refusal(folder, obj + "f 1/0 2/0 10/0\n") != "no error");
+  CHECK(refusal(folder, obj + "f -8 -7 -6\n") == "no error");
   CHECK(has(refusal(folder, obj + "f 1 2\n"), "face 6 has 2 corners"));
   CHECK(has(refusal(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "the mesh is empty: 3 vertices, no face"));
   CHECK(has(refusal(folder, "solid nothing\nendsolid nothing\n"), "empty"));

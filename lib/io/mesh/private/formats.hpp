@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/mesh.hpp"
@@ -19,6 +20,7 @@ struct PolygonSoup {
   std::vector<std::vector<int>> faces;
   std::vector<std::array<std::uint8_t, 3>> colours = {};  // one a point, or none
   std::vector<float> uncertainty = {};                    // the same
+  bool of_facets = false;                                 // three points a face, in its order
 };
 
 /// What a parser has to say about bytes it cannot read: the rest of the sentence that begins with the file's name.
@@ -64,8 +66,14 @@ struct MeshFormat {
 /// The property `name`, a float of every vertex, of a little-endian PLY; nothing where it has none.
 [[nodiscard]] std::vector<float> ply_numbers(const std::string& bytes, const std::string& name, std::size_t vertices);
 
+/// Farther from the origin no mesh has points, whatever its unit: a kilometre in nm.
+inline constexpr double farthest_point = 1e12;
+
+/// Whether text begins with so many finite numbers, between blanks.
+[[nodiscard]] bool begins_with_numbers(std::string_view text, int count);
+
 /// An OBJ file with its continued lines joined. Throws MeshProblem for a vertex without three coordinates and for an
-/// index that is no whole number, which CGAL takes for the end of the file and for its whole part.
+/// index that is no whole number or 0, which CGAL takes for the end of the file, for its whole part and for a vertex.
 [[nodiscard]] std::string checked_obj(const std::string& bytes);
 
 /// By CGAL; each throws MeshProblem when CGAL gives up.
