@@ -94,6 +94,12 @@ for name in long twice; do
 done
 ok 'the comment of an archive belongs to it' vam-convert noted.npz --voxel 0.5 --grid weight -o x.vdb
 rm x.vdb
+python3 -W ignore -c '
+import zipfile
+with zipfile.ZipFile("same.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "other.npy"); z.write("p.npy", "dose.npy")'
+for name in dose other; do
+  fails 65 "same.npz: holds two arrays called 'dose', of which only one would be read; save it again" vam-convert same.npz --array $name --voxel 1 -o x.vdb
+done
 fails 65 'none.npz: is a zip archive without an array' vam-convert none.npz --voxel 1 -o x.vdb
 fails 66 'no.npy: cannot open' vam-convert no.npy --voxel 1 -o x.vdb
 refused() {  # refused DICTIONARY REGEX

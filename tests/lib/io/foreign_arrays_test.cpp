@@ -131,6 +131,8 @@ TEST_CASE("NRRD files that are not read are refused with a remedy") {
   CHECK(has(array_refusal(nrrd(raw, counted<float>())), "has no 'type'"));
   CHECK(has(array_refusal(nrrd("type: float\nencoding: raw\n", counted<float>())), "has no 'endian'"));
   CHECK(has(array_refusal(nrrd("type: float\n" + raw, counted<float>() + "x")), "has bytes behind its 24 values"));
+  CHECK(has(array_refusal(nrrd("type: float\nsizes: 2 3 4\n" + raw, counted<float>())),
+            "its header states 'sizes' twice, of which only one would count"));
   CHECK(has(array_refusal(nrrd("nonsense\n" + raw, counted<float>())), "'nonsense' is no field"));
   CHECK(has(array_refusal("NRRD0004\ntype: float\nsizes: 4 x 2\n" + raw + "\n"), "sizes '4 x 2'"));
   CHECK(has(array_refusal("NRRD0004\ntype: float\nsizes: 2 4 3 2\n" + raw + "\n"), "has 4 axes (2 x 3 x 4 x 2)"));
