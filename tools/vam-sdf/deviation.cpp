@@ -20,6 +20,7 @@
 #include "plot/deviation_histogram.hpp"
 #include "plot/save.hpp"
 #include "solid/mesh/align.hpp"
+#include "solid/mesh/repair.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "surface.hpp"
 #include "vam-sdf/figure_names.hpp"
@@ -97,6 +98,14 @@ Json facts(const Options& options, const solid::Alignment& alignment) {
           {"matrix", alignment.transform.matrix()}};
 }
 
+// Distances are the same with them, but not their shares by area.
+void warn_of_doubles(const model::TriangleSoup& mesh, const std::string& file) {
+  const long doubled = solid::duplicate_triangles(mesh);
+  if (doubled == 0) return;
+  warn(io::input_name(file) + ": holds " + std::to_string(doubled) +
+       " duplicate triangles; a body may be there twice, and counts twice in areas and percentiles");
+}
+
 // Of all figures only `within` needs one.
 bool has_tolerance(const std::string& figure, const Toleranced& asked) {
   if (figure == "within") return asked.tolerance_mm.has_value();
@@ -153,6 +162,9 @@ void deviation(const cli::App& app, const Options& options) {
     note("dropped " + std::to_string(bodies->dropped) + " bodies of " + format_number(bodies->dropped_mm3, 3) +
          " mm3, the largest " + format_number(bodies->largest_dropped_mm3, 3) + " mm3");
   }
+
+  warn_of_doubles(design_mesh, options.design);
+  if (!bodies) warn_of_doubles(print, options.print);
 
   const solid::Surface design(design_mesh);
   const solid::Alignment alignment = align_print(options, regions, design_mesh, design, print);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sdf --volume: how far the print stands outside its design, for the next design.
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/vdb/vdb.hpp"
@@ -21,10 +20,6 @@ void write_deviation_volume(const cli::App& app, const Options& options, const m
                 options.design + ": has " + std::to_string(repair.boundary_edges) +
                     " boundary edges, across which inside and outside are not defined; --volume requires a "
                     "closed design"};
-  }
-  if (repair.duplicates_dropped > 0) {
-    warn(options.design + ": holds " + std::to_string(repair.duplicates_dropped) +
-         " duplicate triangles, which count once; a body may be there twice");
   }
   const model::Grid grid = solid::deviation_grid(design, options.volume_voxel_mm);
   require_memory(3.0 * sizeof(float) * static_cast<double>(grid.size()), "--volume: " + model::size_text(grid),

@@ -102,4 +102,10 @@ std::string Repair::summary() const {
   return join(parts, ", ");
 }
 
+long duplicate_triangles(model::TriangleSoup mesh) {
+  weld_equal_points(mesh);
+  drop_degenerate(mesh);
+  return drop_duplicates(mesh);
+}
+
 }  // namespace vam::solid

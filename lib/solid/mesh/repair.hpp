@@ -43,4 +43,7 @@ struct Repair {
 /// --benchmark_filter='repair|cgal').
 Repair repair(model::TriangleSoup& mesh, const std::string& subject);
 
+/// How many triangles repair() would drop as duplicates, near points left aside: those of a body that is there twice.
+[[nodiscard]] long duplicate_triangles(model::TriangleSoup mesh);
+
 }  // namespace vam::solid
