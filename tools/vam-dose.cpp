@@ -26,6 +26,7 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = tool::load_printer(printer_of(options));
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
+  take_sinogram(app, options);
   take_full_scale(options);
 
   io::StackReader in(options.inputs.front());

@@ -65,6 +65,16 @@ for tool in vam-check vam-status; do
   $tool run >&- 2>err; is "$tool: nowhere to write to" "$? $(grep -c "^$tool: stdout: cannot" err)" '74 1'
 done
 
+# The dose of a run by its own sinogram.
+ok 'the dose of a run' vam-dose frames.exr --shown run -o given.vdb --report given.json
+ok 'by the sinogram that it links to' sh -c 'vam-dose --shown run -o own.vdb --report own.json </dev/null'
+is 'is the same' "$(json own.json dose_shown_max_relative)" "$(json given.json dose_shown_max_relative)"
+ok 'one that comes through a pipe goes before it' sh -c 'cat frames.exr | vam-dose --shown run -o own.vdb'
+fails 64 'SINOGRAM: is missing, and run/flips.jsonl has no sinogram.exr; give the one that was shown' sh -c 'vam-dose --shown run/flips.jsonl -o x.vdb </dev/null'
+cp -r run part; rm part/sinogram.exr
+fails 64 'SINOGRAM: is missing, and part has no sinogram.exr' sh -c 'vam-dose --shown part -o x.vdb </dev/null'
+rm -r part
+
 # A print that has ended is held to its hashes: what was cut, changed, lost or added since is named.
 spoil() { rm -rf part; cp -r run part; }
 ok 'a run folder is verified' sh -c "vam-check run | grep -Eqx 'run: run folder of [0-9]+ files, sealed'"

@@ -74,8 +74,10 @@ void declare_alignment(cli::App& app, Options& options) {
 }  // namespace
 
 void declare(cli::App& app, Options& options) {
-  app.positional("SINOGRAM ...", options.inputs,
-                 "Sinogram stack (EXR) of a projector, or a virtual one; with --shown, all that the print showed.")
+  app.positional(
+         "SINOGRAM ...", options.inputs,
+         "Sinogram stack (EXR) of a projector, or a virtual one; with --shown, all that the print showed, by default "
+         "the sinogram.exr of its run folder if nothing comes through a pipe.")
       .reads();
   cli::add_output(app, options.output).writes_as({".vdb", ".toml"});
   cli::add_report(app, options.report);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-dose/shown.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +16,7 @@
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
 #include "io/settings/run_sums.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::dose_tool {
@@ -75,6 +79,25 @@ cli::PrinterOptions printer_of(const Options& options) {
   cli::PrinterOptions printer = options.printer;
   if (printer.file.empty() && !options.shown.empty()) printer.file = settings_of(options.shown.front());
   return printer;
+}
+
+void take_sinogram(const cli::App& app, Options& options) {
+  struct stat about = {};
+  const bool piped = fstat(STDIN_FILENO, &about) == 0 && !S_ISCHR(about.st_mode);  // a terminal, or /dev/null
+  if (options.shown.empty() || app.given("SINOGRAM") || piped) return;
+  const std::string& run = options.shown.front();
+  const std::string file = (fs::path(run) / "sinogram.exr").string();
+  if (!fs::is_directory(run) || !io::has_regular_file(file))
+    throw Error{Fault::usage, "SINOGRAM: is missing, and " + run + " has no sinogram.exr; give the one that was shown"};
+  io::FlipLog log(run);
+  log.read();
+  std::set<std::string> hashes;
+  for (const io::ShownSinogram& one : log.sinograms()) hashes.insert(one.sha256);
+  if (hashes.size() > 1) {
+    throw Error{Fault::usage, "SINOGRAM: is missing, and " + run + " showed " + std::to_string(hashes.size()) +
+                                  " one after the other; give all of them"};
+  }
+  options.inputs = {file};
 }
 
 void take_full_scale(Options& options) {

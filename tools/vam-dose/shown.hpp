@@ -18,6 +18,10 @@ namespace vam::dose_tool {
 /// The printer that the options name; where none is named, that of the run: what it froze.
 [[nodiscard]] cli::PrinterOptions printer_of(const Options& options);
 
+/// Where a print is given by --shown and no sinogram, neither by name nor on standard input: that which the run folder
+/// has. Throws Fault::usage where it has none, or showed several; Fault::no_input where its link leads nowhere.
+void take_sinogram(const cli::App& app, Options& options);
+
 /// Takes the full scale at which a run of --shown showed the sinogram, if it states it. Throws Fault::usage where
 /// --full-scale says otherwise, Fault::data for a run whose logs or settings were changed since its end.
 void take_full_scale(Options& options);
