@@ -26,9 +26,10 @@ void declare_placement(cli::App& app, Options& options) {
              "Rotation angles in degrees about x, then y, then z, right-handed.");
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive,
              "Scale the part so that its largest dimension is MM.");
-  app.flag("--fit-writable", options.placement.fit_writable,
-           "Scale the part to fill the writable cylinder, within which resin is lit from all stage angles. Refused where no "
-           "voxel would be half covered then.");
+  app.flag(
+      "--fit-writable", options.placement.fit_writable,
+      "Scale the part to fill the writable cylinder, within which resin is lit from all stage angles. Refused where no "
+      "voxel would be half covered then.");
   app.flag("--no-centre", options.no_centre,
            "Keep the origin of the file, instead of moving the centre of the bounding box to x = y = z = 0.");
   app.was("--no-center");
