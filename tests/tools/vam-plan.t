@@ -125,6 +125,20 @@ ok 'walls that the printer loses are a warning' \
   sh -c 'vam-plan sheet.off --no-preview 2>&1 >.log/sheet | grep -q "sheet.off: 0.37 % of the part is in walls too thin"'
 is 'others are not' "$(vam-plan fin.off --no-preview 2>&1 >.log/fin)" ''
 
+# A strut of 0.2 mm between two plates, of less than a hundredth of the middle of all.
+{
+  printf 'OFF\n24 36 0\n'
+  box 8 8 2 | awk 'NR > 2 && NF == 3'
+  box 0.2 0.2 2.2 | awk 'NR > 2 && NF == 3 { print $1 + 1, $2 - 2, $3 + 1.9 }'
+  box 8 8 2 | awk 'NR > 2 && NF == 3 { print $1, $2, $3 + 4 }'
+  box 1 1 1 | awk 'NF == 4 { for (n = 0; n < 24; n += 8) all[n] = all[n] $1 " " $2 + n " " $3 + n " " $4 + n "\n" } END { printf "%s%s%s", all[0], all[8], all[16] }'
+} >strut.off
+ok 'two plates and a strut' sh -c 'vam-plan strut.off --no-preview --report strut.json >strut 2>.log/strut'
+holds 'the walls are the plates' "$(json strut.json thinnest_wall_mm) > 1"
+holds 'the strut is the thinnest place' "($(json strut.json thinnest_place_mm) - 0.2) ^ 2 < 0.07 ^ 2"
+ok 'the table says where' grep -Eq '^  thinnest place   [234][0-9.]* voxels \(0.[12][0-9]* mm\) at x, y, z = (0.9|1|1.0)[0-9]*, -(1.9|2|2.0)[0-9]*, -?[0-9.]+ mm' strut
+is 'and of a plain block nothing' "$(box 8 8 4 >plain.off; vam-plan plain.off --no-preview | grep -c 'thinnest place')" 0
+
 fails 66 'none.stl' vam-plan none.stl
 echo hello >text.stl
 fails 65 'text.stl' vam-plan text.stl

@@ -168,7 +168,10 @@ void add_walls(Plan& plan, const solid::Part& part) {
   plan.wall_voxels = walls.thinnest_voxels;
   plan.wall_mm = walls.thinnest_mm;
   if (has_walls_below_a_voxel(fine.content.unresolved, walls)) plan.wall_voxels.reset();
-  if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
+  if (!plan.wall_voxels) return;
+  *plan.wall_voxels *= plan.wall_resolution;
+  plan.thinnest_place = walls.thinnest_place;
+  if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
 }
 
 double million_voxels(const model::Grid& grid, int coarseness) {

@@ -96,6 +96,17 @@ std::string wall_words(const Plan& plan) {
          (*plan.wall_voxels < solid::least_printed_voxels ? "; walls below 3 voxels seldom print" : "");
 }
 
+/// A strut, or what else is thinner than nearly all walls.
+std::string place_row(const Plan& plan) {
+  const auto& place = plan.thinnest_place;
+  if (!place) return "";
+  const auto& at = place->at_mm;
+  return row("  thinnest place", number(place->voxels) + (place->voxels == 1 ? " voxel (" : " voxels (") +
+                                     number(place->mm) + " mm) at x, y, z = " + number(at[0]) + ", " + number(at[1]) +
+                                     ", " + number(at[2]) + " mm" +
+                                     (place->voxels < solid::least_printed_voxels ? "; it seldom prints" : ""));
+}
+
 Json fit_json(const Fit& fit) {
   Json json;
   json["fits"] = fit.fits();
@@ -122,7 +133,7 @@ std::string table(const Plan& plan) {
                                   " mm: " + needed);
   }
   text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm / plan.stretch_z) + " mm");
-  text += row("thinnest wall", wall_words(plan));
+  text += row("thinnest wall", wall_words(plan)) + place_row(plan);
   if (plan.sharp_edges)
     text += row("sharp edges", "some, or tips, taper to less than 3 voxels, and seldom print there");
   return plan.coarseness > 0 ? text + print_rows(plan) : text;
@@ -138,6 +149,11 @@ Json report(const Plan& plan) {
   if (plan.wall_voxels) {
     json["thinnest_wall_voxels"] = *plan.wall_voxels;
     json["thinnest_wall_mm"] = plan.wall_mm;
+    if (plan.thinnest_place) {
+      json["thinnest_place_voxels"] = plan.thinnest_place->voxels;
+      json["thinnest_place_mm"] = plan.thinnest_place->mm;
+      json["thinnest_place_at_mm"] = plan.thinnest_place->at_mm;
+    }
   }
   json["sharp_edges"] = plan.sharp_edges;
   if (plan.coarseness > 0) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -162,13 +163,30 @@ std::array<double, 3> inwards(const model::Volume& part, const std::array<int, 3
   return sum;
 }
 
+/// Of the directions into the faces on both sides, which both have with it.
+std::array<double, 3> opening(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+/// In a strut of an even number of voxels faces seem to open towards its middle, which lies between voxels: there, a
+/// voxel on, they open the other way, where those of a wedge go on.
+bool is_beside_middle(const model::Volume& part, const Crossing& across, const std::array<double, 3>& opens) {
+  std::size_t axis = 0;
+  for (std::size_t other = 1; other < 3; ++other)
+    if (std::abs(opens[other]) > std::abs(opens[axis])) axis = other;
+  Crossing next = across;
+  for (auto* at : {&next.near, &next.far}) (*at)[axis] += opens[axis] > 0 ? 1 : -1;
+  return opening(inwards(part, next.near), inwards(part, next.far))[axis] * opens[axis] < 0;
+}
+
 /// Whether the faces on both sides converge, as at the edge of a wedge, or the way ends far off, as in a cone's tip.
 bool tapers(const model::Volume& part, const Crossing& across) {
   if (across.thickness > farthest_of_ball * across.ball + 2) return true;
   const auto a = inwards(part, across.near);
   const auto b = inwards(part, across.far);
   const double lengths = std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]);
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > widest_cosine * lengths;
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > widest_cosine * lengths &&
+         !is_beside_middle(part, across, opening(a, b));
 }
 
 /// In the stretched target and in the print.
@@ -180,9 +198,14 @@ struct Thickness {
   }
 };
 
+struct Wall {
+  Thickness thickness;
+  std::int64_t at;
+};
+
 /// Of the part's middle.
 struct Places {
-  std::vector<Thickness> walls;
+  std::vector<Wall> walls;
   std::vector<Crossing> tapering;
   void add(const Places& more) {
     walls.insert(walls.end(), more.walls.begin(), more.walls.end());
@@ -211,7 +234,7 @@ Places middle_of(const model::Volume& part, const Field& field, double stretch_z
         if (tapers(part, across)) {
           own.tapering.push_back(across);
         } else {
-          own.walls.push_back(thickness_of(across, across.thickness, stretch_z));
+          own.walls.push_back({thickness_of(across, across.thickness, stretch_z), here});
         }
       }
     }
@@ -219,6 +242,43 @@ Places middle_of(const model::Volume& part, const Field& field, double stretch_z
     all.add(own);
   });
   return all;
+}
+
+/// One place may be thin by its steps alone; a strut or a wall has more of them beside it.
+std::optional<Walls::Place> thinnest_place(std::vector<Wall> walls, double usual_voxels, const Field& field,
+                                           const model::Grid& grid, double stretch_z) {
+  constexpr double accuracy = 1.5;  // voxels
+  constexpr double steps = 0.75;    // by which places of one wall differ
+  constexpr int reach = 2;
+  constexpr int fewest = 4;
+  const auto before = [](const Wall& a, const Wall& b) { return a.at < b.at; };
+  std::erase_if(walls, [&](const Wall& wall) { return wall.thickness.voxels > usual_voxels - accuracy + steps; });
+  std::sort(walls.begin(), walls.end(), before);
+  const auto confirmed = [&](const Wall& wall) {
+    const auto [i, j, k] = field.place(wall.at);
+    int found = 0;
+    for (int z = std::max(k - reach, 0); z <= std::min(k + reach, field.size[2] - 1); ++z) {
+      for (int y = std::max(j - reach, 0); y <= std::min(j + reach, field.size[1] - 1); ++y) {
+        const std::int64_t last = field.index(std::min(i + reach, field.size[0] - 1), y, z);
+        auto other =
+            std::lower_bound(walls.begin(), walls.end(), Wall{{}, field.index(std::max(i - reach, 0), y, z)}, before);
+        for (; other != walls.end() && other->at <= last; ++other)
+          found += other->thickness.voxels <= wall.thickness.voxels + steps ? 1 : 0;
+      }
+    }
+    return found > fewest;
+  };
+  const Wall* thinnest = nullptr;
+  for (const Wall& wall : walls) {
+    const bool thinner =
+        thinnest == nullptr ? wall.thickness.voxels <= usual_voxels - accuracy : wall.thickness < thinnest->thickness;
+    if (thinner && confirmed(wall)) thinnest = &wall;
+  }
+  if (thinnest == nullptr) return std::nullopt;
+  const auto [i, j, k] = field.place(thinnest->at);
+  return Walls::Place{thinnest->thickness.voxels,
+                      thinnest->thickness.print_voxels * grid.voxel_mm,
+                      {grid.x_mm(i - 1), grid.y_mm(j - 1), grid.z_mm(k - 1) / stretch_z}};
 }
 
 }  // namespace
@@ -235,15 +295,18 @@ Walls walls(const model::Volume& part, double stretch_z) {
       thinnest = std::max(thinnest, thickness_of(across, across.ball, stretch_z));
     }
   } else {
-    const auto at =
-        places.walls.begin() + static_cast<std::ptrdiff_t>(thin_share * static_cast<double>(places.walls.size()));
-    std::nth_element(places.walls.begin(), at, places.walls.end());
+    std::vector<Thickness> all;
+    all.reserve(places.walls.size());
+    for (const Wall& wall : places.walls) all.push_back(wall.thickness);
+    const auto at = all.begin() + static_cast<std::ptrdiff_t>(thin_share * static_cast<double>(all.size()));
+    std::nth_element(all.begin(), at, all.end());
     thinnest = *at;
   }
   const double sharp = std::min(least_printed_voxels, thinnest.voxels - 1);  // the ends of a thin wall are no thinner
   const auto thin = std::count_if(places.tapering.begin(), places.tapering.end(),
                                   [&](const Crossing& across) { return across.thickness < sharp; });
   return {thinnest.voxels, thinnest.print_voxels * part.grid.voxel_mm,
+          thinnest_place(std::move(places.walls), thinnest.voxels, field, part.grid, stretch_z),
           static_cast<double>(thin) > sharp_share * static_cast<double>(middle)};
 }
 

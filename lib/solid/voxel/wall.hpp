@@ -2,6 +2,7 @@
 // How thin the walls of a part are, in voxels and in mm.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "model/grid.hpp"
@@ -14,7 +15,15 @@ struct Walls {
   /// The thickness that one in a hundred places of the walls' middle does not exceed; where a part has no walls, as a
   /// cone, the diameter of the largest ball within; none for a part without a voxel.
   std::optional<double> thinnest_voxels;
-  double thinnest_mm = 0;    // of the print: a way along z is shorter in the resin than in the stretched target
+  double thinnest_mm = 0;  // of the print: a way along z is shorter in the resin than in the stretched target
+  /// The thinnest place of all that a few beside it confirm, as in a strut; none where it is not thinner by more than
+  /// 1.5 voxels.
+  struct Place {
+    double voxels = 0;
+    double mm = 0;                  // of the print
+    std::array<double, 3> at_mm{};  // likewise
+  };
+  std::optional<Place> thinnest_place;
   bool sharp_edges = false;  // one in a hundred places of the middle taper to less than what prints, and than the walls
 };
 

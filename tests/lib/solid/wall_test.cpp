@@ -45,6 +45,30 @@ TEST_CASE("the thinnest wall of plates, also where a thick block stands on one, 
   CHECK(std::abs(thinnest(tilted) - 11 / std::sqrt(2.0)) < 1);  // good to a voxel
 }
 
+TEST_CASE("the thinnest place: one strut between thick blocks, its middle, and no single place") {
+  for (const int n : {1, 2, 3, 4, 5, 6}) {
+    CAPTURE(n);
+    const auto joined = filled(90, 90, 56, [n](int i, int j, int k) {
+      return k < 20 || k >= 36 || (i >= 12 && i < 12 + n && j >= 27 && j < 27 + n);
+    });
+    const solid::Walls found = solid::walls(joined, 1.25);
+    CHECK(*found.thinnest_voxels > 10);  // of the blocks
+    REQUIRE(found.thinnest_place);
+    CHECK(found.thinnest_place->voxels == doctest::Approx(n).epsilon(0.5 / n));
+    CHECK(found.thinnest_place->mm == doctest::Approx(found.thinnest_place->voxels));  // level ways
+    const auto& at = found.thinnest_place->at_mm;
+    CHECK(std::abs(at[0] - (12 + 0.5 * (n - 1))) <= 0.5);
+    CHECK(std::abs(at[1] - (27 + 0.5 * (n - 1))) <= 0.5);
+    CHECK(at[2] * 1.25 >= 20);
+    CHECK(at[2] * 1.25 < 36);
+  }
+  const auto block = filled(40, 40, 40, [](int i, int j, int k) {
+    return (i < 30 && j < 30 && k < 30) || (i == 15 && j == 15 && k == 31);  // a speck
+  });
+  const solid::Walls plain = solid::walls(block);
+  CHECK(!plain.thinnest_place);
+}
+
 TEST_CASE("walls of a stretched target in mm of the print") {
   constexpr double stretch = 1.25;
   auto plate = filled(30, 30, 16, [](int, int, int k) { return k >= 2 && k < 12; });
