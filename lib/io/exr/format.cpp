@@ -4,6 +4,7 @@
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfVersion.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -23,14 +24,18 @@ class MemoryReader : public Imf::IStream {
     if (size < 0 || at_ > bytes_.size() || wanted > bytes_.size() - at_) throw std::runtime_error("ends too early");
     std::memcpy(to, bytes_.data() + at_, wanted);
     at_ += wanted;
+    end_ = std::max(end_, at_);
     return at_ < bytes_.size();
   }
   std::uint64_t tellg() override { return at_; }
   void seekg(std::uint64_t at) override { at_ = at; }
+  /// Of all that was read.
+  [[nodiscard]] std::uint64_t end() const { return end_; }
 
  private:
   const std::string& bytes_;
   std::uint64_t at_ = 0;
+  std::uint64_t end_ = 0;
 };
 
 class MemoryWriter : public Imf::OStream {
@@ -238,6 +243,12 @@ Image decode_single(const std::string& bytes) {
   pixels.insert(name, float_slice(image.values.data(), window));
   file.setFrameBuffer(pixels);
   file.readPixels(window.min.y, window.max.y);
+  // Smaller copies of tiled images, and other parts, are of the file but not read.
+  const bool all_read = !header.hasTileDescription() && !Imf::isMultiPart(file.version());
+  if (all_read && stream.end() < bytes.size()) {
+    throw std::runtime_error("has " + std::to_string(bytes.size() - stream.end()) +
+                             " bytes behind the end of its EXR image; it is damaged, or holds several images");
+  }
   return image;
 }
 

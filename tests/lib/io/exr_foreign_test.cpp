@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -13,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/exr/single_image.hpp"
 #include "lib/io/exr_stacks.hpp"
 
 using namespace vam;
@@ -173,4 +176,31 @@ TEST_CASE("a file that is not a stack is status 65") {
   CHECK(open("kindless.exr") == 65);
   CHECK(line.find("vam:kind") != std::string::npos);
   CHECK(open("absent.exr") == 66);
+}
+
+TEST_CASE("bytes behind the end of an EXR image are refused with their number") {
+  const scratch::Folder folder;
+  const std::string path = folder / "one.exr";
+  std::vector<float> values{1, 2, 3, 4, 5, 6};
+  for (const Imf::Compression how : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+    {
+      Imf::Header header(3, 2);
+      header.compression() = how;
+      header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+      Imf::OutputFile file(path.c_str(), header);
+      Imf::FrameBuffer pixels;
+      pixels.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 12));
+      file.setFrameBuffer(pixels);
+      file.writePixels(2);
+    }
+    CHECK(read_exr_image(path).values == values);
+    const std::string bytes = scratch::slurp(path);
+    spill(path, bytes + "junk!");
+    std::string line;
+    CHECK(status([&] { (void)read_exr_image(path); }, &line) == 65);
+    CHECK(line.find("one.exr: has 5 bytes behind the end of its EXR image; it is damaged, or holds several images") !=
+          std::string::npos);
+    spill(path, bytes.substr(0, bytes.size() - 1));
+    CHECK(status([&] { (void)read_exr_image(path); }) == 65);
+  }
 }
