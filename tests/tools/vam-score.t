@@ -15,7 +15,7 @@ ok "a report on stdout" sh -c 'vam-score --report - --grid target part.vdb >out.
 is "the former --json is a report on stdout" "$(vam-score --json --grid target part.vdb 2>warning)" "$(vam-score --report - --grid target part.vdb)"
 is "with a warning" "$(cat warning)" "vam-score: warning: --json is now --report -"
 is "the report on stdout has the figures of the file" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
-is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 23
+is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 26
 ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0 [(][0-9]+ voxels[)]; including the [0-9]+ voxels cut by the surface: process window [-+0-9.e]+, VER "'
 is "the verdict counts part and surface voxels" "$(json perfect.json with_surface.voxels)" \
   $(($(json perfect.json part_voxels) + $(json perfect.json void_voxels) + $(json perfect.json surface_voxels)))
@@ -70,7 +70,7 @@ vam-score --grid target foot.vdb --target stand.vdb --require 'pw>0,broken_voxel
 is "can be required to be whole" "$? $(cat why)" "1 vam-score: broken_voxels = 40, but broken_voxels<=0 is required"
 vam-score --grid target foot.vdb --target stand.vdb --require 'prints>=1' >table 2>why
 is "by its verdict, too" "$? $(cat why)" "1 vam-score: prints = 0, but prints>=1 is required"
-quiet "a part that will print as designed" vam-score --grid target stand.vdb --target stand.vdb --require 'prints>=1'
+quiet "a part that will print as designed" vam-score --grid target part.vdb --target part.vdb --require 'prints>=1'
 # A fin that straddles two voxels, none of which is half covered, and a slot that leaves three quarters of one free.
 {
   printf 'OFF\n16 24 0\n'
