@@ -70,6 +70,8 @@ vam-score --grid target foot.vdb --target stand.vdb --require 'pw>0,broken_voxel
 is "can be required to be whole" "$? $(cat why)" "1 vam-score: broken_voxels = 40, but broken_voxels<=0 is required"
 vam-score --grid target foot.vdb --target stand.vdb --require 'prints>=1' >table 2>why
 is "by its verdict, too" "$? $(cat why)" "1 vam-score: prints = 0, but prints>=1 is required"
+vam-score --grid target foot.vdb --target stand.vdb --surface --report seen.json >table
+is "pieces are of the same print with --surface" "$(json seen.json print_pieces) $(json seen.json broken_voxels)" "2 40"
 quiet "a part that will print as designed" vam-score --grid target part.vdb --target part.vdb --require 'prints>=1'
 # A fin that straddles two voxels, none of which is half covered, and a slot that leaves three quarters of one free.
 {
