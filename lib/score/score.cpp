@@ -146,7 +146,7 @@ double Score::figure(const std::string& name) const {
   if (name == "part_pieces") return pieces_ ? pieces_->part : none;
   if (name == "part_pieces_at_half") return pieces_ ? pieces_->part_at_half : none;
   if (name == "print_pieces") return pieces_ ? pieces_->print : none;
-  if (name == "prints") return score::prints(verdict()) && is_whole(verdict()) ? 1 : 0;
+  if (name == "prints") return answer(verdict()) == Answer::yes ? 1 : 0;
   if (name == "broken_voxels") return pieces_ ? static_cast<double>(pieces_->broken) : none;
   if (name == "shut_voxels") return pieces_ ? static_cast<double>(pieces_->shut) : none;
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;

@@ -17,10 +17,6 @@ bool holds_threshold(const Verdict& verdict) {
   return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
 }
 
-bool is_certain(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_certain(); }
-
-bool is_as_part(const Verdict& verdict) { return !verdict.pieces || verdict.pieces->is_as_part(); }
-
 std::string in_pieces(int count) { return std::to_string(count) + (count == 1 ? " piece" : " pieces"); }
 
 std::string pieces_text(const model::PrintPieces& pieces) {
@@ -43,12 +39,20 @@ std::string pieces_text(const model::PrintPieces& pieces) {
   return text;
 }
 
-std::string answer(const Verdict& verdict) {
-  const model::Unresolved& un = verdict.unresolved;
-  if (verdict.whole.part == 0) return "not judged, as no voxel is wholly inside the part";
-  if (!prints(verdict)) return "will not print";
-  if (un.loses_walls() || un.shuts_gaps() || !is_as_part(verdict)) return "will not print as designed";
-  return un.is_much() || !is_certain(verdict) ? "may print" : "will print";
+const char* beginning(Answer answer) {
+  switch (answer) {
+    case Answer::not_judged:
+      return "not judged, as no voxel is wholly inside the part";
+    case Answer::no:
+      return "will not print";
+    case Answer::not_as_designed:
+      return "will not print as designed";
+    case Answer::unsure:
+      return "may print";
+    case Answer::yes:
+      break;
+  }
+  return "will print";
 }
 
 std::string unjudged(const model::Unresolved& un) {
@@ -68,16 +72,19 @@ std::string unjudged(const model::Unresolved& un) {
 
 }  // namespace
 
-bool prints(const Verdict& verdict) { return verdict.whole.pw > 0 && holds_threshold(verdict); }
-
-bool is_whole(const Verdict& verdict) {
+Answer answer(const Verdict& verdict) {
   const model::Unresolved& un = verdict.unresolved;
-  return !un.loses_walls() && !un.shuts_gaps() && !un.is_much() && is_certain(verdict) && is_as_part(verdict);
+  const auto& pieces = verdict.pieces;
+  if (verdict.whole.part == 0) return Answer::not_judged;
+  if (!(verdict.whole.pw > 0) || !holds_threshold(verdict)) return Answer::no;
+  if (un.loses_walls() || un.shuts_gaps() || (pieces && !pieces->is_as_part())) return Answer::not_as_designed;
+  return un.is_much() || (pieces && !pieces->is_certain()) ? Answer::unsure : Answer::yes;
 }
 
 std::string words(const Verdict& verdict) {
   const std::int64_t cut = voxels(verdict.with_cut) - voxels(verdict.whole);
-  std::string line = answer(verdict);
+  const Answer judged = answer(verdict);
+  std::string line = beginning(judged);
   if (!holds_threshold(verdict)) {
     line += " at the threshold of " + format_number(*verdict.threshold, 3) + " (void up to " +
             format_number(verdict.whole.max_void, 3) + ", part at least " + format_number(verdict.whole.min_part, 3) +
@@ -89,7 +96,7 @@ std::string words(const Verdict& verdict) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);
   }
-  if (prints(verdict) && verdict.pieces) line += pieces_text(*verdict.pieces);
+  if (judged > Answer::no && verdict.pieces) line += pieces_text(*verdict.pieces);
   line += unjudged(verdict.unresolved);
   if (verdict.seconds) line += "; duration " + format_number(*verdict.seconds, 4) + " s";
   return line;
@@ -97,7 +104,7 @@ std::string words(const Verdict& verdict) {
 
 void add_to(Json& figures, const Verdict& verdict) {
   figures["verdict"] = words(verdict);
-  figures["prints"] = prints(verdict) && is_whole(verdict) ? 1 : 0;
+  figures["prints"] = answer(verdict) == Answer::yes ? 1 : 0;
   figures["with_surface"] = {{"voxels", voxels(verdict.with_cut)},
                              {"ver", verdict.with_cut.ver},
                              {"pw", verdict.with_cut.pw},

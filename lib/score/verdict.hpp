@@ -24,18 +24,22 @@ struct Verdict {
   std::optional<model::PrintPieces> pieces = std::nullopt;  // none: not counted
 };
 
-/// The threshold, or some threshold if none is given, prints all voxels that are wholly in part or void.
-[[nodiscard]] bool prints(const Verdict& verdict);
+enum class Answer {
+  not_judged,       // no voxel is wholly inside the part
+  no,               // neither the threshold, nor any where none is given, prints all voxels wholly in part or void
+  not_as_designed,  // walls will be missing, cut off or joined, or gaps shut
+  unsure,           // too much is not judged, or the voxels do not tell in how many pieces the part is
+  yes
+};
+[[nodiscard]] Answer answer(const Verdict& verdict);
 
-/// No walls will be missing, cut off or joined, no gaps shut, and all but little of the part is judged.
-[[nodiscard]] bool is_whole(const Verdict& verdict);
-
-/// "will not print as designed" where walls will be missing, cut off or joined, or gaps shut, "may print" if too much
-/// is not judged, else "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the
-/// 43492 voxels cut by the surface: process window -0.31, VER 0.004; duration 360 s".
+/// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
+/// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will not
+/// print", "will not print as designed", "may print" or "will print".
 [[nodiscard]] std::string words(const Verdict& verdict);
 
-/// verdict, and with_surface: ver, pw, iou and the number of voxels.
+/// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), and the pieces, where
+/// they are counted.
 void add_to(Json& figures, const Verdict& verdict);
 
 }  // namespace vam::score

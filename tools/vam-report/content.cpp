@@ -59,7 +59,7 @@ std::string verdict(bool good, const std::string& words) {
 
 std::string verdict(const Judged& judged) {
   const score::Verdict verdict = judged.score.verdict();
-  return report_tool::verdict(score::prints(verdict) && score::is_whole(verdict), score::words(verdict));
+  return report_tool::verdict(score::answer(verdict) == score::Answer::yes, score::words(verdict));
 }
 
 std::string images(const std::vector<std::string>& paths) {

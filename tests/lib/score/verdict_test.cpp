@@ -45,69 +45,90 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
   fixed.whole.max_void = 0.7;
   fixed.whole.min_part = 0.8;
   fixed.threshold = 0.8;
-  CHECK(prints(fixed));
+  CHECK(answer(fixed) == Answer::yes);
   CHECK(words(fixed) == words(verdict()));
   for (const double beside : {0.7, 0.81}) {
     fixed.threshold = beside;
-    CHECK(!prints(fixed));
+    CHECK(answer(fixed) == Answer::no);
     CHECK(words(fixed).find("will not print at the threshold of " + vam::format_number(beside) +
                             " (void up to 0.7, part at least 0.8): process window +0.0653") == 0);
   }
 }
 
-// A dose that is the same everywhere has it: what prints the part prints the void, too.
-TEST_CASE("a window of width 0 does not print, and report and message agree") {
+TEST_CASE("walls and gaps that no voxel shows are told") {
   Verdict thin = verdict();
   thin.unresolved.whole = 1000;
   thin.unresolved.part = 19;
   CHECK(words(thin) == words(verdict()));
   thin.unresolved.gaps = 261;
+  CHECK(answer(thin) == Answer::unsure);
   CHECK(words(thin).starts_with("may print: "));
   CHECK(words(thin).find("not judged: 28 % of the part; smaller voxels resolve them") != std::string::npos);
   thin.unresolved.lost_walls.voxels = 14;
+  CHECK(answer(thin) == Answer::not_as_designed);
   CHECK(words(thin).starts_with("will not print as designed: "));
   CHECK(words(thin).find("; 1.4 % of the part is in walls too thin for the voxels and will be missing") !=
         std::string::npos);
-  CHECK(!is_whole(thin));
-  Verdict none = verdict();
-  none.whole.part = 0;
-  CHECK(words(none).starts_with("not judged, as no voxel is wholly inside the part: "));
+  thin.whole.pw = -0.1;
+  CHECK(words(thin).starts_with("will not print: "));
+}
+
+TEST_CASE("slits and hairs are told however small their share is") {
   Verdict slit = verdict();
   slit.unresolved.lost_gaps = {40, 0.5F, 3, 9};
-  CHECK(words(slit).starts_with("will not print as designed: "));
+  CHECK(answer(slit) == Answer::not_as_designed);
   CHECK(words(slit).find("gaps too narrow for the voxels will be shut") != std::string::npos);
-  CHECK(is_whole(verdict()));
   Verdict hair = verdict();
   hair.unresolved.whole = 1e6;
   hair.unresolved.lost_walls.far = hair.unresolved.lost_walls.voxels = 3;
-  CHECK(words(hair).starts_with("will not print as designed: "));
+  CHECK(answer(hair) == Answer::not_as_designed);
   CHECK(words(hair).ends_with("; walls or rods too thin for the voxels will be missing"));
+}
+
+TEST_CASE("a part without a voxel wholly inside is not judged") {
+  Verdict none = verdict();
+  none.whole.part = 0;
+  CHECK(answer(none) == Answer::not_judged);
+  CHECK(words(none).starts_with("not judged, as no voxel is wholly inside the part: "));
+}
+
+TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   Verdict cut = verdict();
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1};
   CHECK(words(cut) == words(verdict()));
-  CHECK(is_whole(cut));
+  CHECK(answer(cut) == Answer::yes);
   cut.pieces->print = 2;
-  CHECK(words(cut).starts_with("will not print as designed: "));
+  CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; the print is in 2 pieces, the part in 1"));
-  CHECK(!is_whole(cut));
   cut.pieces->part_at_half = 2;  // a rod that is not seen, or a gap
-  CHECK(words(cut).starts_with("may print: "));
+  CHECK(answer(cut) == Answer::unsure);
   CHECK(words(cut).ends_with(
       "; the print is in 2 pieces, and the voxels are too coarse to tell whether the part is in 1 or 2"));
-  CHECK(!is_whole(cut));
+  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .broken = 4};
+  CHECK(answer(cut) == Answer::not_as_designed);
+  CHECK(words(cut).ends_with("; walls are cut or missing: 4 voxels that the part fills by half or more do not cure"));
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .shut = 8};
-  CHECK(words(cut).starts_with("will not print as designed: "));
+  CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; gaps are shut: 8 voxels that the part fills by less than a quarter cure"));
   cut.whole.pw = -0.1;  // pieces of what does not print at all say nothing
-  CHECK(words(cut).find("pieces") == std::string::npos);
-  thin.whole.pw = -0.1;
-  CHECK(words(thin).starts_with("will not print: "));
+  CHECK(words(cut).find("gaps are shut") == std::string::npos);
+}
+
+// A dose that is the same everywhere has it: what prints the part prints the void, too.
+TEST_CASE("a window of width 0 does not print, and report and message agree") {
   Verdict edge = verdict();
   edge.whole.pw = 0;
-  CHECK(!prints(edge));
+  CHECK(answer(edge) == Answer::no);
   Json figures;
   add_to(figures, edge);
   CHECK(figures["verdict"] == words(edge));
+  CHECK(figures["prints"] == 0);
   CHECK(figures["with_surface"]["voxels"] == 1110);
   CHECK(figures["with_surface"]["pw"] == -0.312);
+  edge.whole.pw = 0.1;
+  edge.pieces = {.part = 1, .part_at_half = 1, .print = 1};
+  Json good;
+  add_to(good, edge);
+  CHECK(good["prints"] == 1);
+  CHECK(good["print_pieces"] == 1);
 }
