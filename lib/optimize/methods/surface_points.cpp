@@ -14,12 +14,15 @@ namespace {
 constexpr float half = 0.5F;
 constexpr float cost = 0.25F;  // of a point or a cut voxel, relative to another voxel
 
-/// Coverage by voxel, in the order of the slices.
+/// Coverage by voxel, in the order of the slices: a volume where they are stacked, else slices that have no neighbours.
 class TargetVolume {
  public:
   using At = std::array<int, 3>;  // x, y, slice
 
   explicit TargetVolume(const Problem& problem) : problem_(problem) {}
+
+  /// Along which voxels have neighbours.
+  [[nodiscard]] int axes() const { return problem_.stacked ? 3 : 2; }
 
   [[nodiscard]] bool contains(const At& at) const {
     const Slab& slab = problem_.target[0];
@@ -40,12 +43,16 @@ class TargetVolume {
     return at;
   }
 
-  /// How steep the coverage is along an axis: differences across the voxel, smoothed by 1, 2, 1 along both others.
+  /// How steep the coverage is along an axis: differences across the voxel, smoothed by 1, 2, 1 along the others.
   [[nodiscard]] float slope(const At& at, int axis) const {
+    const int one = (axis + 1) % 3;
+    const int other = (axis + 2) % 3;
+    const int along_one = one < axes() ? 1 : 0;
+    const int along_other = other < axes() ? 1 : 0;
     float sum = 0;
-    for (int u = -1; u <= 1; ++u) {
-      for (int v = -1; v <= 1; ++v) {
-        const At here = moved(moved(at, (axis + 1) % 3, u), (axis + 2) % 3, v);
+    for (int u = -along_one; u <= along_one; ++u) {
+      for (int v = -along_other; v <= along_other; ++v) {
+        const At here = moved(moved(at, one, u), other, v);
         const auto weight = static_cast<float>((2 - std::abs(u)) * (2 - std::abs(v)));
         sum += weight * (coverage(moved(here, axis, 1)) - coverage(moved(here, axis, -1)));
       }
@@ -78,12 +85,11 @@ bool crosses(float a, float b) { return (a >= half) != (b >= half); }
 /// The points that begin in one row of voxels.
 class VoxelRow {
  public:
-  VoxelRow(const Problem& problem, const TargetVolume& volume, int axes)
-      : problem_(problem), volume_(volume), axes_(axes) {}
+  VoxelRow(const Problem& problem, const TargetVolume& volume) : problem_(problem), volume_(volume) {}
 
   void find(const TargetVolume::At& at, std::vector<SurfacePoint>& points) const {
     const float here = volume_.coverage(at);
-    for (int axis = 0; axis < axes_; ++axis) {
+    for (int axis = 0; axis < volume_.axes(); ++axis) {
       const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
       if (!volume_.contains(next) || !crosses(here, volume_.coverage(next))) continue;
       const auto [steepest, cosine] = normal(at, axis);
@@ -111,7 +117,7 @@ class VoxelRow {
     int steepest = axis;
     float most = std::abs(here);
     float square = here * here;
-    for (int other = 0; other < axes_; ++other) {
+    for (int other = 0; other < volume_.axes(); ++other) {
       if (other == axis) continue;
       const float there = slope(other);
       if (std::abs(there) > most || (std::abs(there) == most && other < steepest)) {
@@ -132,7 +138,6 @@ class VoxelRow {
 
   const Problem& problem_;
   const TargetVolume& volume_;
-  int axes_;
 };
 
 std::vector<CutVoxel> cut_voxels(const Problem& problem) {
@@ -158,7 +163,7 @@ SurfacePoints::SurfacePoints(const Problem& problem)
   if (!asks_surface(problem.demands)) return;
   const Slab& slab = problem.target[0];
   const TargetVolume volume(problem);
-  const VoxelRow row(problem, volume, problem.stacked ? 3 : 2);
+  const VoxelRow row(problem, volume);
   const int slabs = count_of(problem.target);
   std::vector<std::vector<SurfacePoint>> rows(product(slabs, slab.height));
   parallel_for(count_of(rows), [&](int n) {

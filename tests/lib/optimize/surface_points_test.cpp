@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <random>
 
@@ -138,6 +140,41 @@ TEST_CASE("a flat face between the layers of voxels is found where it is") {
       CHECK(static_cast<float>(x) + p.share == doctest::Approx(23.5F + covered));
     }
     CHECK(faces >= 8 * 8);
+  }
+}
+
+TEST_CASE("a slice that is not stacked has the points that it has alone, whatever lies beside it") {
+  const std::vector<float> volume = ball();
+  const auto slice = [&](int z) {
+    return std::vector<float>(volume.begin() + z * size * size, volume.begin() + (z + 1) * size * size);
+  };
+  const auto mirrored = [&](int z) {
+    std::vector<float> values = slice(z);
+    std::reverse(values.begin(), values.end());
+    return values;
+  };
+  const std::vector<std::vector<float>> pass{slice(17), mirrored(13), slice(0), slice(28), mirrored(26)};
+  const auto packed = parts::stacked(pass);
+  const auto points_of = [](const std::vector<float>& slices, int count) {
+    return SurfacePoints(parts::make_problem(slices.data(), count, size, size, parts::circle(size), {})).points();
+  };
+  const std::vector<SurfacePoint> all = points_of(packed, 5);
+  for (std::uint32_t k = 0; k < 5; ++k) {
+    CAPTURE(k);
+    std::vector<SurfacePoint> here;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(here), [&](const SurfacePoint& p) {
+      CHECK(p.from.i % lanes == p.to.i % lanes);
+      return p.from.i % lanes == k;
+    });
+    const std::vector<SurfacePoint> alone = points_of(pass[k], 1);
+    CHECK(alone.empty() == (k == 2));
+    REQUIRE(here.size() == alone.size());
+    for (std::size_t n = 0; n < alone.size(); ++n) {
+      CHECK(here[n].from.i - k == alone[n].from.i);
+      CHECK(here[n].to.i - k == alone[n].to.i);
+      CHECK(here[n].share == alone[n].share);
+      CHECK(here[n].cosine == alone[n].cosine);
+    }
   }
 }
 
