@@ -168,7 +168,7 @@ SurfacePoints::SurfacePoints(const Problem& problem)
   std::vector<std::vector<SurfacePoint>> rows(product(slabs, slab.height));
   parallel_for(count_of(rows), [&](int n) {
     const int first = n / slab.height * lanes;
-    for (int x = 0; x < slab.width - 1; ++x) {
+    for (int x = 0; x < slab.width; ++x) {
       for (int k = first; k < std::min(first + lanes, problem.slices); ++k) row.find({x, n % slab.height, k}, rows[n]);
     }
   });

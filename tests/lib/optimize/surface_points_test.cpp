@@ -178,6 +178,39 @@ TEST_CASE("a slice that is not stacked has the points that it has alone, whateve
   }
 }
 
+TEST_CASE("a part that reaches the border of its grid has as many points as its mirror images") {
+  const std::array<int, 3> counts{9, 7, 5};
+  const Circle wide{4, 3, 20};
+  const auto points = [&](int wall, int mirrored) {  // a block from `wall` to the border along each axis
+    std::vector<float> volume;
+    for (int z = 0; z < counts[2]; ++z) {
+      for (int y = 0; y < counts[1]; ++y) {
+        for (int x = 0; x < counts[0]; ++x) {
+          std::array<int, 3> at{x, y, z};
+          if (mirrored >= 0) at[mirrored] = counts[mirrored] - 1 - at[mirrored];
+          volume.push_back(at[0] >= wall && at[1] >= wall && at[2] >= wall ? 1.0F : 0.0F);
+        }
+      }
+    }
+    const Problem problem =
+        parts::make_problem(volume.data(), counts[2], counts[0], counts[1], wide, {}, nullptr, nullptr, true);
+    return SurfacePoints(problem).points().size();
+  };
+  const std::size_t as_is = points(2, -1);
+  // Of the faces of 5 x 3, 7 x 3 and 7 x 5 voxels, all but some at their edges.
+  CHECK(as_is > 4 * 2 + 6 * 2 + 6 * 4);
+  for (const int axis : {0, 1, 2}) CHECK(points(2, axis) == as_is);
+}
+
+TEST_CASE("a grid of one column has points, too") {
+  const std::vector<float> column{0, 1, 1, 0, 0};
+  const auto points = [&](int width, int height) {
+    return SurfacePoints(parts::make_problem(column.data(), 1, width, height, {2, 2, 20}, {})).points().size();
+  };
+  CHECK(points(5, 1) == 2);
+  CHECK(points(1, 5) == 2);
+}
+
 TEST_CASE("slopes are the transpose of misses, and the derivative of the losses") {
   const Problem problem = problem_of(ball(), {});
   const SurfacePoints surface(problem);
