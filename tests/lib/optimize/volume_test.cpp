@@ -78,7 +78,8 @@ TEST_CASE("more slices than a pass come out in order, each as if alone") {
     for (const int k : {66, 33}) {
       CAPTURE(k);
       const auto alone = run({slices[k]}, task);
-      // The filter transforms two slices at a time, so a neighbour changes the rounding: a few ulp of the largest value.
+      // The filter transforms two slices at a time, so a neighbour changes the rounding: a few ulp of the largest
+      // value.
       const auto& want = alone.images[0].values;
       const float largest = *std::max_element(want.begin(), want.end());
       float worst = 0;
