@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-score: scores a dose against its target.
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "facts.hpp"
 #include "grey_target.hpp"
 #include "io/exr/stack.hpp"
+#include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
@@ -57,7 +59,9 @@ void require_known(const std::vector<model::Condition>& conditions, const Option
 }
 
 void require_files_for_outputs(const Options& options) {
-  if (options.print_as == "points" && (options.print.ends_with(".stl") || options.print.ends_with(".obj")))
+  const auto is_mesh = [&](const std::string& ending) { return ending != ".ply" && options.print.ends_with(ending); };
+  const std::vector<std::string> endings = io::written_mesh_endings();
+  if (options.print_as == "points" && std::any_of(endings.begin(), endings.end(), is_mesh))
     throw Error{Fault::usage, options.print + ": points are written as .ply"};
   for (const auto& output : {options.print, options.lit_fraction}) {
     if (output != "-") continue;

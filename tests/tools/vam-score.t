@@ -111,7 +111,9 @@ print(model.tag == core + "model", model.get("unit"), max(corners) == points - 1
 PY
 )" 'None [Content_Types].xml _rels/.rels 3D/3dmodel.model True millimeter True 0'
 is "OBJ counts corners from 1" "$(head -n 3 print.obj | cut -d' ' -f1 | tr -d '\n')" '#vv'
-fails 64 'points are written as .ply' vam-score --grid target part.vdb --mesh points.obj --ply-as points
+for ending in stl obj 3mf; do
+  fails 64 'points are written as .ply' vam-score --grid target part.vdb --mesh points.$ending --ply-as points
+done
 quiet "the print as points" vam-score --grid target part.vdb --mesh points.ply --ply-as points
 is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quality')" 1
 
