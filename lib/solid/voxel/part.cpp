@@ -109,8 +109,9 @@ void count_row(const model::Grid& grid, double y, const float* row, FillSummary&
     if (value == 0) continue;
     voxels += value;
     content.most = std::max(content.most, value);
-    ++(value == 1 ? content.solid_voxels : content.surface_voxels);
-    if (value <= model::coverage_rounding) continue;
+    const model::Label label = model::label_of(value);
+    if (label == model::Label::void_) continue;
+    ++(label == model::Label::part ? content.solid_voxels : content.surface_voxels);
     first = std::min(first, i);
     last = i;
   }

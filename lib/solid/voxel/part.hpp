@@ -60,8 +60,8 @@ struct ImageStack {
 /// What a filled grid holds.
 struct FillSummary {
   double volume_mm3 = 0;    // in the target's frame, stretched along z
-  long solid_voxels = 0;    // coverage 1
-  long surface_voxels = 0;  // coverage between 0 and 1
+  long solid_voxels = 0;    // wholly covered, but for rounding [model::label_of]
+  long surface_voxels = 0;  // partly
   float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
   model::Unresolved unresolved;
