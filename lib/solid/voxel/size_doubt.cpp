@@ -30,7 +30,7 @@ std::string heights(int first, int end, const model::Grid& grid, double stretch_
          format_number(grid.z_mm(end - 0.5) / stretch_z, 3) + " mm";
 }
 
-/// Of walls that are lost, if they are a thousandth of the part or more, or long.
+/// Of walls that are lost, if they are a thousandth of the part or more, and of rods.
 std::string wall_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
                        double stretch_z) {
   const model::LostWalls& lost = unresolved.lost_walls;
@@ -38,9 +38,11 @@ std::string wall_doubt(const std::string& subject, const model::Unresolved& unre
   const std::string what = unresolved.loses_much()
                                ? format_number(100 * unresolved.lost_share(), 2) + " % of the part is in walls"
                                : "walls or rods are";
+  const auto most = static_cast<double>(lost.most);
+  const double thick = unresolved.loses_much() ? most : std::sqrt(most);  // of a rod its area is covered
   return subject + ": " + what + " too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is half covered, and they will not be printed; voxels of " +
-         format_number(grid.voxel_mm * static_cast<double>(lost.most), 2) + " mm or thicker walls may help";
+         format_number(grid.voxel_mm * thick, 2) + " mm or thicker walls may help";
 }
 
 std::string thin_doubt(const std::string& subject, const model::Unresolved& thin, const model::Grid& grid,
