@@ -82,7 +82,7 @@ int MissingPart::section(Plane plane) const {
   const double most = *std::max_element(sums.begin(), sums.end());
   int nearest = middle;
   int steps = count_of(sums);
-  for (int n = 0; n < count_of(sums) && most > 0; ++n) {
+  for (int n = 0; n < count_of(sums); ++n) {
     if (sums[n] < 0.5 * most || std::abs(n - middle) >= steps) continue;
     nearest = n;
     steps = std::abs(n - middle);
@@ -117,7 +117,7 @@ MissingPart missing_part(const io::SparseVolume& dose, const io::SparseVolume& t
   return found;
 }
 
-io::SparseVolume lost_walls(const io::SparseVolume& target, const io::SparseVolume* dose, double threshold) {
+io::SparseVolume lost_wall_volume(const io::SparseVolume& target, const io::SparseVolume* dose, double threshold) {
   const model::Grid& grid = target.grid();
   io::SparseVolume found("lost", grid);
   for (int k0 = 0; k0 < grid.nz; k0 += slab) {

@@ -19,12 +19,13 @@ struct MissingPart {
   [[nodiscard]] int section(Plane plane) const;
 };
 
-/// Below the threshold are voxels wholly inside the part, those of walls that no voxel nearby is half covered by, and
-/// those at which a wall is cut or missing [model::LostWalls, model::TornSets]. Both volumes have the same grid.
+/// Counted as missing are, where they are below the threshold, voxels wholly inside the part and those of walls that no
+/// voxel nearby is half covered by [model::lost_walls], and those at which a wall is cut or missing
+/// [model::torn_voxels]. Both volumes have the same grid.
 [[nodiscard]] MissingPart missing_part(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold);
 
 /// 1 in voxels of walls that no voxel nearby is half covered by, with a dose only in those below the threshold.
-[[nodiscard]] io::SparseVolume lost_walls(const io::SparseVolume& target, const io::SparseVolume* dose,
-                                          double threshold);
+[[nodiscard]] io::SparseVolume lost_wall_volume(const io::SparseVolume& target, const io::SparseVolume* dose,
+                                                double threshold);
 
 }  // namespace vam::plot

@@ -98,7 +98,7 @@ void append(model::TriangleSoup& mesh, const model::TriangleSoup& other) {
 /// do not cure.
 model::TriangleSoup lost_body(const io::SparseVolume& target, const PrintedDose* print, int by) {
   const io::SparseVolume lost =
-      plot::lost_walls(target, print != nullptr ? print->dose : nullptr, print != nullptr ? print->threshold : 0);
+      plot::lost_wall_volume(target, print != nullptr ? print->dose : nullptr, print != nullptr ? print->threshold : 0);
   return solid::isosurface(averaged(lost, by), 0.5 / by);  // of one voxel, which is a share of 1/by in a wall
 }
 

@@ -75,8 +75,8 @@ plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVol
   }
   plot::Body missing{beyond(part.mesh, solid::Surface(print.mesh).signed_distances(part.mesh.points), voxel_mm), {}};
   missing.colours.assign(missing.mesh.points.size(), plot::paint::blue);
-  plot::Body thin{surface_of(plot::lost_walls(target, nullptr, 0), 0.5, target), {}};
-  plot::Body lost{surface_of(plot::lost_walls(target, &dose, threshold), 0.5, target), {}};
+  plot::Body thin{surface_of(plot::lost_wall_volume(target, nullptr, 0), 0.5, target), {}};
+  plot::Body lost{surface_of(plot::lost_wall_volume(target, &dose, threshold), 0.5, target), {}};
   lost.colours.assign(lost.mesh.points.size(), plot::paint::blue);
   plot::ImageFigure figure;
   figure.columns = 2;
