@@ -46,7 +46,8 @@ Score with_volumes(Score result, const io::SparseVolume& dose, const io::SparseV
                    const char* title = "scoring") {
   constexpr int slab = 16;
   const model::Grid& grid = target.grid();
-  require_memory(2.0 * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
+  constexpr double volumes = 4;  // both; pieces are counted in copies
+  require_memory(volumes * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
                  target.name() + ": " + model::size_text(grid), "use larger voxels");
   std::vector<float> doses(grid.slice_size() * slab);
   std::vector<float> wanted(grid.slice_size() * slab);

@@ -13,7 +13,6 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
-#include "model/figures.hpp"
 #include "score/exposure_plan.hpp"
 
 namespace vam::score {
@@ -22,50 +21,83 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-struct Figure {
-  std::string name;
-  std::string meaning;
-};
-
-const std::vector<Figure>& figure_list() {
-  static const std::vector<Figure> all{
-      {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels"},
-      {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)"},
-      {"ipdr", "in-part dose range: maximum - minimum part dose"},
-      {"cv", "coefficient of variation of the part dose"},
-      {"iou", "|print and part| / |print or part| at the best threshold"},
-      {"threshold", "best threshold"},
-      {"min_part", "minimum dose in the part"},
-      {"mean_part", "mean dose in the part"},
-      {"max_part", "maximum dose in the part"},
-      {"max_void", "maximum dose in the void"},
-      {"max_dose", "maximum dose"},
-      {"outside_voxels", "void voxels outside the box around the part"},
-      {"outside_gelled_voxels", "void voxels outside the box that gel in the print"},
-      {"outside_max_dose", "maximum dose of void voxels outside the box"},
-      {"unresolved_part", "fraction of the part in walls of which no voxel is wholly inside; they are not judged"},
-      {"unresolved_gaps", "gaps of which no voxel is wholly outside, relative to the part; they are not judged"},
-      {"part_pieces", "separate pieces of the part, thin rods included"},
-      {"part_pieces_at_half", "separate pieces of the part where it is half covered; narrow gaps part them"},
-      {"print_pieces", "separate pieces of the print; pieces below 8 voxels are not counted"},
-      {"broken_voxels", "voxels at least half part that do not cure and where walls are cut or missing"},
-      {"shut_voxels", "voxels less than a quarter part that cure and where gaps are shut"},
-      {"prints", "1 if the part will print as designed, 0 if it will not or may not"},
-      {"trimmed_ver", "ver with the extremes trimmed"},
-      {"trimmed_pw", "pw with the extremes trimmed"},
-      {"cured_part", "at the critical dose: fraction of the part that cures"},
-      {"cured_void", "at the critical dose: fraction of the void that cures"},
-      {"cured_iou", "at the critical dose: |print and part| / |print or part|"},
-      {"cured_wrong", "at the critical dose: fraction of wrong voxels"},
-      {"turns", "whole turns that put the critical dose in the middle half of the process window"},
-      {"duration_s", "duration of these turns"},
-      {"multiplier", "fraction of full intensity during these turns"},
-      {"peak_intensity_mw_cm2", "intensity of the brightest pixel during these turns, mW/cm2"},
-      {"efficiency", "mean / maximum of the projections"}};
-  return all;
+template <class Known, class Value>
+double of(const std::optional<Known>& known, Value Known::*value) {
+  return known ? static_cast<double>((*known).*value) : none;
 }
 
 }  // namespace
+
+struct Score::Figure {
+  std::string name;
+  std::string meaning;
+  double (*value)(const Score& of);  // NaN where it is not known
+};
+
+const std::vector<Score::Figure>& Score::figure_list() {
+  using model::Outside;
+  using model::PrintPieces;
+  using model::ThresholdMetrics;
+  static const std::vector<Figure> all{
+      {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels",
+       [](const Score& score) { return score.metrics().ver; }},
+      {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)",
+       [](const Score& score) { return score.metrics().pw; }},
+      {"ipdr", "in-part dose range: maximum - minimum part dose",
+       [](const Score& score) { return score.metrics().ipdr; }},
+      {"cv", "coefficient of variation of the part dose", [](const Score& score) { return score.metrics().cv; }},
+      {"iou", "|print and part| / |print or part| at the best threshold",
+       [](const Score& score) { return score.metrics().iou; }},
+      {"threshold", "best threshold", [](const Score& score) { return score.metrics().iou_threshold; }},
+      {"min_part", "minimum dose in the part", [](const Score& score) { return score.metrics().min_part; }},
+      {"mean_part", "mean dose in the part", [](const Score& score) { return score.metrics().mean_part; }},
+      {"max_part", "maximum dose in the part", [](const Score& score) { return score.metrics().max_part; }},
+      {"max_void", "maximum dose in the void", [](const Score& score) { return score.metrics().max_void; }},
+      {"max_dose", "maximum dose", [](const Score& score) { return score.metrics().max_dose; }},
+      {"outside_voxels", "void voxels outside the box around the part",
+       [](const Score& score) { return of(score.outside(), &Outside::voxels); }},
+      {"outside_gelled_voxels", "void voxels outside the box that gel in the print",
+       [](const Score& score) { return of(score.outside(), &Outside::gelled_voxels); }},
+      {"outside_max_dose", "maximum dose of void voxels outside the box",
+       [](const Score& score) { return of(score.outside(), &Outside::max_dose); }},
+      {"unresolved_part", "fraction of the part in walls of which no voxel is wholly inside; they are not judged",
+       [](const Score& score) { return score.unresolved().part_share(); }},
+      {"unresolved_gaps", "gaps of which no voxel is wholly outside, relative to the part; they are not judged",
+       [](const Score& score) { return score.unresolved().gap_share(); }},
+      {"part_pieces", "separate pieces of the part, thin rods included",
+       [](const Score& score) { return of(score.pieces_, &PrintPieces::part); }},
+      {"part_pieces_at_half", "separate pieces of the part where it is half covered; narrow gaps part them",
+       [](const Score& score) { return of(score.pieces_, &PrintPieces::part_at_half); }},
+      {"print_pieces", "separate pieces of the print; pieces below 8 voxels are not counted",
+       [](const Score& score) { return of(score.pieces_, &PrintPieces::print); }},
+      {"broken_voxels", "voxels at least half part that do not cure and where walls are cut or missing",
+       [](const Score& score) { return of(score.pieces_, &PrintPieces::broken); }},
+      {"shut_voxels", "voxels less than a quarter part that cure and where gaps are shut",
+       [](const Score& score) { return of(score.pieces_, &PrintPieces::shut); }},
+      {"prints", "1 if the part will print as designed, 0 if it will not or may not",
+       [](const Score& score) { return answer(score.verdict()) == Answer::yes ? 1.0 : 0.0; }},
+      {"trimmed_ver", "ver with the extremes trimmed", [](const Score& score) { return score.trimmed().ver; }},
+      {"trimmed_pw", "pw with the extremes trimmed", [](const Score& score) { return score.trimmed().pw; }},
+      {"cured_part", "at the critical dose: fraction of the part that cures",
+       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::part_cured); }},
+      {"cured_void", "at the critical dose: fraction of the void that cures",
+       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::void_cured); }},
+      {"cured_iou", "at the critical dose: |print and part| / |print or part|",
+       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::iou); }},
+      {"cured_wrong", "at the critical dose: fraction of wrong voxels",
+       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::wrong); }},
+      {"turns", "whole turns that put the critical dose in the middle half of the process window",
+       [](const Score& score) { return of(score.plan(), &ExposurePlan::turns); }},
+      {"duration_s", "duration of these turns",
+       [](const Score& score) { return of(score.plan(), &ExposurePlan::seconds); }},
+      {"multiplier", "fraction of full intensity during these turns",
+       [](const Score& score) { return of(score.plan(), &ExposurePlan::multiplier); }},
+      {"peak_intensity_mw_cm2", "intensity of the brightest pixel during these turns, mW/cm2",
+       [](const Score& score) { return of(score.plan(), &ExposurePlan::peak_intensity_mw_cm2); }},
+      {"efficiency", "mean / maximum of the projections",
+       [](const Score& score) { return score.light_.count > 0 ? score.light_.value() : none; }}};
+  return all;
+}
 
 bool is_of_exposure(const std::string& figure) {
   return figure == "turns" || figure == "duration_s" || figure == "multiplier" || figure == "peak_intensity_mw_cm2";
@@ -123,11 +155,14 @@ void Score::add(const float* dose, const float* target, int count) {
   slices_ += count;
 }
 
-double Score::outside(const std::string& name) const {
-  if (!options_.part) return none;
-  const model::Outside all = outside_.at(print_threshold());
-  if (name == "outside_voxels") return static_cast<double>(all.voxels);
-  return name == "outside_max_dose" ? all.max_dose : static_cast<double>(all.gelled_voxels);
+std::optional<model::Outside> Score::outside() const {
+  if (!options_.part) return std::nullopt;
+  return outside_.at(print_threshold());
+}
+
+std::optional<model::ThresholdMetrics> Score::at_critical() const {
+  const auto at = judged().at_threshold();
+  return at || !options_.exposure ? at : judged().at(print_threshold());
 }
 
 const std::vector<std::string>& Score::names() {
@@ -140,34 +175,9 @@ const std::vector<std::string>& Score::names() {
 }
 
 double Score::figure(const std::string& name) const {
-  if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
-  if (name == "unresolved_part") return unresolved().part_share();
-  if (name == "unresolved_gaps") return unresolved().gap_share();
-  if (name == "part_pieces") return pieces_ ? pieces_->part : none;
-  if (name == "part_pieces_at_half") return pieces_ ? pieces_->part_at_half : none;
-  if (name == "print_pieces") return pieces_ ? pieces_->print : none;
-  if (name == "prints") return answer(verdict()) == Answer::yes ? 1 : 0;
-  if (name == "broken_voxels") return pieces_ ? static_cast<double>(pieces_->broken) : none;
-  if (name == "shut_voxels") return pieces_ ? static_cast<double>(pieces_->shut) : none;
-  if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
-  if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
-  if (is_of_exposure(name)) {
-    const auto plan = this->plan();
-    if (!plan) return none;
-    if (name == "turns") return plan->turns;
-    if (name == "duration_s") return plan->seconds;
-    return name == "multiplier" ? plan->multiplier : plan->peak_intensity_mw_cm2;
-  }
-  if (name.starts_with("outside_")) return outside(name);
-  if (name.starts_with("cured_")) {
-    auto at = judged().at_threshold();
-    if (!at && options_.exposure) at = judged().at(print_threshold());
-    if (!at) return none;
-    if (name == "cured_part") return at->part_cured;
-    if (name == "cured_void") return at->void_cured;
-    return name == "cured_iou" ? at->iou : at->wrong;
-  }
-  return model::figure(judged().metrics(!options_.absolute), name);
+  const auto& all = figure_list();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Figure& figure) { return figure.name == name; });
+  return found != all.end() ? found->value(*this) : none;
 }
 
 std::optional<ExposurePlan> Score::plan() const {
@@ -187,7 +197,7 @@ double Score::print_threshold() const {
 }
 
 Json Score::figures() const {
-  const auto m = judged().metrics(!options_.absolute);
+  const auto m = metrics();
   if (m.part == 0) {
     throw Error{Fault::data, options_.target +
                                  ": no voxel of it is wholly inside the part; slice it with smaller voxels, at "
@@ -203,9 +213,9 @@ Json Score::figures() const {
   json["part_voxels"] = m.part;
   json["void_voxels"] = m.void_;
   json["surface_voxels"] = surface_;
-  for (const auto& name : names()) {
-    const double value = figure(name);
-    if (std::isfinite(value)) json[name] = value;
+  for (const auto& figure : figure_list()) {
+    const double value = figure.value(*this);
+    if (std::isfinite(value)) json[figure.name] = value;
   }
   add_to(json, verdict());
   if (const auto radius_mm = judged_radius_mm()) json["judged_radius_mm"] = *radius_mm;
@@ -235,7 +245,7 @@ std::optional<double> Score::judged_radius_mm() const {
 std::string Score::table() const {
   const Json values = figures();
   std::string text;
-  for (const auto& [name, meaning] : figure_list()) {
+  for (const auto& [name, meaning, value] : figure_list()) {
     if (!values.contains(name)) continue;
     char line[200];
     std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),

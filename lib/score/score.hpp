@@ -71,13 +71,20 @@ class Score {
   [[nodiscard]] std::string table() const;
 
  private:
+  struct Figure;
+  [[nodiscard]] static const std::vector<Figure>& figure_list();
+
   [[nodiscard]] const model::DoseStatistics& judged() const { return options_.surface ? with_cut_ : whole_; }
+  [[nodiscard]] model::DoseMetrics metrics() const { return judged().metrics(!options_.absolute); }
+  [[nodiscard]] model::DoseMetrics trimmed() const { return judged().trimmed(options_.trim, !options_.absolute); }
+  /// At the critical dose, or at the threshold of the planned exposure; none where there is neither.
+  [[nodiscard]] std::optional<model::ThresholdMetrics> at_critical() const;
 
   [[nodiscard]] bool in_box(std::size_t pixel, int slice) const {
     const auto width = static_cast<std::size_t>(width_);
     return options_.part->contains(static_cast<int>(pixel % width), static_cast<int>(pixel / width), slice);
   }
-  [[nodiscard]] double outside(const std::string& name) const;
+  [[nodiscard]] std::optional<model::Outside> outside() const;
   /// That of the circle in which all void was judged, where the volume ends within the writable one.
   [[nodiscard]] std::optional<double> judged_radius_mm() const;
 

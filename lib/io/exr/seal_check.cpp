@@ -33,8 +33,10 @@ void SealCheck::note_chunk(std::uint64_t start, bool in_order) {
   if (in_order_) places_.add(start);
 }
 
-void SealCheck::note_image(std::size_t index, const Image& image) {
-  if (sealed()) read_[index] = values_digest(image);
+bool SealCheck::note_image(std::size_t index, const Image& image) {
+  if (!sealed()) return false;
+  read_[index] = values_digest(image);
+  return seals_[index].values == read_[index];
 }
 
 void SealCheck::judge(std::size_t first, std::size_t end) const {

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -15,10 +14,8 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "base/simd.hpp"
-#include "base/text.hpp"
 #include "io/exr/private/attributes.hpp"
-#include "io/exr/private/range_kernel.hpp"
+#include "io/exr/private/intensities.hpp"
 #include "io/stream/signature.hpp"
 
 namespace vam::io::exr {
@@ -32,23 +29,6 @@ using model::StackInfo;
 constexpr std::size_t max_waiting_bytes = std::size_t{1} << 30;
 constexpr std::size_t batch = 16;  // compressed images decoded at a time, in parallel
 constexpr std::size_t absent = ~std::size_t{0};
-
-// Intensities of projections are relative to what cures the resin; a value beyond has another unit, or is damaged, and
-// would leave all others dark.
-constexpr float most_intensity = 1e9F;
-
-void check_values(const Image& image, std::size_t index, model::Space space) {
-  constexpr float largest = std::numeric_limits<float>::max();
-  const float most = space == model::Space::camera ? largest : most_intensity;
-  if (VAM_KERNEL(all_within, simd_level())(image.values.data(), image.size(), -largest, most)) return;
-  const auto is_good = [most](float value) { return value >= -largest && value <= most; };  // NaN is not
-  const auto bad = std::find_if_not(image.values.begin(), image.values.end(), is_good);
-  const auto at = bad - image.values.begin();
-  const std::string pixel = "pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
-                            " of image " + std::to_string(index) + " is ";
-  if (!std::isfinite(*bad)) throw std::runtime_error(pixel + "not a finite number");
-  throw std::runtime_error(pixel + format_number(*bad, 3) + ", more than 1e9, which is no intensity; scale or mend it");
-}
 
 void decode_whole(const Imf::Header& layout, const Chunks& chunks, std::size_t index, Image& image) {
   try {
@@ -273,8 +253,9 @@ void StackParser::refill(bool alone) {
     const auto at = static_cast<std::size_t>(i);
     take_size(ready_[at], info_);
     decode_whole(layouts_[layout_of_[first + at]].header, taken[at], first + at, ready_[at]);
-    check_values(ready_[at], first + at, info_.space);
-    seals_->note_image(first + at, ready_[at]);
+    if (seals_->note_image(first + at, ready_[at])) return;  // as they were when the writer looked at them
+    const std::string why = objection(ready_[at], first + at, info_.space);
+    if (!why.empty()) throw std::runtime_error(why);
   };
   if (count == 1) {
     decode_one(0);

@@ -17,6 +17,7 @@
 #include "base/text.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/format.hpp"
+#include "io/exr/private/intensities.hpp"
 #include "io/exr/private/seals.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/finite.hpp"
@@ -193,8 +194,9 @@ void StackWriter::State::put(const Image& image, const ImageInfo& own) {
   if (done >= about.size() || image.width != info.width || image.height != info.height) {
     throw Error{Fault::bug, what + " does not belong to the " + std::to_string(info.count) + " announced"};
   }
-  if (!all_finite(image.values.data(), image.size())) {
-    throw Error{Fault::bug, what + " has a pixel that is not a finite number"};
+  if (const std::string why = exr::objection(image, done, info.space); !why.empty()) {
+    const bool finite = all_finite(image.values.data(), image.size());
+    throw Error{finite ? Fault::data : Fault::bug, out.name() + ": " + why};
   }
   if (type == Imf::HALF) check_half(image, what);
   if (!settled) settle(own);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to stack_parser.cpp: whether values are in range, for the instruction set of the machine.
+// Private to intensities.cpp: whether values are in range, for the instruction set of the machine.
 #pragma once
 
 #include <cstddef>

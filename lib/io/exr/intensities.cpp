@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/exr/private/intensities.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/simd.hpp"
+#include "base/text.hpp"
+#include "io/exr/private/range_kernel.hpp"
+
+namespace vam::io::exr {
+
+namespace {
+
+// Intensities of projections are relative to what cures the resin; a value beyond has another unit, or is damaged, and
+// would leave all others dark.
+constexpr float most_intensity = 1e9F;
+
+}  // namespace
+
+std::string objection(const Image& image, std::size_t index, model::Space space) {
+  constexpr float largest = std::numeric_limits<float>::max();
+  const float most = space == model::Space::camera ? largest : most_intensity;
+  if (VAM_KERNEL(all_within, simd_level())(image.values.data(), image.size(), -largest, most)) return "";
+  const auto is_good = [most](float value) { return value >= -largest && value <= most; };  // NaN is not
+  const auto bad = std::find_if_not(image.values.begin(), image.values.end(), is_good);
+  const auto at = bad - image.values.begin();
+  const std::string pixel = "pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
+                            " of image " + std::to_string(index) + " is ";
+  if (!std::isfinite(*bad)) return pixel + "not a finite number";
+  return pixel + format_number(*bad, 3) + ", more than 1e9, which is no intensity; scale or mend it";
+}
+
+}  // namespace vam::io::exr
