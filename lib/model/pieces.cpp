@@ -76,27 +76,30 @@ void RunSets::add(const std::vector<VoxelRun>& slice, const Joins& joins) {
   last_ = slice;
 }
 
-void RunSets::forget(const std::function<void(std::int64_t voxels)>& complete) {
+std::vector<std::size_t> RunSets::forget(const std::function<void(std::size_t set)>& complete) {
   const std::size_t first = first_of_last();
-  std::vector<std::size_t> stands(runs(), runs());  // for a set, of the last slice
+  std::vector<std::size_t> stands(runs(), gone);  // for a set, of the last slice
   std::vector<std::size_t> parents;
   std::vector<std::int64_t> voxels;
   for (std::size_t run = first; run < runs(); ++run) {
     const std::size_t set = set_of(run);
-    if (stands[set] == runs()) stands[set] = run - first;
+    if (stands[set] == gone) stands[set] = run - first;
     parents.push_back(stands[set]);
     voxels.push_back(voxels_[set]);
   }
+  std::vector<std::size_t> now;
   for (std::size_t run = 0; run < runs(); ++run) {
-    if (parent_[run] == run && stands[run] == runs()) complete(voxels_[run]);
+    now.push_back(stands[set_of(run)]);
+    if (parent_[run] == run && now.back() == gone) complete(run);
   }
   parent_ = std::move(parents);
   voxels_ = std::move(voxels);
+  return now;
 }
 
 void PieceCounter::add(const std::vector<VoxelRun>& slice, const Joins& joins) {
   open_.add(slice, joins);
-  open_.forget([this](std::int64_t voxels) { complete_ += voxels >= least_ ? 1 : 0; });
+  open_.forget([this](std::size_t set) { complete_ += open_.voxels(set) >= least_ ? 1 : 0; });
 }
 
 int PieceCounter::count() const {

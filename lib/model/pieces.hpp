@@ -58,9 +58,10 @@ class RunSets {
   [[nodiscard]] std::size_t set_of(std::size_t run) const;
   /// Of the set that this run stands for.
   [[nodiscard]] std::int64_t voxels(std::size_t set) const { return voxels_[set]; }
-  /// Forgets all runs but those of the last slice, which are then numbered from 0 on. complete(voxels) of the sets that
-  /// do not reach it.
-  void forget(const std::function<void(std::int64_t voxels)>& complete);
+  /// Forgets all runs but those of the last slice, which are then numbered from 0 on; before that, complete(set) of the
+  /// sets that do not reach it. Of each former run the number of the run that stands for its set, or `gone`.
+  static constexpr std::size_t gone = ~std::size_t{0};
+  std::vector<std::size_t> forget(const std::function<void(std::size_t set)>& complete);
 
  private:
   /// Of the last slice and, where `below` is not set, itself, else the one before.

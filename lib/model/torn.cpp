@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <utility>
 
 #include "base/index.hpp"
 
@@ -121,6 +122,22 @@ std::vector<std::size_t> torn_voxels(Torn what, int width, int height, const std
   return torn;
 }
 
+namespace {
+
+/// Of the pieces of a set that have ended the first and the last tell that it is cut; in order.
+void thin_out(std::vector<std::pair<std::size_t, std::size_t>>& touching, std::size_t ended) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    const auto [lost, piece] = touching[i];
+    const bool first = kept == 0 || touching[kept - 1].first != lost;
+    const bool last = i + 1 == touching.size() || touching[i + 1].first != lost;
+    if (piece < ended || first || last) touching[kept++] = touching[i];
+  }
+  touching.resize(kept);
+}
+
+}  // namespace
+
 void TornSets::note_touching(const std::vector<VoxelRun>& lost, std::size_t first_lost,
                              const std::vector<VoxelRun>& rim, std::size_t first_rim) {
   for (const int rows_apart : {-1, 0, 1}) {
@@ -140,28 +157,77 @@ void TornSets::add(const TornSlice& slice) {
   note_touching(slice.lost, lost, slice.rim, rim);
   note_touching(slice.lost, lost, rim_below, rim - rim_below.size());
   note_touching(lost_below, lost - lost_below.size(), slice.rim, rim);
+  decide();
 }
 
-std::int64_t TornSets::voxels() const {
-  constexpr std::int64_t least_torn = 3;
-  const std::size_t none = rim_.runs();
-  std::vector<std::size_t> rim(lost_.runs(), none);  // of each set, one piece around it
-  std::vector<bool> cut(lost_.runs(), false);
-  for (const auto& [run, beside] : touching_) {
-    const std::size_t set = lost_.set_of(run);
-    const std::size_t piece = rim_.set_of(beside);
-    if (rim[set] == none) rim[set] = piece;
-    if (rim[set] != piece) cut[set] = true;
+/// What each run of the rim is a piece of once only the last slice is known.
+std::vector<TornSets::Piece> TornSets::forget_rim() {
+  std::vector<std::size_t> sets;
+  for (std::size_t run = 0; run < rim_.runs(); ++run) sets.push_back(rim_.set_of(run));
+  std::vector<Piece> ends(sets.size());  // of each set that ends
+  std::vector<Piece> now = rim_.forget([&](std::size_t set) { ends[set] = ended | ended_pieces_++; });
+  for (std::size_t run = 0; run < now.size(); ++run) {
+    if (now[run] == RunSets::gone) now[run] = ends[sets[run]];
   }
+  return now;
+}
+
+/// Keeps what is still open: lost sets that reach the last slice, and those whose pieces may yet become one.
+void TornSets::decide() {
+  const std::vector<Piece> now = forget_rim();
+  judge_undecided(now);
+  for (auto& [lost, piece] : touching_) {
+    lost = lost_.set_of(lost);
+    if (piece < ended) piece = now[piece];
+  }
+  std::sort(touching_.begin(), touching_.end());
+  touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
   std::vector<std::int64_t> torn(lost_.runs(), 0);
   for (std::size_t run = 0; run < lost_.runs(); ++run) torn[lost_.set_of(run)] += torn_[run];
-  std::int64_t voxels = 0;
-  for (std::size_t run = 0; run < lost_.runs(); ++run) {
-    if (lost_.set_of(run) != run) continue;
-    const bool whole = rim[run] == none && torn[run] == lost_.voxels(run);
-    if (whole || cut[run] || torn[run] >= least_torn) voxels += lost_.voxels(run);
+
+  const std::vector<std::size_t> runs = lost_.forget([&](std::size_t set) {
+    std::vector<Piece> pieces;
+    for (auto at = std::lower_bound(touching_.begin(), touching_.end(), std::pair{set, Piece{0}});
+         at != touching_.end() && at->first == set; ++at) {
+      pieces.push_back(at->second);
+    }
+    judge(lost_.voxels(set), torn[set], std::move(pieces));
+  });
+  std::erase_if(touching_, [&](const auto& pair) { return runs[pair.first] == RunSets::gone; });
+  thin_out(touching_, ended);
+  for (auto& [lost, piece] : touching_) lost = runs[lost];
+  torn_.assign(lost_.runs(), 0);
+  for (std::size_t set = 0; set < torn.size(); ++set) {
+    if (torn[set] > 0 && runs[set] != RunSets::gone) torn_[runs[set]] = torn[set];
   }
-  return voxels;
+}
+
+/// Of a set that is complete, with the pieces that touch it, in order.
+void TornSets::judge(std::int64_t voxels, std::int64_t torn, std::vector<Piece> pieces) {
+  constexpr std::int64_t least_torn = 3;
+  const bool whole = pieces.empty() && torn == voxels;
+  const bool cut = pieces.size() > 1 && pieces.back() >= ended;  // which no other will ever be one with
+  if (whole || cut || torn >= least_torn) {
+    voxels_ += voxels;
+  } else if (pieces.size() > 1) {
+    undecided_.push_back({voxels, std::move(pieces)});
+  }
+}
+
+void TornSets::judge_undecided(const std::vector<Piece>& now) {
+  for (auto& [voxels, pieces] : std::exchange(undecided_, {})) {
+    for (Piece& piece : pieces) piece = now[piece];
+    std::sort(pieces.begin(), pieces.end());
+    pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
+    judge(voxels, 0, std::move(pieces));
+  }
+}
+
+// Above the last slice is nothing, so that all ends there.
+std::int64_t TornSets::voxels() const {
+  TornSets all = *this;
+  all.add({});
+  return all.voxels_;
 }
 
 }  // namespace vam::model

@@ -44,7 +44,7 @@ struct TornSlice {
 
 /// Sets of lost voxels that touch, slice by slice, from the lowest up. A set is torn if the left voxels that touch it
 /// are in more than one piece, as at a rod that is cut, or in none, as of a cavity, or if three or more of its voxels
-/// are torn: less is a rough edge. Memory: 50 bytes for each run of lost voxels.
+/// are torn: less is a rough edge. Memory: what touches in two slices, and the sets around which pieces are still open.
 class TornSets {
  public:
   void add(const TornSlice& slice);
@@ -52,12 +52,28 @@ class TornSets {
   [[nodiscard]] std::int64_t voxels() const;
 
  private:
+  /// Of left voxels: the run that stands for it in the last slice, or of one that ends before, a number of its own.
+  using Piece = std::size_t;
+  static constexpr Piece ended = ~(~Piece{0} >> 1U);
+  /// A set that is torn if these pieces stay apart.
+  struct Undecided {
+    std::int64_t voxels;
+    std::vector<Piece> pieces;
+  };
+
   void note_touching(const std::vector<VoxelRun>& lost, std::size_t first_lost, const std::vector<VoxelRun>& rim,
                      std::size_t first_rim);
+  [[nodiscard]] std::vector<Piece> forget_rim();
+  void decide();
+  void judge(std::int64_t voxels, std::int64_t torn, std::vector<Piece> pieces);
+  void judge_undecided(const std::vector<Piece>& now);
 
   RunSets lost_, rim_;
-  std::vector<std::int64_t> torn_;                             // of each lost run
-  std::vector<std::pair<std::size_t, std::size_t>> touching_;  // a lost run and one of the rim
+  std::vector<std::int64_t> torn_;                       // of each lost run or, at the run that stands for it, set
+  std::vector<std::pair<std::size_t, Piece>> touching_;  // a lost run and a piece
+  std::vector<Undecided> undecided_;
+  std::size_t ended_pieces_ = 0;
+  std::int64_t voxels_ = 0;  // of the torn sets that are known
 };
 
 }  // namespace vam::model

@@ -47,24 +47,33 @@ std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem
   return slices;
 }
 
-std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int count) {
+std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int first, int count) {
   const std::size_t size = product(dose.width, dose.height);
   std::vector<float> slices(product(count, size));
-  unpack(dose, count, slices.data());
-  for (std::size_t at = 0; at < slices.size(); ++at) {
-    if (labels[at % size * lanes + at / size] == Label::outside) slices[at] = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    for (int n = 0; n < count; ++n) {
+      const std::size_t at = i * lanes + static_cast<std::size_t>(first + n);
+      slices[product(n, size) + i] = labels[at] == Label::outside ? 0 : dose.values[at];
+    }
   }
   return slices;
 }
 
+// Light that fills the memory leaves room for few slices more.
 model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem, const VolumeSource& source) {
+  constexpr std::size_t few_voxels = std::size_t{1} << 19U;
+  const std::size_t size = product(dose[0].width, dose[0].height);
+  const int at_once = static_cast<int>(std::clamp<std::size_t>(few_voxels / size, 1, lanes));
   model::PrintPieceCounter counter(dose[0].width, dose[0].height, problem.demands.window.threshold());
   for (std::size_t s = 0; s < dose.size(); ++s) {
     const int first = static_cast<int>(s) * lanes;
-    const int count = std::min(lanes, problem.slices - first);
-    std::vector<float> target(product(count, product(dose[s].width, dose[s].height)));
-    source.target(first, count, target.data());
-    counter.add(count, target.data(), judged_doses(dose[s], problem.labels[s], count).data());
+    const int slices = std::min(lanes, problem.slices - first);
+    for (int lane = 0; lane < slices; lane += at_once) {
+      const int count = std::min(at_once, slices - lane);
+      std::vector<float> target(product(count, size));
+      source.target(first + lane, count, target.data());
+      counter.add(count, target.data(), judged_doses(dose[s], problem.labels[s], lane, count).data());
+    }
   }
   return counter.found();
 }

@@ -23,8 +23,8 @@ struct OutsideSlices {
 /// How many voxels of each slice in use are on the wrong side of the threshold.
 [[nodiscard]] std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem);
 
-/// Slices of a slab of doses, row-major, 0 outside the circle and where inserts are.
-[[nodiscard]] std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int count);
+/// `count` slices of a slab of doses from lane `first` on, row-major, 0 outside the circle and where inserts are.
+[[nodiscard]] std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int first, int count);
 
 /// Of a whole part: its pieces and those of its print at the threshold. Not of a grey target.
 [[nodiscard]] model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem,
