@@ -95,7 +95,7 @@ std::vector<std::string> notes() {
       "Accuracy: extremes, means and the figures at the critical dose are exact; VER, IoU and percentiles resolve the "
       "dose to 2^-12 of its value, and void voxels that this resolution cannot distinguish from the minimum part dose "
       "count as errors in VER.",
-      "Memory: 32 slices, 0.3 bytes per voxel, and 0.15 GiB. Voxels of both volumes beyond 32 MiB are kept in a "
+      "Memory: 64 slices, 0.3 bytes per voxel, and 0.15 GiB. Voxels of both volumes beyond 32 MiB are kept in a "
       "scratch file in $TMPDIR, else /var/tmp. --mesh adds the dose.",
       "Sources: Kelly et al., Computed Axial Lithography, 2017, fig 8 (print as points); Rackson et al., Object-space "
       "optimization of tomographic reconstructions, 2021 (VER, PW, IPDR)."};
