@@ -29,4 +29,13 @@ fails 65 'half.exr: image 0 changed after it was written' vam-check half.exr
 oiiotool -a float.exr --mulc 1.000001 -o scaled.exr
 fails 65 'scaled.exr: image [0-9]* changed after it was written' vam-check scaled.exr
 
+# Images of two stacks of one geometry: each is as it was written, the stack is not.
+vam-slice a.off --voxel 0.30 -o second.vdb
+vam-sinogram second.vdb -o other.exr
+last=$(($(oiiotool -a --info -v float.exr | grep -c 'vam:index') - 1))
+set -- float.exr --subimage 0
+for i in $(seq 1 "$last"); do set -- "$@" other.exr --subimage "$i" --siappend; done
+ok 'oiiotool mixes two stacks' oiiotool "$@" -o mixed.exr
+fails 65 'mixed.exr: image 1 has another vam:history than image 0' vam-check mixed.exr
+
 done_testing

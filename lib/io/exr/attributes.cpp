@@ -212,6 +212,10 @@ void require_alike(const Imf::Header& header, const StackInfo& first, const Stac
                                      {"vam:angle_step_deg", &StackInfo::angle_step_deg}}) {
     if (own.*member != first.*member) compare(name, format_number(own.*member, 9), format_number(first.*member, 9));
   }
+  if (own.history != first.history) {
+    throw std::runtime_error(image +
+                             " has another vam:history than image 0; all of a stack are made by the same commands");
+  }
   if (first.kind != Kind::sinogram) return;
   const auto stated = number(header, "vam:z_mm");
   const double z_mm = implied(first, index).z_mm;
