@@ -28,6 +28,25 @@ TEST_CASE("sizes are checked before memory is taken") {
   CHECK(line.find("2000000001 x 2000000001") != std::string::npos);
 }
 
+TEST_CASE("an intensity that no reader takes is not written, and a camera has levels of any size") {
+  const scratch::Folder folder;
+  Image image(5, 4);
+  image(3, 2) = 2e9F;
+  auto info = sinogram(5, 4, 1);
+  std::string line;
+  CHECK(status([&] { StackWriter(folder / "s.exr", info).write(image); }, &line) == 65);
+  CHECK(line.find("s.exr: pixel 3, 2 of image 0 is 2e+09, more than 1e9") != std::string::npos);
+  CHECK(folder.count() == 0);
+  info.space = model::Space::camera;
+  StackWriter writer(folder / "s.exr", info);
+  writer.write(image);
+  writer.commit();
+  model::ImageInfo about;
+  Image read;
+  CHECK(StackReader(folder / "s.exr").next(read, about));
+  CHECK(read(3, 2) == 2e9F);
+}
+
 TEST_CASE("a pixel that is not a number is an error with its position") {
   const scratch::Folder folder;
   const float nan = std::numeric_limits<float>::quiet_NaN();
