@@ -20,12 +20,13 @@ class Neighbourhood {
   static constexpr int size = 27;
   void set(int i) { left_[i] = true; }
   /// Whether it is in one piece.
-  [[nodiscard]] bool is_whole() && {
+  [[nodiscard]] bool is_whole() const {
+    Neighbourhood rest = *this;
     int pieces = 0;
     for (int i = 0; i < size; ++i) {
-      if (!left_[i]) continue;
+      if (!rest.left_[i]) continue;
       ++pieces;
-      clear(i);
+      rest.clear(i);
     }
     return pieces == 1;
   }
@@ -63,7 +64,7 @@ class Voxels {
       if (is_left(voxel)) around.set(n);
       return false;
     });
-    return !std::move(around).is_whole();
+    return !around.is_whole();
   }
   [[nodiscard]] bool is_rim(std::size_t at) const {
     return is_left(slices_[1][at]) && for_neighbours(at, [this](int, std::uint8_t voxel) { return is_lost(voxel); });
