@@ -4,11 +4,14 @@
 
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "model/mesh.hpp"
+#include "model/thin.hpp"
 
 namespace vam::tool {
 
@@ -36,6 +39,37 @@ inline double stretch_z(const Facts& facts) {
 inline void unstretch(model::TriangleSoup& mesh, const Facts& facts) {
   const double factor = stretch_z(facts);
   for (auto& point : mesh.points) point[2] /= factor;
+}
+
+/// States walls, gaps and relief that are thin for the voxels.
+inline void state_thin(Facts& facts, const model::Thin& thin) {
+  const auto text = [](const model::ThinPlaces& places) {
+    std::string numbers = format_number(places.area_mm2, 4) + " " + format_number(places.mm, 4);
+    for (const double mm : places.at_mm) numbers += " " + format_number(mm, 4);
+    return numbers;
+  };
+  facts["vam:thin_walls"] = text(thin.walls);
+  facts["vam:thin_gaps"] = text(thin.gaps);
+  facts["vam:thin_relief"] = text(thin.relief);
+}
+
+/// None where it is not stated, or not by five numbers each.
+inline std::optional<model::Thin> stated_thin(const Facts& facts) {
+  const auto places = [&](const char* name) -> std::optional<model::ThinPlaces> {
+    const auto found = facts.find(name);
+    if (found == facts.end()) return std::nullopt;
+    std::istringstream text(found->second);
+    std::vector<double> numbers;
+    for (std::string word; text >> word;) numbers.push_back(parse_number(word).value_or(-1));
+    constexpr std::size_t wanted = 5;
+    if (numbers.size() != wanted || !(numbers[0] >= 0) || !(numbers[1] >= 0)) return std::nullopt;
+    return model::ThinPlaces{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
+  };
+  const auto walls = places("vam:thin_walls");
+  const auto gaps = places("vam:thin_gaps");
+  const auto relief = places("vam:thin_relief");
+  if (!walls || !gaps || !relief) return std::nullopt;
+  return model::Thin{*walls, *gaps, *relief};
 }
 
 /// The dose at which the projections print, in the unit of the dose.

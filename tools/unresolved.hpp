@@ -3,13 +3,22 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "base/index.hpp"
+#include "facts.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/unresolved.hpp"
 
 namespace vam::tool {
+
+/// Of the part's surface, where the target states it.
+inline std::optional<model::ThinOfVoxels> thin_of(const io::SparseVolume& target) {
+  const auto places = stated_thin(target.metadata);
+  if (!places) return std::nullopt;
+  return model::ThinOfVoxels{*places, target.grid().voxel_mm};
+}
 
 inline model::Unresolved unresolved(const io::SparseVolume& target) {
   constexpr std::size_t million = 1'000'000;  // voxels at a time
@@ -22,7 +31,9 @@ inline model::Unresolved unresolved(const io::SparseVolume& target) {
     target.read_slices(k, count, slices.data());
     finder.add(count, slices.data());
   }
-  return finder.found();
+  model::Unresolved found = finder.found();
+  found.thin = thin_of(target);
+  return found;
 }
 
 }  // namespace vam::tool

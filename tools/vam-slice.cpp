@@ -13,6 +13,7 @@
 #include "base/progress.hpp"
 #include "base/slab.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
@@ -143,6 +144,7 @@ void run(const cli::App& app, Options& options) {
   }
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", printed, grid, content));
+  if (content.unresolved.thin) tool::state_thin(volumes.front().metadata, content.unresolved.thin->places);
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject, advice(options));
   judge_size(app, options, part, content, grid, room);
   Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);

@@ -226,6 +226,12 @@ Json Score::figures() const {
   return json;
 }
 
+model::Unresolved Score::unresolved() const {
+  model::Unresolved found = unresolved_.found();
+  found.thin = options_.thin;
+  return found;
+}
+
 Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
   Verdict verdict{.whole = whole_.metrics(), .with_cut = with_cut_.metrics()};

@@ -55,6 +55,20 @@ const char* beginning(Answer answer) {
   return "will print";
 }
 
+/// Of thin places that are not known to be lost.
+std::string thin_text(const model::Unresolved& un) {
+  const auto voxels_of = [&](const char* kind, const model::ThinPlaces& places) {
+    return std::string(kind) + " of " + format_number(places.mm / un.thin->voxel_mm, 2) + " voxels";
+  };
+  std::string what;
+  if (un.thin->has_walls() && !un.loses_walls()) what = voxels_of("walls", un.thin->places.walls);
+  if (un.thin->has_gaps() && !un.shuts_gaps())
+    what += (what.empty() ? "" : " and ") + voxels_of("gaps", un.thin->places.gaps);
+  if (what.empty() && un.thin->has_relief() && !un.loses_walls() && !un.shuts_gaps())
+    what = voxels_of("ridges and grooves", un.thin->places.relief);
+  return what.empty() ? "" : "; " + what + " are not judged; smaller voxels resolve them";
+}
+
 std::string unjudged(const model::Unresolved& un) {
   const auto percent = [](double share) { return format_number(100 * share, 3) + " % of the part"; };
   std::string text;
@@ -64,6 +78,7 @@ std::string unjudged(const model::Unresolved& un) {
     text += "; walls or rods too thin for the voxels will be missing";
   }
   if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
+  if (un.thin) return text + thin_text(un);
   if (un.is_much())
     text += "; walls and gaps too thin for the voxels are not judged: " + percent(un.share()) +
             "; smaller voxels resolve them";
@@ -78,7 +93,7 @@ Answer answer(const Verdict& verdict) {
   if (verdict.whole.part == 0) return Answer::not_judged;
   if (!(verdict.whole.pw > 0) || !holds_threshold(verdict)) return Answer::no;
   if (un.loses_walls() || un.shuts_gaps() || (pieces && !pieces->is_as_part())) return Answer::not_as_designed;
-  return un.is_much() || (pieces && !pieces->is_certain()) ? Answer::unsure : Answer::yes;
+  return un.leaves_doubt() || (pieces && !pieces->is_certain()) ? Answer::unsure : Answer::yes;
 }
 
 std::string words(const Verdict& verdict) {

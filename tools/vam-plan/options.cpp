@@ -26,15 +26,16 @@ cli::Manual manual() {
            "are at most " +
            format_number(most_finer) +
            " million. What is too thin even then is stated with its volume and heights as not judged; if it is 2 % of "
-           "the part or more, or a wall that is lost, the answer is perhaps. The deviations, one at a time and either "
+           "the part or more, or if the printer's pixels lose walls or gaps or leave them in doubt, as vam-slice "
+           "tells, "
+           "or where a wall is below 1.5 voxels, the answer is perhaps. The deviations, one at a time and either "
            "way, are " +
            deviations +
            " (as in --robust of vam-optimize): the smaller process window of the two is stated, as a fraction of the "
            "largest dose. Windows at the printer's resolution differ, of most parts they are wider. vam-optimize has "
            "the last word.",
-       "Walls and gaps that are lost even at the printer's pixels cause a warning, as in vam-slice, for parts of up to "
-       "16 "
-       "million voxels.",
+       "Walls and gaps that are lost at the printer's pixels, or in doubt, cause a warning, as in vam-slice, for parts "
+       "of up to 16 million voxels.",
        "The duration requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm."},
       {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:diameter=10,cell=5"},
        {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},

@@ -156,6 +156,15 @@ bool has_walls_below_a_voxel(const model::Unresolved& unresolved, const solid::W
   return unresolved.loses_walls() || (thin && unresolved.is_much());
 }
 
+bool doubts(const model::Unresolved& unresolved) {
+  return unresolved.loses_walls() || unresolved.shuts_gaps() || unresolved.leaves_doubt();
+}
+
+solid::Walls::Place place_of(const model::ThinPlaces& walls, const Plan& plan) {
+  const auto& [x, y, z] = walls.at_mm;
+  return {walls.mm / plan.grid.voxel_mm, walls.mm, {x, y, z / plan.stretch_z}};
+}
+
 /// On the printer's voxels, or on larger ones where these are too many.
 void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
@@ -167,11 +176,16 @@ void add_walls(Plan& plan, const solid::Part& part) {
   plan.sharp_edges = walls.sharp_edges;
   plan.wall_voxels = walls.thinnest_voxels;
   plan.wall_mm = walls.thinnest_mm;
+  plan.in_doubt = doubts(fine.content.unresolved);
   if (has_walls_below_a_voxel(fine.content.unresolved, walls)) plan.wall_voxels.reset();
   if (!plan.wall_voxels) return;
   *plan.wall_voxels *= plan.wall_resolution;
   plan.thinnest_place = walls.thinnest_place;
   if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
+  if (!part.thin) return;
+  const model::ThinOfVoxels thin{part.thin(plan.grid.voxel_mm), plan.grid.voxel_mm};
+  plan.in_doubt = plan.in_doubt || thin.has_any();
+  if (thin.has_walls()) plan.thinnest_place = place_of(thin.places.walls, plan);
 }
 
 double million_voxels(const model::Grid& grid, int coarseness) {

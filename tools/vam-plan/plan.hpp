@@ -42,12 +42,13 @@ struct Plan {
   std::optional<double> wall_voxels;  // of that grid; none: the thinnest one is thinner than the resolution
   double wall_mm = 0;                 // of the print
   std::optional<solid::Walls::Place> thinnest_place;  // where a few voxels are thinner than that
-  bool sharp_edges = false;                           // thinner than what prints
-  int wall_resolution = 1;                            // in voxels
-  int coarseness = 0;                                 // pixels per voxel of the estimate; 0: none is wanted
-  model::Unresolved unjudged;                         // walls and gaps too thin for the voxels of the estimate
-  bool all_judged = true;                             // they are hardly more than rounded edges
-  double unjudged_low_mm = 0;                         // heights in the print of most of them
+  bool in_doubt = false;       // the printer's voxels lose walls or gaps, or leave open whether they print
+  bool sharp_edges = false;    // thinner than what prints
+  int wall_resolution = 1;     // in voxels
+  int coarseness = 0;          // pixels per voxel of the estimate; 0: none is wanted
+  model::Unresolved unjudged;  // walls and gaps too thin for the voxels of the estimate
+  bool all_judged = true;      // they are hardly more than rounded edges
+  double unjudged_low_mm = 0;  // heights in the print of most of them
   double unjudged_high_mm = 0;
   std::optional<optimize::Preview> preview;  // none: none of its voxels is wholly inside the part
   bool resin_known = false;

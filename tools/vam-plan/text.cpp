@@ -54,13 +54,20 @@ std::string unjudged_share(const model::Unresolved& unjudged) {
   return join(shares, " and ");
 }
 
+/// Whether the estimate speaks of the part as it is.
+bool is_sure(const Plan& plan) {
+  const auto is_thin = [](double voxels) { return voxels < model::thin_voxels; };
+  return plan.all_judged && !plan.in_doubt && !(plan.wall_voxels && is_thin(*plan.wall_voxels)) &&
+         !(plan.thinnest_place && is_thin(plan.thinnest_place->voxels));
+}
+
 std::string print_rows(const Plan& plan) {
   if (!plan.preview) {
     return row("will it print", "not known: no voxel of " + number(plan.coarseness * plan.grid.voxel_mm) +
                                     " mm is wholly inside the part");
   }
   const optimize::Printed& nominal = plan.preview->trials.nominal;
-  const char* answer = nominal.figures.pw <= 0 ? "not everywhere" : plan.all_judged ? "yes" : "perhaps";
+  const char* answer = nominal.figures.pw <= 0 ? "not everywhere" : is_sure(plan) ? "yes" : "perhaps";
   std::string text =
       row("will it print", std::string(answer) + ": process window " + signed_number(window(nominal)) +
                                " of the largest dose, VER " + number(nominal.figures.ver) + " (estimate on voxels of " +
@@ -93,7 +100,7 @@ std::string wall_words(const Plan& plan) {
            ": enlarge the part, or use smaller pixels";
   }
   return voxels(*plan.wall_voxels, plan.wall_mm) +
-         (*plan.wall_voxels < solid::least_printed_voxels ? "; walls below 3 voxels seldom print" : "");
+         (*plan.wall_voxels < solid::least_printed_voxels ? "; walls below 3 voxels may not print" : "");
 }
 
 /// A strut, or what else is thinner than nearly all walls.
@@ -104,7 +111,7 @@ std::string place_row(const Plan& plan) {
   return row("  thinnest place", number(place->voxels) + (place->voxels == 1 ? " voxel (" : " voxels (") +
                                      number(place->mm) + " mm) at x, y, z = " + number(at[0]) + ", " + number(at[1]) +
                                      ", " + number(at[2]) + " mm" +
-                                     (place->voxels < solid::least_printed_voxels ? "; it seldom prints" : ""));
+                                     (place->voxels < solid::least_printed_voxels ? "; it may not print" : ""));
 }
 
 Json fit_json(const Fit& fit) {
@@ -158,7 +165,7 @@ Json report(const Plan& plan) {
   json["sharp_edges"] = plan.sharp_edges;
   if (plan.coarseness > 0) {
     json["estimate_voxel_mm"] = plan.coarseness * plan.grid.voxel_mm;
-    json["all_judged"] = plan.all_judged;
+    json["all_judged"] = is_sure(plan);
     json["unresolved_part"] = plan.unjudged.part_share();
     json["unresolved_gaps"] = plan.unjudged.gap_share();
   }

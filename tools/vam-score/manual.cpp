@@ -20,8 +20,10 @@ std::vector<std::string> description() {
       "It will not print as designed if walls or rods are too thin for the voxels (more than 0.1 % of the part, or 0.5 "
       "voxel of it farther than 3 voxels from any half covered voxel), if gaps are too narrow for them, or if the "
       "print "
-      "has broken walls, shut gaps, or more or fewer pieces than the part can have. It may print if more than 2 % of "
-      "the part has no voxel nearby that is wholly inside, or wholly outside, or if the voxels are too coarse to tell "
+      "has broken walls, shut gaps, or more or fewer pieces than the part can have. It may print if vam-slice found "
+      "walls or gaps thinner than 1.5 voxels, or ridges and grooves as fine, by the part's surface; where the target "
+      "does not state its surface, if more than 2 % of the part has no voxel nearby that is wholly inside, or wholly "
+      "outside; or if the voxels are too coarse to tell "
       "in how many pieces the part is. The exit status depends on --require only: prints>=1 asks for a part that will "
       "print.",
       "Pieces of 8 voxels or more are counted: of the print (print_pieces: the dose at the threshold, interpolated "

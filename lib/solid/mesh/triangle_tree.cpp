@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "base/index.hpp"
 
@@ -83,6 +84,29 @@ double distance2(const TriangleNode& node, const Vector3& p) {
   return sum;
 }
 
+/// How far along a ray its triangle is; none where it passes by, or is parallel [MT97].
+std::optional<double> distance_to(const TriangleCorners& triangle, const Vector3& from, const Vector3& along) {
+  const Vector3 ab = triangle[1] - triangle[0];
+  const Vector3 ac = triangle[2] - triangle[0];
+  const Vector3 p = cross(along, ac);
+  const double determinant = dot(ab, p);
+  if (determinant == 0) return std::nullopt;
+  const Vector3 way = from - triangle[0];
+  const double u = dot(way, p) / determinant;
+  if (u < 0 || u > 1) return std::nullopt;
+  const Vector3 q = cross(way, ab);
+  const double v = dot(along, q) / determinant;
+  if (v < 0 || u + v > 1) return std::nullopt;
+  return dot(ac, q) / determinant;
+}
+
+bool overlap(const TriangleNode& node, const Vector3& low, const Vector3& high) {
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (node.low[d] > high[d] || node.high[d] < low[d]) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 TriangleTree::TriangleTree(std::vector<TriangleCorners> soup) {
@@ -123,6 +147,33 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
     if (near.distance2 < best.distance2) stack[waiting++] = near;
   }
   return best;
+}
+
+std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& along, double least, double most) const {
+  const Vector3 end = from + most * along;
+  Vector3 low{};
+  Vector3 high{};
+  for (std::size_t d = 0; d < 3; ++d) std::tie(low[d], high[d]) = std::minmax(from[d], end[d]);
+  std::optional<Hit> first;
+  std::array<int, 64> stack;  // the median split keeps the depth below 32
+  std::size_t waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const int index = stack[--waiting];
+    const TriangleNode& node = nodes[index];
+    if (!overlap(node, low, high)) continue;
+    if (node.right != 0) {
+      stack[waiting++] = node.right;
+      stack[waiting++] = index + 1;
+      continue;
+    }
+    for (int i = node.begin; i < node.end; ++i) {
+      const auto distance = distance_to(triangles[i], from, along);
+      if (distance && *distance >= least && *distance <= most && (!first || *distance < first->distance))
+        first = {*distance, i};
+    }
+  }
+  return first;
 }
 
 std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh) {

@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
+#include "solid/mesh/thin_places.hpp"
 #include "solid/shapes/shapes.hpp"
 
 namespace vam::solid {
@@ -50,6 +51,12 @@ Part lifted(Part part, double lift_mm) {
   part.fill = [lift_mm, fill = std::move(part.fill)](model::Grid grid, const SliceSink& sink) {
     grid.origin_mm[2] -= lift_mm;
     return fill(grid, sink);
+  };
+  if (!part.thin) return part;
+  part.thin = [lift_mm, thin = std::move(part.thin)](double voxel_mm) {
+    model::Thin places = thin(voxel_mm);
+    for (auto* kind : {&places.walls, &places.gaps, &places.relief}) kind->at_mm[2] += lift_mm;
+    return places;
   };
   return part;
 }
@@ -95,6 +102,7 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
     if (voted) require_settled(vote, repair, is_tiny(extent, grid.voxel_mm), subject);
     return vote;
   };
+  part.thin = [kept, repair = *part.repair](double voxel_mm) { return thin_places(*kept, repair, voxel_mm); };
   return part;
 }
 
@@ -146,6 +154,7 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
     sink(k0, count, slices);
   });
   content.unresolved = finder.found();
+  if (part.thin) content.unresolved.thin = {part.thin(grid.voxel_mm), grid.voxel_mm};
   if (voxels == 0) {
     throw Error{Fault::data, part.subject + ": covers no voxel of " + format_number(grid.voxel_mm) +
                                  " mm; check its unit and the voxel size"};
@@ -168,6 +177,15 @@ Json figures(const Part& part, const FillSummary& content, const model::Grid& gr
               {"surface_voxels", content.surface_voxels},
               {"lost_volume_mm3", content.unresolved.lost_walls.voxels * std::pow(grid.voxel_mm, 3) / stretch_z},
               {"lost_gaps_mm3", content.unresolved.lost_gaps.voxels * std::pow(grid.voxel_mm, 3) / stretch_z}};
+  if (const auto& thin = content.unresolved.thin) {
+    const auto places = [&](const model::ThinPlaces& of) -> Json {
+      if (!of.matter(grid.voxel_mm)) return nullptr;
+      return {{"area_mm2", of.area_mm2}, {"mm", of.mm}, {"at_mm", {of.at_mm[0], of.at_mm[1], of.at_mm[2] / stretch_z}}};
+    };
+    report["thin_walls"] = places(thin->places.walls);
+    report["thin_gaps"] = places(thin->places.gaps);
+    report["thin_relief"] = places(thin->places.relief);
+  }
   if (part.repair) {
     const Repair& done = *part.repair;
     report["repair"] = {{"closed", done.closed()},

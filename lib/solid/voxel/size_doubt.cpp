@@ -30,16 +30,31 @@ std::string heights(int first, int end, const model::Grid& grid, double stretch_
          format_number(grid.z_mm(end - 0.5) / stretch_z, 3) + " mm";
 }
 
+/// In two voxels at least one is wholly within.
+double resolving_mm(const model::ThinPlaces& places) { return 0.5 * places.mm; }
+
+/// "part.stl: walls of 0.27 mm are thin for voxels of 0.3 mm, as near (1, 2, 3) mm; whether they print is not judged;
+/// voxels of 0.18 mm resolve them"
+std::string place_doubt(const std::string& subject, const char* kind, const model::ThinPlaces& places,
+                        const model::Grid& grid, double stretch_z) {
+  const auto& [x, y, z] = places.at_mm;
+  return subject + ": " + kind + " of " + format_number(places.mm, 2) + " mm are too fine for voxels of " +
+         format_number(grid.voxel_mm, 3) + " mm, as near (" + format_number(x, 3) + ", " + format_number(y, 3) + ", " +
+         format_number(z / stretch_z, 3) + ") mm, and whether they print is not judged; voxels of " +
+         format_number(resolving_mm(places), 2) + " mm resolve them";
+}
+
 /// Of walls that are lost, if they are a thousandth of the part or more, and of rods.
 std::string wall_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
                        double stretch_z) {
   const model::LostWalls& lost = unresolved.lost_walls;
-  if (!unresolved.loses_walls()) return "";
   const std::string what = unresolved.loses_much()
                                ? format_number(100 * unresolved.lost_share(), 2) + " % of the part is in walls"
                                : "walls or rods are";
   const auto most = static_cast<double>(lost.most);
-  const double thick = unresolved.loses_much() ? most : std::sqrt(most);  // of a rod its area is covered
+  double thick = unresolved.loses_much() ? most : std::sqrt(most);  // of a rod its area is covered
+  if (unresolved.thin && unresolved.thin->has_walls())
+    thick = resolving_mm(unresolved.thin->places.walls) / grid.voxel_mm;
   return subject + ": " + what + " too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is half covered, and they will not be printed; voxels of " +
          format_number(grid.voxel_mm * thick, 2) + " mm or thicker walls may help";
@@ -87,20 +102,37 @@ std::string gap_doubt(const std::string& subject, const model::Unresolved& unres
                       double stretch_z) {
   const model::LostGaps& lost = unresolved.lost_gaps;
   if (!unresolved.shuts_gaps()) return "";
-  const double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
+  const model::Thin thin = unresolved.thin ? unresolved.thin->places : model::Thin{};
+  double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
+  double resolving = 0.5 * gap_mm;
+  for (const auto* places : {&thin.relief, &thin.gaps}) {
+    if (places->area_mm2 == 0) continue;
+    gap_mm = places->mm;
+    resolving = resolving_mm(*places);
+  }
   return subject + ": gaps of " + format_number(gap_mm, 2) +
          " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is more than three quarters free, and they will be printed shut; voxels of " +
-         format_number(0.5 * gap_mm, 2) + " mm resolve them";
+         format_number(resolving, 2) + " mm resolve them";
 }
 
 std::vector<std::string> resolution_doubts(const std::string& subject, const model::Unresolved& unresolved,
                                            const model::Grid& grid, double stretch_z) {
   std::vector<std::string> doubts;
-  for (std::string doubt :
-       {wall_doubt(subject, unresolved, grid, stretch_z), gap_doubt(subject, unresolved, grid, stretch_z)})
-    if (!doubt.empty()) doubts.push_back(std::move(doubt));
-  if (doubts.empty() && unresolved.is_much()) doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
+  const auto& thin = unresolved.thin;
+  if (unresolved.loses_walls()) {
+    doubts.push_back(wall_doubt(subject, unresolved, grid, stretch_z));
+  } else if (thin && thin->has_walls()) {
+    doubts.push_back(place_doubt(subject, "walls", thin->places.walls, grid, stretch_z));
+  }
+  if (unresolved.shuts_gaps()) {
+    doubts.push_back(gap_doubt(subject, unresolved, grid, stretch_z));
+  } else if (thin && thin->has_gaps()) {
+    doubts.push_back(place_doubt(subject, "gaps", thin->places.gaps, grid, stretch_z));
+  }
+  if (doubts.empty() && thin && thin->has_relief())
+    doubts.push_back(place_doubt(subject, "ridges and grooves", thin->places.relief, grid, stretch_z));
+  if (doubts.empty() && unresolved.leaves_doubt()) doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
   return doubts;
 }
 

@@ -39,8 +39,8 @@ namespace vam::solid {
                                     const model::Grid& grid, double stretch_z);
 
 /// What warnings should say of walls that will not be printed, from a thousandth of the part on, of rods, from half a
-/// voxel of coverage without a half covered voxel within three on, and of such gaps; if there are neither, of much that
-/// is not judged.
+/// voxel of coverage without a half covered voxel within three on, and of such gaps; else of thin places, or where the
+/// part's surface is not known of much that is not judged.
 [[nodiscard]] std::vector<std::string> resolution_doubts(const std::string& subject,
                                                          const model::Unresolved& unresolved, const model::Grid& grid,
                                                          double stretch_z);

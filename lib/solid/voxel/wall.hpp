@@ -9,7 +9,7 @@
 
 namespace vam::solid {
 
-inline constexpr double least_printed_voxels = 3;  // thinner walls seldom print
+inline constexpr double least_printed_voxels = 3;  // thinner walls may not print
 
 struct Walls {
   /// The thickness that one in a hundred places of the walls' middle does not exceed; where a part has no walls, as a

@@ -2,6 +2,7 @@
 // Triangles in a tree of boxes: what closest points and winding numbers walk.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/vector3.hpp"
@@ -36,6 +37,12 @@ struct Nearest {
   int triangle = 0;  // in the order of the tree
 };
 
+/// Where a ray meets a triangle of the tree.
+struct Hit {
+  double distance = 0;
+  int triangle = 0;  // in the order of the tree
+};
+
 struct TriangleTree {
   std::vector<TriangleCorners> triangles;  // in the order of the leaves
   std::vector<TriangleNode> nodes;
@@ -46,6 +53,9 @@ struct TriangleTree {
 
   /// Triangle 'start' is tested first: a neighbour's answer saves half of the way. There must be a triangle.
   [[nodiscard]] Nearest nearest(const Vector3& point, int start = 0) const;
+  /// The first triangle that a short ray meets, least to most from its origin. `along` has length 1.
+  [[nodiscard]] std::optional<Hit> first_hit(const Vector3& from, const Vector3& along, double least,
+                                             double most) const;
 };
 
 /// The corners of all triangles of a mesh that have an area.

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Thin walls and gaps of meshes against those that they were made with; short rays against CGAL's.
+#include "solid/mesh/thin_places.hpp"
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Simple_cartesian.h>
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "oracle/meshes.hpp"
+#include "solid/mesh/private/triangle_tree.hpp"
+
+using namespace vam;
+using namespace vam::solid;
+
+namespace {
+
+using Mesh = model::TriangleSoup;
+
+/// Turned about two axes, so that nothing lies along the axes.
+Mesh turned(Mesh mesh) {
+  const double c = std::cos(0.5);
+  const double s = std::sin(0.5);
+  for (auto& p : mesh.points) {
+    p = {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
+    p = {p[0], c * p[1] - s * p[2], s * p[1] + c * p[2]};
+  }
+  return mesh;
+}
+
+model::ThinOfVoxels seen(Mesh mesh, double voxel_mm = 1) {
+  const Repair repaired = repair(mesh, "test");
+  return {thin_places(mesh, repaired, voxel_mm), voxel_mm};
+}
+
+/// A tooth every `pitch` along x, of that height, on a block.
+Mesh toothed(int teeth, double pitch, double height) {
+  Mesh mesh;
+  const double length = teeth * pitch;
+  const double wide = 20;
+  std::vector<std::array<double, 2>> outline{{0, -10}, {length, -10}};
+  for (int n = teeth; n-- > 0;) {
+    outline.push_back({(n + 1) * pitch, 0});
+    outline.push_back({(n + 0.5) * pitch, height});
+  }
+  outline.push_back({0, 0});
+  const int corners = static_cast<int>(outline.size());
+  for (const double y : {0.0, wide})
+    for (const auto& [x, z] : outline) mesh.points.push_back({x, y, z});
+  mesh.points.push_back({0.5 * length, 0, -5});
+  mesh.points.push_back({0.5 * length, wide, -5});
+  for (int a = 0; a < corners; ++a) {
+    const int b = (a + 1) % corners;
+    mesh.triangles.push_back({a, b, 2 * corners});
+    mesh.triangles.push_back({b + corners, a + corners, 2 * corners + 1});
+    mesh.triangles.push_back({b, a, a + corners});
+    mesh.triangles.push_back({b, a + corners, b + corners});
+  }
+  return mesh;
+}
+
+/// A roof of that angle, 20 high.
+Mesh wedge(double angle_deg) {
+  const double half = 20 * std::tan(0.5 * angle_deg * std::numbers::pi / 180);
+  return {{{-half, 0, 0}, {half, 0, 0}, {0, 0, 20}, {-half, 30, 0}, {half, 30, 0}, {0, 30, 20}},
+          {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {0, 2, 5}, {0, 5, 3}}};
+}
+
+}  // namespace
+
+TEST_CASE("a plate is a thin wall below one and a half voxels, with its thickness, its faces and a place in it") {
+  const Mesh block = oracle::box({-10, -10, -10}, {10, 10, 0});
+  for (const double thick : {0.1, 0.6, 1.0, 1.4}) {
+    CAPTURE(thick);
+    const Mesh plate = oracle::box({-10, -10, 5}, {10, 10, 5 + thick});
+    const auto thin = seen(turned(oracle::join(block, plate)));
+    CHECK(thin.has_walls());
+    CHECK(thin.places.walls.mm == doctest::Approx(thick));
+    CHECK(thin.places.walls.area_mm2 == doctest::Approx(800).epsilon(0.1));  // 1/sqrt(2400) of samples, 3 times
+    CHECK(!thin.has_gaps());
+    CHECK(!thin.has_relief());
+  }
+  CHECK(!seen(turned(oracle::box({-10, -10, 5}, {10, 10, 6.6}))).has_any());
+  const auto level = seen(oracle::join(block, oracle::box({-10, -10, 5}, {10, 10, 5.5})));
+  CHECK(level.places.walls.at_mm[2] == doctest::Approx(5.25));
+}
+
+TEST_CASE("a slit is a gap below one and a half voxels; the side counts in voxels") {
+  const auto slit = [](double wide) {
+    return turned(oracle::join(oracle::box({-10, -10, -5}, {0, 10, 5}), oracle::box({wide, -10, -5}, {10, 10, 5})));
+  };
+  for (const double wide : {0.1, 0.6, 1.4}) {
+    const auto thin = seen(slit(wide));
+    CHECK(thin.has_gaps());
+    CHECK(thin.places.gaps.mm == doctest::Approx(wide));
+    CHECK(thin.places.gaps.area_mm2 == doctest::Approx(400).epsilon(0.15));
+    CHECK(!thin.has_walls());
+  }
+  CHECK(!seen(slit(1.6)).has_any());
+  CHECK(seen(slit(1.6), 2).has_gaps());
+  CHECK(!seen(slit(0.6), 0.3).has_any());
+}
+
+TEST_CASE("balls that nearly touch have a gap, those farther apart none, and a ball has no wall") {
+  const auto pair = [](double gap) {
+    const Mesh ball = oracle::sphere(11.5, 60);
+    return turned(oracle::join(ball, ball, {23 + gap, 0, 0}));
+  };
+  for (const double gap : {0.3, 0.5, 0.7}) {
+    const auto thin = seen(pair(gap));
+    CHECK(thin.has_gaps());
+    CHECK(thin.places.gaps.mm >= gap);
+    CHECK(thin.places.gaps.mm < gap + 0.4);  // a tenth of a cap whose edge is 1.5 apart
+    CHECK(!thin.has_walls());
+  }
+  CHECK(!seen(pair(2)).has_any());
+  CHECK(!seen(oracle::sphere(11.5, 60)).has_any());
+}
+
+TEST_CASE("faces of solids within each other are neither walls nor gaps") {
+  const Mesh block = oracle::box({-10, -10, -10}, {10, 10, 0});
+  // A plate on a block, of the block's own width, sunk by 0.4 and glued on.
+  CHECK(!seen(turned(oracle::join(block, oracle::box({-10, -10, -0.4}, {10, 10, 0.8})))).has_walls());
+  CHECK(!seen(turned(oracle::join(block, oracle::box({-8, -8, -1}, {8, 8, -0.2})))).has_any());
+  CHECK(!seen(turned(oracle::join(block, oracle::box({-8, -8, 0}, {8, 8, 1})))).has_walls());
+  CHECK(!seen(turned(oracle::join(block, block, {15, 0.3, 0.5}))).has_any());
+}
+
+TEST_CASE("the edge of a wedge is no wall, that of a blade is") {
+  CHECK(!seen(turned(wedge(60))).has_any());
+  CHECK(!seen(turned(wedge(35))).has_any());
+  CHECK(seen(turned(wedge(10))).has_walls());
+}
+
+TEST_CASE("a knurl is relief where its teeth are no larger than voxels") {
+  const auto fine = seen(turned(toothed(20, 1.5, 1)));
+  CHECK(fine.has_relief());
+  CHECK(fine.places.relief.mm < 1.5);
+  CHECK(!seen(turned(toothed(20, 1.5, 1)), 0.2).has_relief());
+  CHECK(!seen(turned(toothed(4, 8, 5))).has_relief());
+  CHECK(!seen(turned(toothed(20, 1.5, 0.1))).has_relief());  // a face that is all but smooth
+}
+
+TEST_CASE("of an open mesh the surface is taken as it is") {
+  const Mesh plate = oracle::box({-10, -10, 5}, {10, 10, 6});
+  Mesh open = plate;
+  open.triangles.pop_back();
+  CHECK(seen(turned(oracle::join(oracle::box({-10, -10, -10}, {10, 10, 0}), open))).has_walls());
+  CHECK(!thin_places({}, {}, 1).walls.matter(1));
+}
+
+TEST_CASE("the first triangle that a short ray meets is that of CGAL's AABB tree") {
+  using Kernel = CGAL::Simple_cartesian<double>;
+  using Triangles = std::vector<Kernel::Triangle_3>;
+  using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto any = [&](double size) { return Vector3{size * unit(random), size * unit(random), size * unit(random)}; };
+  std::vector<TriangleCorners> soup;
+  Triangles judges;
+  const auto to_cgal = [](const Vector3& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
+  for (int i = 0; i < 1500; ++i) {
+    const Vector3 a = any(3);
+    soup.push_back({a, a + any(0.7), a + any(0.7)});
+    judges.emplace_back(to_cgal(soup.back()[0]), to_cgal(soup.back()[1]), to_cgal(soup.back()[2]));
+  }
+  const CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> judge(judges.cbegin(), judges.cend());
+  const TriangleTree tree(soup);
+  int met = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3 from = any(3);
+    Vector3 along = any(1);
+    along = (1 / length(along)) * along;
+    constexpr double reach = 1.5;
+    const Kernel::Segment_3 way(to_cgal(from), to_cgal(from + reach * along));
+    double nearest = reach;
+    std::vector<Primitive::Id> crossed;
+    judge.all_intersected_primitives(way, std::back_inserter(crossed));
+    for (const auto& id : crossed) {
+      const Kernel::Plane_3 plane = id->supporting_plane();
+      const Kernel::Vector_3 normal = plane.orthogonal_vector();
+      nearest = std::min(nearest, normal * (plane.point() - way.source()) / (normal * way.to_vector()) * reach);
+    }
+    const auto hit = tree.first_hit(from, along, 0, reach);
+    CHECK(hit.has_value() == !crossed.empty());
+    if (!hit) continue;
+    ++met;
+    CHECK(hit->distance == doctest::Approx(nearest).epsilon(1e-9));
+  }
+  CHECK(met > 1000);
+}
