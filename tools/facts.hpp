@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "model/mesh.hpp"
-#include "model/thin.hpp"
+#include "model/part_surface.hpp"
 
 namespace vam::tool {
 
@@ -41,20 +41,21 @@ inline void unstretch(model::TriangleSoup& mesh, const Facts& facts) {
   for (auto& point : mesh.points) point[2] /= factor;
 }
 
-/// States walls, gaps and relief that are thin for the voxels.
-inline void state_thin(Facts& facts, const model::Thin& thin) {
+/// States what the part's own surface shows.
+inline void state_surface(Facts& facts, const model::PartSurface& surface) {
   const auto text = [](const model::ThinPlaces& places) {
     std::string numbers = format_number(places.area_mm2, 4) + " " + format_number(places.mm, 4);
     for (const double mm : places.at_mm) numbers += " " + format_number(mm, 4);
     return numbers;
   };
-  facts["vam:thin_walls"] = text(thin.walls);
-  facts["vam:thin_gaps"] = text(thin.gaps);
-  facts["vam:thin_relief"] = text(thin.relief);
+  facts["vam:thin_walls"] = text(surface.walls);
+  facts["vam:thin_gaps"] = text(surface.gaps);
+  facts["vam:thin_relief"] = text(surface.relief);
+  if (surface.solids > 0) facts["vam:solids"] = std::to_string(surface.solids);
 }
 
 /// None where it is not stated, or not by five numbers each.
-inline std::optional<model::Thin> stated_thin(const Facts& facts) {
+inline std::optional<model::PartSurface> stated_surface(const Facts& facts) {
   const auto places = [&](const char* name) -> std::optional<model::ThinPlaces> {
     const auto found = facts.find(name);
     if (found == facts.end()) return std::nullopt;
@@ -69,7 +70,9 @@ inline std::optional<model::Thin> stated_thin(const Facts& facts) {
   const auto gaps = places("vam:thin_gaps");
   const auto relief = places("vam:thin_relief");
   if (!walls || !gaps || !relief) return std::nullopt;
-  return model::Thin{*walls, *gaps, *relief};
+  constexpr double most = 1e6;
+  const double solids = stated_number(facts, "vam:solids").value_or(0);
+  return model::PartSurface{*walls, *gaps, *relief, solids >= 0 && solids <= most ? static_cast<int>(solids) : 0};
 }
 
 /// The dose at which the projections print, in the unit of the dose.

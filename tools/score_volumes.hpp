@@ -36,7 +36,7 @@ inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& do
   how.voxel_mm = target.grid().voxel_mm;
   how.aimed_at = threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
-  how.thin = thin_of(target);
+  how.own_surface = own_surface(target);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   how.exposure = {printer, stated_number(dose.metadata, "vam:full_intensity_turns")};
   if (!how.threshold && how.exposure->full_intensity_turns) how.threshold = printer.resin.critical_dose_mj_cm3;

@@ -14,10 +14,10 @@
 namespace vam::tool {
 
 /// Of the part's surface, where the target states it.
-inline std::optional<model::ThinOfVoxels> thin_of(const io::SparseVolume& target) {
-  const auto places = stated_thin(target.metadata);
+inline std::optional<model::VoxelisedSurface> own_surface(const io::SparseVolume& target) {
+  const auto places = stated_surface(target.metadata);
   if (!places) return std::nullopt;
-  return model::ThinOfVoxels{*places, target.grid().voxel_mm};
+  return model::VoxelisedSurface{*places, target.grid().voxel_mm};
 }
 
 inline model::Unresolved unresolved(const io::SparseVolume& target) {
@@ -32,7 +32,7 @@ inline model::Unresolved unresolved(const io::SparseVolume& target) {
     finder.add(count, slices.data());
   }
   model::Unresolved found = finder.found();
-  found.thin = thin_of(target);
+  found.surface = own_surface(target);
   return found;
 }
 

@@ -144,7 +144,7 @@ void run(const cli::App& app, Options& options) {
   }
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", printed, grid, content));
-  if (content.unresolved.thin) tool::state_thin(volumes.front().metadata, content.unresolved.thin->places);
+  if (content.unresolved.surface) tool::state_surface(volumes.front().metadata, content.unresolved.surface->places);
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject, advice(options));
   judge_size(app, options, part, content, grid, room);
   Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);

@@ -19,14 +19,15 @@ struct PrintPieces {
   int print = 0;            // of the dose at the threshold
   std::int64_t broken = 0;  // voxels of torn sets of the part [TornSets]
   std::int64_t shut = 0;    // and of gaps
+  int solids = 0;           // of the part's own surface; 0: not known
 
   [[nodiscard]] bool loses_walls() const { return broken > 0; }
   [[nodiscard]] bool shuts_gaps() const { return shut > 0; }
-  /// Whether voxels show in how many pieces the part is, as far as the two numbers tell.
-  [[nodiscard]] bool is_certain() const { return part == part_at_half; }
-  [[nodiscard]] bool is_in_other_pieces() const {
-    return print < std::min(part, part_at_half) || print > std::max(part, part_at_half);
-  }
+  /// In how many pieces the part is, as far as its surface or the two numbers tell.
+  [[nodiscard]] int fewest() const { return solids > 0 ? solids : std::min(part, part_at_half); }
+  [[nodiscard]] int most() const { return solids > 0 ? solids : std::max(part, part_at_half); }
+  [[nodiscard]] bool is_certain() const { return fewest() == most(); }
+  [[nodiscard]] bool is_in_other_pieces() const { return print < fewest() || print > most(); }
   [[nodiscard]] bool is_as_part() const { return !is_in_other_pieces() && !loses_walls() && !shuts_gaps(); }
 };
 

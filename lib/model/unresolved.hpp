@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/grid.hpp"
-#include "model/thin.hpp"
+#include "model/part_surface.hpp"
 
 namespace vam::model {
 
@@ -41,7 +41,7 @@ struct Unresolved {
   int end = 0;
   LostWalls lost_walls;
   LostGaps lost_gaps;
-  std::optional<ThinOfVoxels> thin;  // none: the surface of the part is not known
+  std::optional<VoxelisedSurface> surface;  // none: the surface of the part is not known
 
   /// Relative to the part.
   [[nodiscard]] double part_share() const { return whole > 0 ? part / whole : 0; }
@@ -52,11 +52,11 @@ struct Unresolved {
   /// Rounded edges and tips are less of a part.
   [[nodiscard]] bool is_much() const { return share() > 0.02; }
   /// A verdict on the voxels is none on the part: of its surface, or where that is not known of its voxels.
-  [[nodiscard]] bool leaves_doubt() const { return thin ? thin->has_any() : is_much(); }
+  [[nodiscard]] bool leaves_doubt() const { return surface ? surface->has_any() : is_much(); }
   /// Walls will be missing in the print: more than specks, and where the part's surface is known more than its
   /// roughness.
   [[nodiscard]] bool loses_walls() const {
-    return (loses_much() || loses_rods()) && (!thin || thin->has_walls() || thin->has_relief());
+    return (loses_much() || loses_rods()) && (!surface || surface->has_walls() || surface->has_relief());
   }
   [[nodiscard]] bool loses_much() const { return lost_share() > 1e-3; }
   [[nodiscard]] bool loses_rods() const { return lost_walls.far > 0.5; }

@@ -228,7 +228,7 @@ Json Score::figures() const {
 
 model::Unresolved Score::unresolved() const {
   model::Unresolved found = unresolved_.found();
-  found.thin = options_.thin;
+  found.surface = options_.own_surface;
   return found;
 }
 
@@ -236,7 +236,7 @@ Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
   Verdict verdict{.whole = whole_.metrics(), .with_cut = with_cut_.metrics()};
   verdict.unresolved = unresolved();
-  verdict.pieces = pieces_;
+  score::set_pieces(verdict, pieces_);
   if (std::isfinite(duration_s) && !options_.threshold) verdict.seconds = duration_s;  // else that of another print
   verdict.threshold = options_.threshold;
   return verdict;

@@ -25,17 +25,17 @@ struct Exposure {
 };
 
 struct ScoreOptions {
-  std::string target = "target";            // begins the messages on it
-  model::Circle circle;                     // the writable one; void outside it is not judged
-  double voxel_mm = 0;                      // 0: not known
-  bool surface = false;                     // surface voxels count too: part when at least half covered, else void
-  bool absolute = false;                    // PW and IPDR in the dose's unit instead of fractions of the largest dose
-  double trim = 0.02;                       // alpha: extremes are also given at the alpha/2 percentiles
-  std::optional<double> threshold;          // the critical dose, in the dose's unit; none: that of the planned exposure
-  std::optional<double> aimed_at;           // the threshold that its light was made for, in the dose's unit
-  std::optional<Exposure> exposure;         // known when the dose is in mJ/cm3
-  std::optional<model::VoxelBox> part;      // its box; none: what lies outside it is not told
-  std::optional<model::ThinOfVoxels> thin;  // walls and gaps of its surface; none: they are not known
+  std::string target = "target";        // begins the messages on it
+  model::Circle circle;                 // the writable one; void outside it is not judged
+  double voxel_mm = 0;                  // 0: not known
+  bool surface = false;                 // surface voxels count too: part when at least half covered, else void
+  bool absolute = false;                // PW and IPDR in the dose's unit instead of fractions of the largest dose
+  double trim = 0.02;                   // alpha: extremes are also given at the alpha/2 percentiles
+  std::optional<double> threshold;      // the critical dose, in the dose's unit; none: that of the planned exposure
+  std::optional<double> aimed_at;       // the threshold that its light was made for, in the dose's unit
+  std::optional<Exposure> exposure;     // known when the dose is in mJ/cm3
+  std::optional<model::VoxelBox> part;  // its box; none: what lies outside it is not told
+  std::optional<model::VoxelisedSurface> own_surface;  // of the part; none: it is not known
 };
 
 /// Of the figures by name those that only an exposure has.

@@ -22,7 +22,8 @@ std::string in_pieces(int count) { return std::to_string(count) + (count == 1 ? 
 std::string pieces_text(const model::PrintPieces& pieces) {
   std::string text;
   if (pieces.is_in_other_pieces()) {
-    text += "; the print is in " + in_pieces(pieces.print) + ", the part in " + std::to_string(pieces.part);
+    text += "; the print is in " + in_pieces(pieces.print) + ", the part in " +
+            std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part);
   } else if (!pieces.is_certain()) {
     text += "; the print is in " + in_pieces(pieces.print) +
             ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) + " or " +
@@ -58,14 +59,14 @@ const char* beginning(Answer answer) {
 /// Of thin places that are not known to be lost.
 std::string thin_text(const model::Unresolved& un) {
   const auto voxels_of = [&](const char* kind, const model::ThinPlaces& places) {
-    return std::string(kind) + " of " + format_number(places.mm / un.thin->voxel_mm, 2) + " voxels";
+    return std::string(kind) + " of " + format_number(places.mm / un.surface->voxel_mm, 2) + " voxels";
   };
   std::string what;
-  if (un.thin->has_walls() && !un.loses_walls()) what = voxels_of("walls", un.thin->places.walls);
-  if (un.thin->has_gaps() && !un.shuts_gaps())
-    what += (what.empty() ? "" : " and ") + voxels_of("gaps", un.thin->places.gaps);
-  if (what.empty() && un.thin->has_relief() && !un.loses_walls() && !un.shuts_gaps())
-    what = voxels_of("ridges and grooves", un.thin->places.relief);
+  if (un.surface->has_walls() && !un.loses_walls()) what = voxels_of("walls", un.surface->places.walls);
+  if (un.surface->has_gaps() && !un.shuts_gaps())
+    what += (what.empty() ? "" : " and ") + voxels_of("gaps", un.surface->places.gaps);
+  if (what.empty() && un.surface->has_relief() && !un.loses_walls() && !un.shuts_gaps())
+    what = voxels_of("ridges and grooves", un.surface->places.relief);
   return what.empty() ? "" : "; " + what + " are not judged; smaller voxels resolve them";
 }
 
@@ -78,7 +79,7 @@ std::string unjudged(const model::Unresolved& un) {
     text += "; walls or rods too thin for the voxels will be missing";
   }
   if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
-  if (un.thin) return text + thin_text(un);
+  if (un.surface) return text + thin_text(un);
   if (un.is_much())
     text += "; walls and gaps too thin for the voxels are not judged: " + percent(un.share()) +
             "; smaller voxels resolve them";
@@ -94,6 +95,12 @@ Answer answer(const Verdict& verdict) {
   if (!(verdict.whole.pw > 0) || !holds_threshold(verdict)) return Answer::no;
   if (un.loses_walls() || un.shuts_gaps() || (pieces && !pieces->is_as_part())) return Answer::not_as_designed;
   return un.leaves_doubt() || (pieces && !pieces->is_certain()) ? Answer::unsure : Answer::yes;
+}
+
+void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& pieces) {
+  verdict.pieces = pieces;
+  const auto& surface = verdict.unresolved.surface;
+  if (verdict.pieces && surface) verdict.pieces->solids = surface->places.solids;
 }
 
 std::string words(const Verdict& verdict) {

@@ -33,6 +33,9 @@ enum class Answer {
 };
 [[nodiscard]] Answer answer(const Verdict& verdict);
 
+/// The pieces of part and print, of which the part's own surface may tell the number.
+void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& pieces);
+
 /// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
 /// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will not
 /// print", "will not print as designed", "may print" or "will print".

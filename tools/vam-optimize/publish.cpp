@@ -98,7 +98,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     if (plan) verdict.seconds = plan->seconds;
     verdict.threshold = fixed_threshold(options);
     verdict.unresolved = tool::unresolved(target);
-    verdict.pieces = outcome.pieces;
+    set_pieces(verdict, outcome.pieces);
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(

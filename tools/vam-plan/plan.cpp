@@ -182,10 +182,10 @@ void add_walls(Plan& plan, const solid::Part& part) {
   *plan.wall_voxels *= plan.wall_resolution;
   plan.thinnest_place = walls.thinnest_place;
   if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
-  if (!part.thin) return;
-  const model::ThinOfVoxels thin{part.thin(plan.grid.voxel_mm), plan.grid.voxel_mm};
-  plan.in_doubt = plan.in_doubt || thin.has_any();
-  if (thin.has_walls()) plan.thinnest_place = place_of(thin.places.walls, plan);
+  if (!part.surface) return;
+  const model::VoxelisedSurface surface{part.surface(plan.grid.voxel_mm), plan.grid.voxel_mm};
+  plan.in_doubt = plan.in_doubt || surface.has_any();
+  if (surface.has_walls()) plan.thinnest_place = place_of(surface.places.walls, plan);
 }
 
 double million_voxels(const model::Grid& grid, int coarseness) {

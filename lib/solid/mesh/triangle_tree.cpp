@@ -113,6 +113,7 @@ TriangleTree::TriangleTree(std::vector<TriangleCorners> soup) {
   const TreeBuilder builder(soup, nodes);
   triangles.reserve(soup.size());
   for (const int i : builder.order()) triangles.push_back(soup[i]);
+  order = builder.order();
 }
 
 Nearest TriangleTree::nearest(const Vector3& point, int start) const {
@@ -176,13 +177,15 @@ std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& a
   return first;
 }
 
-std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh) {
+std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh, std::vector<int>* places) {
   std::vector<TriangleCorners> triangles;
   triangles.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const TriangleCorners c = corners(mesh, t);
     const Vector3 normal = twice_area(c);
-    if (dot(normal, normal) > 0) triangles.push_back(c);
+    if (!(dot(normal, normal) > 0)) continue;
+    triangles.push_back(c);
+    if (places != nullptr) places->push_back(static_cast<int>(t));
   }
   return triangles;
 }

@@ -153,7 +153,7 @@ Json InsertFit::figures(double stretch_z) const {
 Part without_insert(const Part& part, std::function<void(int k, float* out)> read, double clearance_mm,
                     double stretch_z) {
   Part cut = part;
-  cut.thin = {};  // its surface is no longer the part's
+  cut.surface = {};  // its surface is no longer the part's
   cut.fill = [fill = part.fill, read = std::move(read), clearance_mm, stretch_z](const model::Grid& grid,
                                                                                  const SliceSink& sink) {
     const GrownInsert grown(grid, read, clearance_mm, stretch_z);

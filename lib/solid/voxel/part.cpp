@@ -14,7 +14,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
-#include "solid/mesh/thin_places.hpp"
+#include "solid/mesh/part_surface.hpp"
 #include "solid/shapes/shapes.hpp"
 
 namespace vam::solid {
@@ -52,9 +52,9 @@ Part lifted(Part part, double lift_mm) {
     grid.origin_mm[2] -= lift_mm;
     return fill(grid, sink);
   };
-  if (!part.thin) return part;
-  part.thin = [lift_mm, thin = std::move(part.thin)](double voxel_mm) {
-    model::Thin places = thin(voxel_mm);
+  if (!part.surface) return part;
+  part.surface = [lift_mm, surface = std::move(part.surface)](double voxel_mm) {
+    model::PartSurface places = surface(voxel_mm);
     for (auto* kind : {&places.walls, &places.gaps, &places.relief}) kind->at_mm[2] += lift_mm;
     return places;
   };
@@ -102,7 +102,7 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
     if (voted) require_settled(vote, repair, is_tiny(extent, grid.voxel_mm), subject);
     return vote;
   };
-  part.thin = [kept, repair = *part.repair](double voxel_mm) { return thin_places(*kept, repair, voxel_mm); };
+  part.surface = [kept, repair = *part.repair](double voxel_mm) { return part_surface(*kept, repair, voxel_mm); };
   return part;
 }
 
@@ -154,7 +154,7 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
     sink(k0, count, slices);
   });
   content.unresolved = finder.found();
-  if (part.thin) content.unresolved.thin = {part.thin(grid.voxel_mm), grid.voxel_mm};
+  if (part.surface) content.unresolved.surface = {part.surface(grid.voxel_mm), grid.voxel_mm};
   if (voxels == 0) {
     throw Error{Fault::data, part.subject + ": covers no voxel of " + format_number(grid.voxel_mm) +
                                  " mm; check its unit and the voxel size"};
@@ -177,14 +177,15 @@ Json figures(const Part& part, const FillSummary& content, const model::Grid& gr
               {"surface_voxels", content.surface_voxels},
               {"lost_volume_mm3", content.unresolved.lost_walls.voxels * std::pow(grid.voxel_mm, 3) / stretch_z},
               {"lost_gaps_mm3", content.unresolved.lost_gaps.voxels * std::pow(grid.voxel_mm, 3) / stretch_z}};
-  if (const auto& thin = content.unresolved.thin) {
+  if (const auto& surface = content.unresolved.surface) {
     const auto places = [&](const model::ThinPlaces& of) -> Json {
       if (!of.matter(grid.voxel_mm)) return nullptr;
       return {{"area_mm2", of.area_mm2}, {"mm", of.mm}, {"at_mm", {of.at_mm[0], of.at_mm[1], of.at_mm[2] / stretch_z}}};
     };
-    report["thin_walls"] = places(thin->places.walls);
-    report["thin_gaps"] = places(thin->places.gaps);
-    report["thin_relief"] = places(thin->places.relief);
+    report["solids"] = surface->places.solids > 0 ? Json(surface->places.solids) : Json(nullptr);
+    report["thin_walls"] = places(surface->places.walls);
+    report["thin_gaps"] = places(surface->places.gaps);
+    report["thin_relief"] = places(surface->places.relief);
   }
   if (part.repair) {
     const Repair& done = *part.repair;

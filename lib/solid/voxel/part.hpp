@@ -10,7 +10,7 @@
 #include "base/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
-#include "model/thin.hpp"
+#include "model/part_surface.hpp"
 #include "model/unresolved.hpp"
 #include "solid/mesh/repair.hpp"
 #include "solid/voxel/placement.hpp"
@@ -27,7 +27,7 @@ struct Part {
   bool voted = false;            // inside is found by vote
   Lattice lattice;
   std::function<Vote(const model::Grid&, const SliceSink&)> fill;
-  std::function<model::Thin(double voxel_mm)> thin;  // empty: the part has no surface of its own
+  std::function<model::PartSurface(double voxel_mm)> surface;  // empty: the part has no surface of its own
 };
 
 /// The part of a shape (see make_shape) under a placement.

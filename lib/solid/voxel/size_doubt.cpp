@@ -53,8 +53,8 @@ std::string wall_doubt(const std::string& subject, const model::Unresolved& unre
                                : "walls or rods are";
   const auto most = static_cast<double>(lost.most);
   double thick = unresolved.loses_much() ? most : std::sqrt(most);  // of a rod its area is covered
-  if (unresolved.thin && unresolved.thin->has_walls())
-    thick = resolving_mm(unresolved.thin->places.walls) / grid.voxel_mm;
+  if (unresolved.surface && unresolved.surface->has_walls())
+    thick = resolving_mm(unresolved.surface->places.walls) / grid.voxel_mm;
   return subject + ": " + what + " too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is half covered, and they will not be printed; voxels of " +
          format_number(grid.voxel_mm * thick, 2) + " mm or thicker walls may help";
@@ -102,10 +102,10 @@ std::string gap_doubt(const std::string& subject, const model::Unresolved& unres
                       double stretch_z) {
   const model::LostGaps& lost = unresolved.lost_gaps;
   if (!unresolved.shuts_gaps()) return "";
-  const model::Thin thin = unresolved.thin ? unresolved.thin->places : model::Thin{};
+  const model::PartSurface known = unresolved.surface ? unresolved.surface->places : model::PartSurface{};
   double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
   double resolving = 0.5 * gap_mm;
-  for (const auto* places : {&thin.relief, &thin.gaps}) {
+  for (const auto* places : {&known.relief, &known.gaps}) {
     if (places->area_mm2 == 0) continue;
     gap_mm = places->mm;
     resolving = resolving_mm(*places);
@@ -119,19 +119,19 @@ std::string gap_doubt(const std::string& subject, const model::Unresolved& unres
 std::vector<std::string> resolution_doubts(const std::string& subject, const model::Unresolved& unresolved,
                                            const model::Grid& grid, double stretch_z) {
   std::vector<std::string> doubts;
-  const auto& thin = unresolved.thin;
+  const auto& surface = unresolved.surface;
   if (unresolved.loses_walls()) {
     doubts.push_back(wall_doubt(subject, unresolved, grid, stretch_z));
-  } else if (thin && thin->has_walls()) {
-    doubts.push_back(place_doubt(subject, "walls", thin->places.walls, grid, stretch_z));
+  } else if (surface && surface->has_walls()) {
+    doubts.push_back(place_doubt(subject, "walls", surface->places.walls, grid, stretch_z));
   }
   if (unresolved.shuts_gaps()) {
     doubts.push_back(gap_doubt(subject, unresolved, grid, stretch_z));
-  } else if (thin && thin->has_gaps()) {
-    doubts.push_back(place_doubt(subject, "gaps", thin->places.gaps, grid, stretch_z));
+  } else if (surface && surface->has_gaps()) {
+    doubts.push_back(place_doubt(subject, "gaps", surface->places.gaps, grid, stretch_z));
   }
-  if (doubts.empty() && thin && thin->has_relief())
-    doubts.push_back(place_doubt(subject, "ridges and grooves", thin->places.relief, grid, stretch_z));
+  if (doubts.empty() && surface && surface->has_relief())
+    doubts.push_back(place_doubt(subject, "ridges and grooves", surface->places.relief, grid, stretch_z));
   if (doubts.empty() && unresolved.leaves_doubt()) doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
   return doubts;
 }

@@ -132,3 +132,48 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   CHECK(good["prints"] == 1);
   CHECK(good["print_pieces"] == 1);
 }
+
+TEST_CASE("the part's own surface tells its pieces and what is thin, and overrules its voxels") {
+  model::PrintPieces counted;
+  counted.part = 1;
+  counted.part_at_half = counted.print = 2;
+  Verdict made = verdict();
+  set_pieces(made, counted);
+  CHECK(answer(made) == Answer::unsure);
+  model::VoxelisedSurface surface{{}, 0.2};
+  for (const auto& [solids, wanted] :
+       {std::pair{0, Answer::unsure}, {2, Answer::yes}, {1, Answer::not_as_designed}, {3, Answer::not_as_designed}}) {
+    surface.places.solids = solids;
+    made.unresolved.surface = surface;
+    set_pieces(made, counted);
+    CHECK(answer(made) == wanted);
+  }
+  CHECK(words(made).find("; the print is in 2 pieces, the part in 3") != std::string::npos);
+
+  surface.places.solids = 2;
+  made.unresolved.whole = 1000;
+  made.unresolved.part = 30;
+  made.unresolved.surface = std::nullopt;
+  made.pieces = std::nullopt;
+  CHECK(answer(made) == Answer::unsure);
+  made.unresolved.surface = surface;
+  set_pieces(made, counted);
+  CHECK(answer(made) == Answer::yes);
+  CHECK(words(made) == words(verdict()));
+  // Voxels that only a rough surface leaves uncovered.
+  made.unresolved.lost_walls.voxels = 5;
+  CHECK(answer(made) == Answer::yes);
+  made.unresolved.surface->places.walls = {1, 0.18, {}};
+  CHECK(answer(made) == Answer::not_as_designed);
+  made.unresolved.lost_walls.voxels = 0;
+  made.unresolved.surface->places.gaps = {1, 0.1, {}};
+  CHECK(answer(made) == Answer::unsure);
+  CHECK(words(made).find("; walls of 0.9 voxels and gaps of 0.5 voxels are not judged; smaller voxels resolve them") !=
+        std::string::npos);
+  // Two faces of a voxel are a speck, and what is thicker than one and a half voxels is judged.
+  made.unresolved.surface->places.walls = {0.079, 0.18, {}};
+  made.unresolved.surface->places.gaps = {1, 0.31, {}};
+  CHECK(answer(made) == Answer::yes);
+  made.unresolved.surface->places.relief = {2, 0.1, {}};
+  CHECK(words(made).find("; ridges and grooves of 0.5 voxels are not judged") != std::string::npos);
+}

@@ -46,6 +46,7 @@ struct Hit {
 struct TriangleTree {
   std::vector<TriangleCorners> triangles;  // in the order of the leaves
   std::vector<TriangleNode> nodes;
+  std::vector<int> order;  // their places in the soup
 
   TriangleTree() = default;
   /// Splits at the median of the longest side of the centroids' box.
@@ -58,8 +59,9 @@ struct TriangleTree {
                                              double most) const;
 };
 
-/// The corners of all triangles of a mesh that have an area.
-[[nodiscard]] std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh);
+/// The corners of all triangles of a mesh that have an area; their places in the mesh, where wanted.
+[[nodiscard]] std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh,
+                                                      std::vector<int>* places = nullptr);
 
 /// The nearest point of a triangle that has an area [ERI05 section 5.1.5].
 [[nodiscard]] Vector3 nearest_on(const TriangleCorners& triangle, const Vector3& point);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Thin walls and gaps of meshes against those that they were made with; short rays against CGAL's.
-#include "solid/mesh/thin_places.hpp"
+#include "solid/mesh/part_surface.hpp"
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -33,9 +33,9 @@ Mesh turned(Mesh mesh) {
   return mesh;
 }
 
-model::ThinOfVoxels seen(Mesh mesh, double voxel_mm = 1) {
+model::VoxelisedSurface seen(Mesh mesh, double voxel_mm = 1) {
   const Repair repaired = repair(mesh, "test");
-  return {thin_places(mesh, repaired, voxel_mm), voxel_mm};
+  return {part_surface(mesh, repaired, voxel_mm), voxel_mm};
 }
 
 /// A tooth every `pitch` along x, of that height, on a block.
@@ -131,6 +131,32 @@ TEST_CASE("faces of solids within each other are neither walls nor gaps") {
   CHECK(!seen(turned(oracle::join(block, block, {15, 0.3, 0.5}))).has_any());
 }
 
+TEST_CASE("solids that cross, touch or hold each other are one, and cavities none") {
+  const auto solids = [](const Mesh& mesh) { return seen(turned(mesh)).places.solids; };
+  const Mesh block = oracle::box({-10, -10, -10}, {10, 10, 0});
+  const Mesh ball = oracle::sphere(3, 24);
+  CHECK(solids(block) == 1);
+  CHECK(solids(oracle::join(block, block, {15, 0.3, 0.5})) == 1);  // cross
+  CHECK(solids(oracle::join(block, block, {20, 3, 1})) == 1);      // share a part of a face
+  CHECK(solids(oracle::join(block, block, {20.01, 3, 1})) == 1);   // all but
+  CHECK(solids(oracle::join(block, block, {20.1, 3, 1})) == 2);
+  CHECK(solids(oracle::join(block, ball, {0, 0, -5})) == 1);  // within
+  CHECK(solids(oracle::join(ball, ball, {6.3, 0, 0})) == 2);
+  CHECK(solids(oracle::join(oracle::join(ball, ball, {4, 0, 0}), ball, {8, 0, 0})) == 1);  // a chain
+  Mesh hollow = oracle::sphere(4, 24);
+  for (auto& triangle : hollow.triangles) std::swap(triangle[0], triangle[1]);
+  const Mesh shell = oracle::join(oracle::sphere(8, 24), hollow);
+  CHECK(solids(shell) == 1);
+  CHECK(solids(oracle::join(shell, oracle::sphere(2, 24))) == 2);  // loose in the cavity
+  CHECK(solids(oracle::join(shell, block, {0, 0, -20})) == 2);
+  // Not told: a speck, a mesh with a hole.
+  CHECK(solids(oracle::join(block, oracle::sphere(1, 24), {0, 0, 5})) == 0);
+  CHECK(solids(oracle::join(block, oracle::sphere(2, 24), {0, 0, 5})) == 2);
+  Mesh open = oracle::join(block, block, {30, 0, 0});
+  open.triangles.pop_back();
+  CHECK(solids(open) == 0);
+}
+
 TEST_CASE("the edge of a wedge is no wall, that of a blade is") {
   CHECK(!seen(turned(wedge(60))).has_any());
   CHECK(!seen(turned(wedge(35))).has_any());
@@ -151,7 +177,7 @@ TEST_CASE("of an open mesh the surface is taken as it is") {
   Mesh open = plate;
   open.triangles.pop_back();
   CHECK(seen(turned(oracle::join(oracle::box({-10, -10, -10}, {10, 10, 0}), open))).has_walls());
-  CHECK(!thin_places({}, {}, 1).walls.matter(1));
+  CHECK(!part_surface({}, {}, 1).walls.matter(1));
 }
 
 TEST_CASE("the first triangle that a short ray meets is that of CGAL's AABB tree") {

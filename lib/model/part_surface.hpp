@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Walls and gaps of a part that are too thin for its voxels to tell whether they print, by the part's own surface.
+// What a part's own surface shows and its voxels may not: walls and gaps that are thin for them, and pieces.
 #pragma once
 
 #include <array>
@@ -22,14 +22,15 @@ struct ThinPlaces {
   }
 };
 
-struct Thin {
+struct PartSurface {
   ThinPlaces walls, gaps;  // between faces that are all but parallel
   ThinPlaces relief;       // ridges and grooves side by side, as of a knurl
+  int solids = 0;          // that are apart; 0: not known
 };
 
 /// Seen by voxels of some size.
-struct ThinOfVoxels {
-  Thin places;
+struct VoxelisedSurface {
+  PartSurface places;
   double voxel_mm = 1;
   [[nodiscard]] bool has_walls() const { return places.walls.matter(voxel_mm); }
   [[nodiscard]] bool has_gaps() const { return places.gaps.matter(voxel_mm); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/mesh/thin_places.hpp"
+#include "solid/mesh/part_surface.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "solid/mesh/private/triangle_tree.hpp"
+#include "solid/mesh/private/separate_solids.hpp"
 #include "solid/mesh/private/winding.hpp"
 #include "solid/mesh/surface_samples.hpp"
 
@@ -25,6 +25,8 @@ constexpr double least_samples = 2'000;
 constexpr std::size_t most_verified = 10'000;
 constexpr double widest_cosine = -0.88;    // of two faces' normals: 28 degrees apart from parallel
 constexpr double sharpest_cosine = -0.17;  // edges of less than 80 degrees
+constexpr double least_gap = 1 / 64.0;     // voxels: shells that are nearer touch
+constexpr double least_solid = 16;         // voxels: smaller ones may not count in a print
 constexpr double own = 1e-6;               // of the reach: nearer is the face that the ray leaves from
 
 /// The way from a face straight to the one on the other side.
@@ -44,8 +46,8 @@ double area_of(const model::TriangleSoup& mesh) {
 }
 
 std::optional<Crossing> crossing(const TriangleTree& tree, const SurfaceSample& sample, const Vector3& along,
-                                 double reach) {
-  const auto hit = tree.first_hit(sample.point, along, own * reach, reach);
+                                 double least, double reach) {
+  const auto hit = tree.first_hit(sample.point, along, least, reach);
   if (!hit) return std::nullopt;
   const Vector3 normal = twice_area(tree.triangles[hit->triangle]);
   return Crossing{sample.point, along, hit->distance, dot(normal, sample.normal) / length(normal)};
@@ -77,12 +79,14 @@ model::ThinPlaces summary(std::vector<Crossing> crossings, double each, double s
 using Crossings = std::vector<std::optional<Crossing>>;
 
 /// Of each sample, towards one side.
-Crossings crossings(const TriangleTree& tree, const std::vector<SurfaceSample>& samples, double side, double reach) {
+Crossings crossings(const TriangleTree& tree, const std::vector<SurfaceSample>& samples, double side, double least,
+                    double reach) {
   Crossings found(samples.size());
   constexpr int at_once = 1000;
   parallel_for((count_of(samples) + at_once - 1) / at_once, [&](int block) {
     const int end = std::min(count_of(samples), (block + 1) * at_once);
-    for (int i = block * at_once; i < end; ++i) found[i] = crossing(tree, samples[i], side * samples[i].normal, reach);
+    for (int i = block * at_once; i < end; ++i)
+      found[i] = crossing(tree, samples[i], side * samples[i].normal, least, reach);
   });
   return found;
 }
@@ -133,15 +137,17 @@ model::ThinPlaces relief(const std::vector<SurfaceSample>& samples, const Crossi
 
 }  // namespace
 
-model::Thin thin_places(const model::TriangleSoup& mesh, const Repair& repaired, double voxel_mm) {
-  const auto tree = std::make_shared<const TriangleTree>(corners_of(mesh));
-  if (tree->triangles.empty()) return {};
+model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& repaired, double voxel_mm) {
+  const SurfaceTree surface(mesh);
+  const TriangleTree& tree = *surface.tree;
+  if (tree.triangles.empty()) return {};
   const double area = area_of(mesh);
   const double count = std::clamp(area / (voxel_mm * voxel_mm), least_samples, most_samples);
   const std::vector<SurfaceSample> samples = sample_surface(mesh, static_cast<int>(count));
   const double reach = model::thin_voxels * voxel_mm;
-  const Crossings inwards = crossings(*tree, samples, -1, reach);
-  const Crossings outwards = crossings(*tree, samples, 1, reach);
+  const double touching = least_gap * voxel_mm;
+  const Crossings inwards = crossings(tree, samples, -1, own * reach, reach);
+  const Crossings outwards = crossings(tree, samples, 1, touching, reach);
   std::vector<Crossing> walls = parallel(inwards);
   std::vector<Crossing> gaps = parallel(outwards);
   const double each = area / static_cast<double>(samples.size());
@@ -150,7 +156,7 @@ model::Thin thin_places(const model::TriangleSoup& mesh, const Repair& repaired,
   const bool one_surface =
       repaired.closed() && repaired.components == 1 && repaired.shared.low[0] > repaired.shared.high[0];
   if (!one_surface && !(walls.empty() && gaps.empty())) {
-    const WindingNumber winding(tree);
+    const WindingNumber winding(surface.tree);
     const double beside = 0.02 * voxel_mm;
     const auto divides = [&](const Crossing& across, bool solid) {
       const auto inside = [&](double way) { return winding(across.at(way)) > 0.5; };
@@ -162,7 +168,8 @@ model::Thin thin_places(const model::TriangleSoup& mesh, const Repair& repaired,
   }
   constexpr double thinnest = 0.1;
   return {summary(std::move(walls), of_wall, thinnest), summary(std::move(gaps), of_gap, thinnest),
-          relief(samples, inwards, outwards, each, voxel_mm)};
+          relief(samples, inwards, outwards, each, voxel_mm),
+          separate_solids(surface, repaired, samples, touching, least_solid * voxel_mm * voxel_mm * voxel_mm)};
 }
 
 }  // namespace vam::solid
