@@ -72,9 +72,10 @@ void judge_size(const cli::App& app, const Options& options, const solid::Part& 
 }
 
 /// For a part that is too large.
-solid::PlacementAdvice advice_for(const cli::App& app, const Options& options, const solid::Part& part,
-                                  const solid::Writable& room) {
+solid::PlacementAdvice advice_for(const cli::App& app, const Options& options, const model::Printer& printer,
+                                  const solid::Part& part, const solid::Writable& room) {
   solid::PlacementAdvice advice = slice_tool::advice(options);
+  if (part.extent.radius_mm > model::resin_radius_mm(printer.vial)) advice.beyond.clear();
   if (!part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit")) return advice;
   const std::string unit = solid::finer_unit(largest_mm(part, options.placement.stretch_z), room);
   if (!unit.empty()) advice.unit = unit + " --unit states it; else ";
@@ -83,10 +84,15 @@ solid::PlacementAdvice advice_for(const cli::App& app, const Options& options, c
 
 void warn_of_insert_size(const cli::App& app, const Options& options, const solid::Part& insert,
                          const solid::Writable& room) {
-  if (!insert.repair || app.given("--insert-unit") || app.given("--insert-scale")) return;
   const double size_mm = largest_mm(insert, options.placement.stretch_z);
-  const std::string doubt = solid::unit_doubt(insert.subject, "insert", size_mm, room);
-  if (!doubt.empty()) warn(doubt + "; --insert-unit states it");
+  const bool known = !insert.repair || app.given("--insert-unit") || app.given("--insert-scale");
+  const std::string doubt = known ? "" : solid::unit_doubt(insert.subject, "insert", size_mm, room);
+  if (!doubt.empty()) {
+    warn(doubt + "; --insert-unit states it");
+  } else if (size_mm < options.voxel_mm.value()) {
+    warn(insert.subject + ": the insert is only " + format_number(size_mm, 3) + " mm large, less than a voxel of " +
+         format_number(options.voxel_mm.value(), 3) + " mm; check --insert-unit and --insert-scale");
+  }
 }
 
 void write(const cli::App& app, const Options& options, const model::Printer& printer,
@@ -133,7 +139,7 @@ void run(const cli::App& app, Options& options) {
   part = solid::lifted(std::move(part), lift_mm);
   if (insert) insert = solid::lifted(std::move(*insert), lift_mm);
   solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject,
-                          advice_for(app, options, part, room));
+                          advice_for(app, options, printer, part, room));
   const model::Grid grid = grid_of(options, printer, part, insert, room);
   solid::FillSummary content;
   std::optional<io::SparseVolume> opaque;

@@ -19,6 +19,9 @@ make check VOXEL=0.2 LIMITS='iou>=1.5' >.log/out 2>&1
 [ $? -ne 0 ]; report $? 'a part that will not print fails the check'
 [ ! -e box.score.json ] || [ ! -e other.score.json ]; report $? 'a failed verdict leaves no target behind'
 rm -f ./*.off
+box 4 4 1 >PART.OFF
+ok 'a mesh whose ending is in capitals is a part' sh -c 'make -n | grep -q "vam-slice PART.OFF .* -o PART.vdb"'
+rm -f PART.OFF
 box 4 4 1 >box.off; cp box.off box.dose.off
 make >.log/out 2>&1; status=$?
 is 'a mesh that would make the output of another is refused' "$status $(grep -c 'box.dose.off: would make box.dose.vdb, an output of box.off; rename it' .log/out)" '2 1'

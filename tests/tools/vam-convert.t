@@ -68,6 +68,12 @@ vam-convert low.vdb >b.npy
 is 'with its values' "$(shown b.npy)" "1 3 4 <f4$(values 12)"
 head -c 160 ramp.npy >cut.npy
 fails 65 'cut' vam-convert cut.npy --voxel 0.5 --grid weight --stretch-z 0.3 -o x.vdb
+fails 64 'vam-convert: low.nrrd: a volume or stack is written as .npy; vam-view --export writes a volume as NRRD' vam-convert low.vdb -o low.nrrd
+npy make grey.npy '<u1' 3,4,5
+vam-convert grey.npy --voxel 0.5 --stretch-z 1 -o grey.vdb 2>err
+is 'grey levels taken as coverage are told' "$(cat err)" 'vam-convert: warning: grey.npy: its values reach 59, where a full voxel is 1; if they are grey levels, give --full-scale 255'
+printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 3 3 3\nencoding: raw\ndata file: a.raw\n' >detached.nrrd
+fails 65 'detached.nrrd: has its values in another file' vam-convert detached.nrrd --voxel 1 -o x.vdb
 fails 64 'stretch-z' vam-convert ramp.npy --voxel 0.5 --stretch-z 0 -o x.vdb
 
 # What is refused.

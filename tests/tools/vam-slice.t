@@ -122,6 +122,15 @@ with zipfile.ZipFile("inch.3mf", "w") as out:
         for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))) + '</triangles></mesh></object></resources><build><item objectid="1"/></build></model>')
 PY
 volume 64 vam-slice inch.3mf --scale 0.078740157480315 --voxel 0.25
+fails 64 '--scale: --fit determines the scale; give either --scale or --fit' vam-slice cube.stl --fit 3 --scale 2 -o x.vdb
+printf 'PK\5\6\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0' >empty.3mf
+fails 65 'empty.3mf: is an empty zip archive, not a mesh' vam-slice empty.3mf -o x.vdb
+fails 65 'box:x=4,y=4,z=4: the insert and its clearance of 0.2 mm take all of the part; check --insert-unit' \
+  vam-slice --shape box:x=4,y=4,z=4 --insert-shape cylinder:diameter=12,height=12 --cut-insert 0.2 --voxel 0.2 -o x.vdb
+vam-slice --shape sphere:diameter=6 --insert cube.stl --insert-scale 0.01 --voxel 0.2 -o x.vdb 2>said
+ok 'a tiny insert is told' grep -q 'cube.stl: the insert is only 0.0[0-9]* mm large, less than a voxel of 0.2 mm; check --insert-unit and --insert-scale' said
+quiet 'a setting without a leading zero' vam-slice --shape sphere:diameter=6 --set projector.pixel_mm=.2 --voxel .2 -o x.vdb
+fails 64 "projector.pixel_mm=.1.5: '.1.5' is not a value" vam-slice --shape sphere --set projector.pixel_mm=.1.5 -o x.vdb
 fails 64 '--unit: inch.3mf states its unit, as 3MF files do; omit --unit, or give --scale' \
   vam-slice inch.3mf --unit in --voxel 0.25 -o out.vdb
 fails 64 '--unit: inch.3mf states its unit' vam-plan inch.3mf --unit in --no-preview
@@ -258,7 +267,8 @@ ok "is small, not open" grep -q 'no voxel of 0.3 mm is wholly inside the part, w
 fails 65 'not closed.*boundary edges' vam-slice lidless.stl --fill exact -o x.vdb
 fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
 fails 65 'omit --no-centre; give --scale 0.0572 or --fit-writable to make it fit' vam-slice far.stl --no-centre -o x.vdb
-fails 65 '; give --scale 2.91 or --fit-writable to make it fit, or --extent resin to accept' vam-slice cube.stl --scale 5 -o x.vdb
+fails 65 '; give --scale 2.91 or --fit-writable to make it fit, or --extent resin to accept' vam-slice cube.stl --scale 3.2 -o x.vdb
+fails 65 '; give --scale 2.91 or --fit-writable to make it fit$' vam-slice cube.stl --scale 5 -o x.vdb  # beyond the resin
 ok "the stated scale fits" vam-slice cube.stl --scale 2.91 -o x.vdb
 fails 65 '; give --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
 fails 65 '; give --voxel 1.51 to make it fit' vam-slice stack --voxel 4 -o x.vdb

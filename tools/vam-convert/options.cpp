@@ -118,7 +118,10 @@ void check_export(const cli::App& app, const Options& options) {
   refuse_given(app, volume_flags, why);
   refuse_given(app, projection_flags, why);
   if (options.output == "-" || options.output.ends_with(".npy") || options.output.starts_with("/dev/")) return;
-  throw Error{Fault::usage, options.output + ": a volume or stack is written as .npy"};
+  throw Error{Fault::usage, options.output +
+                                ": a volume or stack is written as .npy; vam-view --export writes a volume as NRRD, "
+                                "vam-score --mesh the surface "
+                                "of a print"};
 }
 
 void check_import(const cli::App& app, const Options& options) {

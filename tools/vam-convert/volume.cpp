@@ -104,6 +104,16 @@ std::string height_doubt(const Options& options) {
          format_number(factor, 5) + " corrects it, --stretch-z 1 takes the array as it is";
 }
 
+/// Grey levels of 8 or 16 bits, of which the largest is seldom meant as so large a coverage.
+std::string scale_doubt(const Options& options, float most) {
+  const bool level = most > 1 && most <= 65535 && most == std::floor(most);
+  const bool target = options.grid.empty() || options.grid == "target";
+  if (options.full_scale || !level || !target || options.units != "relative") return "";
+  const int full = most <= 255 ? 255 : 65535;
+  return io::input_name(options.input) + ": its values reach " + format_number(static_cast<double>(most)) +
+         ", where a full voxel is 1; if they are grey levels, give --full-scale " + std::to_string(full);
+}
+
 }  // namespace
 
 /// Of a file that states its voxels, as NRRD does: both, where they differ.
@@ -132,6 +142,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   io::SparseVolume volume(options.grid.empty() ? "target" : options.grid, grid);
   StretchedSlices slices(*in, options.input, stretch_z, grid.nz);
   std::vector<float> values;
+  float most = 0;
   Image image;
   Progress progress("converting", grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
@@ -142,6 +153,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
       values.insert(values.end(), image.values.begin(), image.values.end());
     }
     volume.write_slices(k, count, values.data());
+    most = std::max(most, *std::max_element(values.begin(), values.end()));
     progress.tick(count);
   }
   slices.finish();
@@ -152,6 +164,8 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   io::write_volume(options.output, volume);
   if (!doubt.empty()) warn(doubt);
   if (!edges.empty()) warn(edges);
+  const std::string scale = scale_doubt(options, most);
+  if (!scale.empty()) warn(scale);
 }
 
 }  // namespace vam::convert_tool

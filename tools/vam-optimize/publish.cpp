@@ -34,7 +34,8 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
   tool::warn_of_dark_part(options.input, outcome.dark_part_voxels);
   const model::DoseMetrics& m = outcome.metrics;
   const bool has_goal = !options.until.empty() || options.max_intensity || options.turns;
-  if (!has_goal || outcome.stop == optimize::StopReason::goal || options.demands.grey || m.ver == 0) return;
+  if (!has_goal || outcome.stop == optimize::StopReason::goal || options.demands.grey || outcome.all_cut || m.ver == 0)
+    return;
   const bool by_time = outcome.stop == optimize::StopReason::time;
   const bool limited = outcome.max_intensity > 0 && outcome.peak_intensity > 0.98 * outcome.max_intensity;
   warn(io::input_name(options.input) + ": does not print after " + std::to_string(outcome.iterations) +

@@ -123,6 +123,9 @@ void check(const cli::App& app, const Options& options) {
   if (options.placement.fit_mm && options.placement.fit_writable) {
     throw Error{Fault::usage, "--fit-writable: give either --fit or --fit-writable"};
   }
+  if (options.placement.fit_mm && app.given("--scale")) {
+    throw Error{Fault::usage, "--scale: --fit determines the scale; give either --scale or --fit"};
+  }
   if (options.any_height && options.place == "auto") {
     throw Error{Fault::usage, "--place auto: finds a height within the image; omit --any-height"};
   }

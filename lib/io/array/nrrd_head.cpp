@@ -35,6 +35,8 @@ Fields take_fields(Bytes& bytes) {
     value.erase(0, std::min(value.find_first_not_of(' '), value.size()));
     value.erase(value.find_last_not_of(' ') + 1);
     const std::string name = line.substr(0, colon);
+    if (name == "data file" || name == "datafile")  // such a header may end without an empty line
+      bytes.fail("has its values in another file (a detached header)" + std::string(remedy));
     if (!fields.try_emplace(name, value).second) {
       bytes.fail("its header states " + excerpt(name) + " twice, of which only one would count" + remedy);
     }
@@ -122,9 +124,6 @@ std::vector<std::uint64_t> shape_of(const Bytes& bytes, const std::string& text)
 }
 
 void require_plain(const Bytes& bytes, const Fields& fields) {
-  for (const char* name : {"data file", "datafile"}) {
-    if (fields.count(name) != 0) bytes.fail("has its values in another file (a detached header)" + std::string(remedy));
-  }
   for (const char* name : {"line skip", "lineskip", "byte skip", "byteskip"}) {
     const auto found = fields.find(name);
     if (found != fields.end() && found->second != "0") {

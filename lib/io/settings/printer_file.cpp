@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -213,13 +214,14 @@ void check(const Printer& printer, Fault fault, const std::string& subject) {
   if (const std::string why = contradiction(printer); !why.empty()) throw Error{fault, subject + ": " + why};
 }
 
-// {value = ...}, or an empty table when the text is no TOML value.
+// {value = ...}, also of a number that TOML writes with more digits (.15), or an empty table.
 toml::table parse_value(const std::string& value) {
   if (value.size() > static_cast<std::size_t>(most_levels)) return {};
   try {
     return toml::parse("value = " + value);
   } catch (const toml::parse_error&) {
-    return {};
+    const auto number = parse_number(value);
+    return number && std::isfinite(*number) ? toml::table{{"value", *number}} : toml::table{};
   }
 }
 

@@ -56,6 +56,7 @@ constexpr Signature signatures[] = {
     {0, "Rar!"sv, "a RAR archive", unpack},
     {257, "ustar"sv, "a tar archive", unpack},
     {0, "PK\3\4"sv, "a zip archive", unpack},
+    {0, "PK\5\6"sv, "an empty zip archive"},
     {0, "\x1a\x45\xdf\xa3"sv, "a Matroska video"},
     {8, "AVI LIST"sv, "an AVI video", by_ffmpeg},
     {0, "\0\0\1\xba"sv, "an MPEG video", by_ffmpeg},

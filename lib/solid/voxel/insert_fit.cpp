@@ -5,9 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "model/dose_metrics.hpp"
 
 namespace vam::solid {
@@ -154,12 +156,14 @@ Part without_insert(const Part& part, std::function<void(int k, float* out)> rea
                     double stretch_z) {
   Part cut = part;
   cut.surface = {};  // its surface is no longer the part's
-  cut.fill = [fill = part.fill, read = std::move(read), clearance_mm, stretch_z](const model::Grid& grid,
-                                                                                 const SliceSink& sink) {
+  cut.fill = [fill = part.fill, subject = part.subject, read = std::move(read), clearance_mm, stretch_z](
+                 const model::Grid& grid, const SliceSink& sink) {
     const GrownInsert grown(grid, read, clearance_mm, stretch_z);
     const std::size_t size = grid.slice_size();
     std::vector<float> left(size * slab);
-    return fill(grid, [&](int k0, int count, const float* slices) {
+    bool any = false;
+    bool any_left = false;
+    const Vote vote = fill(grid, [&](int k0, int count, const float* slices) {
       parallel_for(count, [&](int s) {
         std::vector<float> insert(size);
         read(k0 + s, insert.data());
@@ -167,8 +171,16 @@ Part without_insert(const Part& part, std::function<void(int k, float* out)> rea
         const std::size_t first = product(s, size);
         for (std::size_t n = 0; n < size; ++n) left[first + n] = std::clamp(slices[first + n] - insert[n], 0.0F, 1.0F);
       });
+      const auto covers = [&](const float* values) {
+        return std::any_of(values, values + product(count, size), [](float value) { return value > 0; });
+      };
+      any = any || covers(slices);
+      any_left = any_left || covers(left.data());
       sink(k0, count, left.data());
     });
+    if (!any || any_left) return vote;
+    throw Error{Fault::data, subject + ": the insert and its clearance of " + format_number(clearance_mm, 3) +
+                                 " mm take all of the part; check --insert-unit, --insert-scale and --insert-at"};
   };
   return cut;
 }
