@@ -3,6 +3,7 @@
 // this; a vial, an absorber or an opaque insert is another implementation or a decorator around one.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -77,6 +78,9 @@ class Operator {
 
   /// sinograms = light, negative in places, whose dose is about the objects: the start of most methods.
   virtual void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const;
+
+  /// The same light for passes of a single slice, lane 0 of the first slab, where there is a quicker way; else none.
+  [[nodiscard]] virtual std::unique_ptr<Operator> for_one_slice() const { return nullptr; }
 
   /// Unknowns to fluence: dose(r) = angle step * sum over stage angles of the image along the rays. As is where the
   /// image has the shape of the sinogram.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "light/operators/private/one_slice_operator.hpp"
 
 namespace vam::light {
 
@@ -35,6 +36,10 @@ void ParallelOperator::forward(std::span<const Slab> objects, std::span<Slab> si
 
 void ParallelOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
   tomo::adjoint(rows_, sinograms, objects);
+}
+
+std::unique_ptr<Operator> ParallelOperator::for_one_slice() const {
+  return OneSliceOperator::is_for(turn_) ? std::make_unique<OneSliceOperator>(turn_) : nullptr;
 }
 
 void ParallelOperator::expand(const Slab& sinogram, Slab& image) const {

@@ -24,6 +24,7 @@ class ParallelOperator final : public Operator {
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
   void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }
   void precondition(std::span<Slab> sinograms) const override { inverse_.precondition(sinograms); }
+  [[nodiscard]] std::unique_ptr<Operator> for_one_slice() const override;
   void expand(const Slab& sinogram, Slab& image) const override;
   void collapse(const Slab& image, Slab& sinogram) const override;
 
