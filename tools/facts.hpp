@@ -2,6 +2,7 @@
 // Facts of volumes and stacks: what their metadata state [formats: Attributes of volumes and prints].
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -52,6 +53,7 @@ inline void state_surface(Facts& facts, const model::PartSurface& surface) {
   facts["vam:thin_gaps"] = text(surface.gaps);
   facts["vam:thin_relief"] = text(surface.relief);
   if (surface.solids > 0) facts["vam:solids"] = std::to_string(surface.solids);
+  if (surface.solids > 0 && surface.specks > 0) facts["vam:specks"] = std::to_string(surface.specks);
 }
 
 /// None where it is not stated, or not by five numbers each.
@@ -70,9 +72,13 @@ inline std::optional<model::PartSurface> stated_surface(const Facts& facts) {
   const auto gaps = places("vam:thin_gaps");
   const auto relief = places("vam:thin_relief");
   if (!walls || !gaps || !relief) return std::nullopt;
-  constexpr double most = 1e6;
-  const double solids = stated_number(facts, "vam:solids").value_or(0);
-  return model::PartSurface{*walls, *gaps, *relief, solids >= 0 && solids <= most ? static_cast<int>(solids) : 0};
+  const auto count = [&](const char* name) {
+    constexpr double most = 1e6;
+    const double number = stated_number(facts, name).value_or(0);
+    return number >= 0 && number <= most ? static_cast<int>(number) : 0;
+  };
+  const int solids = count("vam:solids");
+  return model::PartSurface{*walls, *gaps, *relief, solids, std::min(count("vam:specks"), solids)};
 }
 
 /// The dose at which the projections print, in the unit of the dose.

@@ -6,36 +6,43 @@
 
 namespace vam::model {
 
-/// Thinner ones need not have a voxel that is wholly within.
+/// In a wall or gap of so many voxels some voxel is more than half within; whether it prints, voxels do not tell.
 inline constexpr double thin_voxels = 1.5;
+/// In one of so many some voxel is wholly within; in thinner ones all may be cut by the surface.
+inline constexpr double narrow_voxels = 2;
+/// In a cavity of so many some voxel is three quarters free; what is smaller may be lost.
+inline constexpr double lost_voxels = 2.3;
 
 /// Of one kind.
 struct ThinPlaces {
-  double area_mm2 = 0;            // of their faces; 0: there are none
-  double mm = 0;                  // across; a tenth of the area is no farther apart, of relief half of it
+  double area_mm2 = 0;            // of the faces of all below lost_voxels; 0: there are none
+  double mm = 0;                  // across, of the thinnest that has two faces of a voxel; of relief the median
   std::array<double, 3> at_mm{};  // one such place, in the target's frame
 
-  /// Whether voxels leave them in doubt. A tip or a speck is less.
-  [[nodiscard]] bool matter(double voxel_mm) const {
-    constexpr double least_area = 2;  // faces of a voxel
-    return area_mm2 >= least_area * voxel_mm * voxel_mm && mm < thin_voxels * voxel_mm;
+  /// By more than rounding.
+  [[nodiscard]] bool are_below(double voxels, double voxel_mm) const {
+    constexpr double rounding = 1e-4;
+    return area_mm2 > 0 && mm < (1 - rounding) * voxels * voxel_mm;
   }
 };
 
 struct PartSurface {
-  ThinPlaces walls, gaps;  // between faces that are all but parallel
+  ThinPlaces walls, gaps;  // between faces that are nearly parallel
   ThinPlaces relief;       // ridges and grooves side by side, as of a knurl
   int solids = 0;          // that are apart; 0: not known
+  int specks = 0;          // of these, so small that they may not count in a print
 };
 
 /// Seen by voxels of some size.
 struct VoxelisedSurface {
   PartSurface places;
   double voxel_mm = 1;
-  [[nodiscard]] bool has_walls() const { return places.walls.matter(voxel_mm); }
-  [[nodiscard]] bool has_gaps() const { return places.gaps.matter(voxel_mm); }
-  [[nodiscard]] bool has_relief() const { return places.relief.matter(voxel_mm); }
-  [[nodiscard]] bool has_any() const { return has_walls() || has_gaps() || has_relief(); }
+  [[nodiscard]] bool has_thin_walls() const { return places.walls.are_below(thin_voxels, voxel_mm); }
+  [[nodiscard]] bool has_thin_gaps() const { return places.gaps.are_below(thin_voxels, voxel_mm); }
+  [[nodiscard]] bool may_lose_walls() const { return places.walls.are_below(lost_voxels, voxel_mm) || has_relief(); }
+  [[nodiscard]] bool may_lose_gaps() const { return places.gaps.are_below(lost_voxels, voxel_mm) || has_relief(); }
+  [[nodiscard]] bool has_relief() const { return places.relief.are_below(thin_voxels, voxel_mm); }
+  [[nodiscard]] bool leaves_doubt() const { return has_thin_walls() || has_thin_gaps() || has_relief(); }
 };
 
 }  // namespace vam::model

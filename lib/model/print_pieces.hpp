@@ -20,13 +20,14 @@ struct PrintPieces {
   std::int64_t broken = 0;  // voxels of torn sets of the part [TornSets]
   std::int64_t shut = 0;    // and of gaps
   int solids = 0;           // of the part's own surface; 0: not known
+  int specks = 0;           // of these, so small that they may not count
 
   [[nodiscard]] bool loses_walls() const { return broken > 0; }
   [[nodiscard]] bool shuts_gaps() const { return shut > 0; }
   /// In how many pieces the part is, as far as its surface or the two numbers tell.
-  [[nodiscard]] int fewest() const { return solids > 0 ? solids : std::min(part, part_at_half); }
+  [[nodiscard]] int fewest() const { return solids > 0 ? solids - specks : std::min(part, part_at_half); }
   [[nodiscard]] int most() const { return solids > 0 ? solids : std::max(part, part_at_half); }
-  [[nodiscard]] bool is_certain() const { return fewest() == most(); }
+  [[nodiscard]] bool is_certain() const { return solids > 0 || part == part_at_half; }
   [[nodiscard]] bool is_in_other_pieces() const { return print < fewest() || print > most(); }
   [[nodiscard]] bool is_as_part() const { return !is_in_other_pieces() && !loses_walls() && !shuts_gaps(); }
 };

@@ -84,7 +84,7 @@ bool Unresolved::shuts_gaps() const {
   constexpr double least = 1;  // voxels
   constexpr double least_a_slice = 0.1;
   constexpr float least_width = 0.05F;  // voxels
-  if (surface && !surface->has_gaps() && !surface->has_relief()) return false;
+  if (surface && !surface->may_lose_gaps()) return false;
   return lost_gaps.voxels >= least && lost_gaps.voxels >= least_a_slice * (lost_gaps.end - lost_gaps.first) &&
          lost_gaps.widest >= least_width;
 }

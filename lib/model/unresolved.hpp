@@ -52,11 +52,11 @@ struct Unresolved {
   /// Rounded edges and tips are less of a part.
   [[nodiscard]] bool is_much() const { return share() > 0.02; }
   /// A verdict on the voxels is none on the part: of its surface, or where that is not known of its voxels.
-  [[nodiscard]] bool leaves_doubt() const { return surface ? surface->has_any() : is_much(); }
+  [[nodiscard]] bool leaves_doubt() const { return surface ? surface->leaves_doubt() : is_much(); }
   /// Walls will be missing in the print: more than specks, and where the part's surface is known more than its
   /// roughness.
   [[nodiscard]] bool loses_walls() const {
-    return (loses_much() || loses_rods()) && (!surface || surface->has_walls() || surface->has_relief());
+    return (loses_much() || loses_rods()) && (!surface || surface->may_lose_walls());
   }
   [[nodiscard]] bool loses_much() const { return lost_share() > 1e-3; }
   [[nodiscard]] bool loses_rods() const { return lost_walls.far > 0.5; }

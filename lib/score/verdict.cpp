@@ -62,8 +62,8 @@ std::string thin_text(const model::Unresolved& un) {
     return std::string(kind) + " of " + format_number(places.mm / un.surface->voxel_mm, 2) + " voxels";
   };
   std::string what;
-  if (un.surface->has_walls() && !un.loses_walls()) what = voxels_of("walls", un.surface->places.walls);
-  if (un.surface->has_gaps() && !un.shuts_gaps())
+  if (un.surface->has_thin_walls() && !un.loses_walls()) what = voxels_of("walls", un.surface->places.walls);
+  if (un.surface->has_thin_gaps() && !un.shuts_gaps())
     what += (what.empty() ? "" : " and ") + voxels_of("gaps", un.surface->places.gaps);
   if (what.empty() && un.surface->has_relief() && !un.loses_walls() && !un.shuts_gaps())
     what = voxels_of("ridges and grooves", un.surface->places.relief);
@@ -73,9 +73,9 @@ std::string thin_text(const model::Unresolved& un) {
 std::string unjudged(const model::Unresolved& un) {
   const auto percent = [](double share) { return format_number(100 * share, 3) + " % of the part"; };
   std::string text;
-  if (un.loses_much()) {
+  if (un.loses_walls() && un.loses_much()) {
     text += "; " + percent(un.lost_share()) + " is in walls too thin for the voxels and will be missing";
-  } else if (un.loses_rods()) {
+  } else if (un.loses_walls()) {
     text += "; walls or rods too thin for the voxels will be missing";
   }
   if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
@@ -100,7 +100,9 @@ Answer answer(const Verdict& verdict) {
 void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& pieces) {
   verdict.pieces = pieces;
   const auto& surface = verdict.unresolved.surface;
-  if (verdict.pieces && surface) verdict.pieces->solids = surface->places.solids;
+  if (!verdict.pieces || !surface) return;
+  verdict.pieces->solids = surface->places.solids;
+  verdict.pieces->specks = surface->places.specks;
 }
 
 std::string words(const Verdict& verdict) {

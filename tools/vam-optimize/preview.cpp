@@ -140,8 +140,8 @@ std::vector<std::string> lost(const model::Unresolved& target) {
       doubts.push_back(std::string(kind) + " of " + format_number(of.mm / voxel_mm, 2) +
                        " of the target's voxels are not judged");
     };
-    if (target.surface->has_walls() && !target.loses_walls()) add("walls", places.walls);
-    if (target.surface->has_gaps() && !target.shuts_gaps()) add("gaps", places.gaps);
+    if (target.surface->has_thin_walls() && !target.loses_walls()) add("walls", places.walls);
+    if (target.surface->has_thin_gaps() && !target.shuts_gaps()) add("gaps", places.gaps);
     if (doubts.empty() && target.surface->has_relief()) add("ridges and grooves", places.relief);
   } else if (target.is_much()) {
     doubts.push_back(format_number(100 * target.share(), 3) +

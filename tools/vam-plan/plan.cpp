@@ -184,8 +184,9 @@ void add_walls(Plan& plan, const solid::Part& part) {
   if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
   if (!part.surface) return;
   const model::VoxelisedSurface surface{part.surface(plan.grid.voxel_mm), plan.grid.voxel_mm};
-  plan.in_doubt = plan.in_doubt || surface.has_any();
-  if (surface.has_walls()) plan.thinnest_place = place_of(surface.places.walls, plan);
+  plan.in_doubt = plan.in_doubt || surface.leaves_doubt();
+  if (surface.places.walls.are_below(model::narrow_voxels, surface.voxel_mm))
+    plan.thinnest_place = place_of(surface.places.walls, plan);
 }
 
 double million_voxels(const model::Grid& grid, int coarseness) {

@@ -84,11 +84,14 @@ std::vector<std::string> notes() {
       "of 8 % of the diameter, or 0.5 % of the facets missing, fewer than one voxel in 1000 is wrong by more than a "
       "half. A single shell that overlaps itself by less than a voxel is counted twice there. "
       "Test shapes are accurate to 2e-4 of their volume for features of a few voxels.",
-      "Walls and gaps of a mesh between faces less than 1.5 voxels apart, and ridges and grooves as fine, cause a "
-      "warning with their thickness, a place and the voxels that resolve them, and are stated in the target for the "
-      "verdict of vam-score and vam-optimize: from two faces of a voxel on, ridges from 30 on. Faces are found by "
-      "short rays along the normals from points on the surface, one for each face of a voxel, 200000 at most; faces "
-      "that converge by more than 28 degrees, as at the edge of a wedge, are no walls.",
+      "Walls and gaps of a mesh between faces less than 2 voxels apart, and ridges and grooves of less than 1.5 voxels "
+      "side by side, cause a warning with their thickness, a place and the voxels that resolve them; those below 1.5 "
+      "voxels leave the verdict of vam-score and vam-optimize in doubt. Faces are found by short rays along the "
+      "normals "
+      "from points on the surface, one for each face of a voxel, 200000 at most; from two such points on a wall "
+      "counts, "
+      "ridges from 30 on. Faces that would meet within six voxels, as at the edge of a wedge or where a ball stands on "
+      "a plate, are no walls and gaps, unless they are of separate solids.",
       "Speed: a million triangles on 512 x 512 x 512 voxels take 2 s on two cores. Memory: the mesh, 16 slices, and "
       "the volume, whose interior is stored as tiles.",
       "The volume is square in x and y and just contains the bounding circle of the part; metrics of the void use the "

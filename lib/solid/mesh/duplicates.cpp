@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles that a mesh has more than once.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/weld.hpp"
+#include "solid/mesh/private/winding.hpp"
 
 namespace vam::solid {
 
@@ -45,12 +49,13 @@ std::vector<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
 }
 
 // Which of the triangles left over from copies that cancel are needless: a patch of them is when the other triangles
-// meet it and are closed if it is removed, as where two solids touch. A patch that closes a hole stays, and so does a
-// surface made of nothing else.
+// meet it and are closed if it is removed, as where two solids touch, or when it is a surface of its own within the
+// others, as where one solid fills a cavity of another. A patch that closes a hole stays, and so does a surface of its
+// own that is not within others.
 class Patches {
  public:
   Patches(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& cancelling)
-      : root_(mesh.triangles.size()), keep_(mesh.triangles.size(), 0), met_(mesh.triangles.size(), 0) {
+      : mesh_(mesh), root_(mesh.triangles.size()), keep_(mesh.triangles.size(), 0), met_(mesh.triangles.size(), 0) {
     std::iota(root_.begin(), root_.end(), std::size_t{0});
     std::vector<char> doubtful(mesh.triangles.size(), 0);
     for (const std::size_t t : cancelling) doubtful[t] = 1;
@@ -60,6 +65,7 @@ class Patches {
       if (drop[t] != 0) continue;
       rest.push_back(mesh.triangles[t]);
       original.push_back(t);
+      if (doubtful[t] == 0) rest_.push_back(mesh.triangles[t]);
     }
     EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
       std::vector<std::size_t> patch;
@@ -73,13 +79,22 @@ class Patches {
 
   [[nodiscard]] bool needless(std::size_t triangle) {
     const std::size_t root = find(triangle);
-    return met_[root] != 0 && keep_[root] == 0;
+    if (met_[root] == 0) return is_within_others(root);
+    return keep_[root] == 0;
   }
 
  private:
   std::size_t find(std::size_t t) {
     while (root_[t] != t) t = root_[t] = root_[root_[t]];
     return t;
+  }
+  bool is_within_others(std::size_t patch) {
+    const auto [known, is_new] = within_.try_emplace(patch, false);
+    if (is_new) {
+      if (!others_) others_.emplace(model::TriangleSoup{mesh_.points, rest_});
+      known->second = std::abs((*others_)(mesh_.points[mesh_.triangles[patch][0]])) > 0.5;
+    }
+    return known->second;
   }
   // An edge of the patch with so many other triangles.
   void join(const std::vector<std::size_t>& patch, std::size_t others) {
@@ -97,9 +112,13 @@ class Patches {
     }
   }
 
+  const model::TriangleSoup& mesh_;
   std::vector<std::size_t> root_;
   std::vector<char> keep_;
   std::vector<char> met_;
+  std::vector<Triangle> rest_;           // that do not cancel
+  std::optional<WindingNumber> others_;  // of these; made when first needed
+  std::map<std::size_t, bool> within_;
 };
 
 // Which of further copies that run the same way round must stay: patches without which edges that are balanced would

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,10 +24,12 @@ namespace {
 constexpr double most_samples = 200'000;
 constexpr double least_samples = 2'000;
 constexpr std::size_t most_verified = 10'000;
-constexpr double widest_cosine = -0.88;    // of two faces' normals: 28 degrees apart from parallel
+constexpr double meet_voxels = 6;          // faces that meet nearer make an edge
+constexpr double facing_cosine = -0.5;     // of normals: 60 degrees apart from parallel
 constexpr double sharpest_cosine = -0.17;  // edges of less than 80 degrees
 constexpr double least_gap = 1 / 64.0;     // voxels: shells that are nearer touch
 constexpr double least_solid = 16;         // voxels: smaller ones may not count in a print
+constexpr double least_area = 2;           // faces of a voxel: less is a speck
 constexpr double own = 1e-6;               // of the reach: nearer is the face that the ray leaves from
 
 /// The way from a face straight to the one on the other side.
@@ -34,9 +37,24 @@ struct Crossing {
   Vector3 from, along;
   double distance;
   double cosine;  // of both faces' normals
-  [[nodiscard]] bool is_parallel() const { return cosine <= widest_cosine; }
-  [[nodiscard]] bool is_edge() const { return cosine <= sharpest_cosine; }
+  bool apart;     // they are of different solids
   [[nodiscard]] Vector3 at(double way) const { return from + way * along; }
+  [[nodiscard]] bool is_edge() const { return cosine <= sharpest_cosine; }
+  /// How far off the faces meet, straight on.
+  [[nodiscard]] double meets() const {
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    return sine > 0 ? -cosine * distance / sine : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] bool is_between_faces(double voxel_mm) const {
+    return cosine <= facing_cosine && (apart || meets() >= meet_voxels * voxel_mm);
+  }
+};
+
+/// Points of a surface, the ways from them to both sides, and the area that each stands for.
+struct Crossings {
+  std::vector<SurfaceSample> samples;
+  std::vector<std::optional<Crossing>> inwards, outwards;
+  double each = 0;
 };
 
 double area_of(const model::TriangleSoup& mesh) {
@@ -45,80 +63,89 @@ double area_of(const model::TriangleSoup& mesh) {
   return 0.5 * twice;
 }
 
-std::optional<Crossing> crossing(const TriangleTree& tree, const SurfaceSample& sample, const Vector3& along,
-                                 double least, double reach) {
-  const auto hit = tree.first_hit(sample.point, along, least, reach);
-  if (!hit) return std::nullopt;
-  const Vector3 normal = twice_area(tree.triangles[hit->triangle]);
-  return Crossing{sample.point, along, hit->distance, dot(normal, sample.normal) / length(normal)};
-}
-
-/// Of all samples, those that a condition leaves stand for the area of all that there were.
-template <class Condition>
-void keep(std::vector<Crossing>& crossings, double& each, const Condition& condition) {
-  const std::size_t step = crossings.size() / most_verified + 1;
-  std::vector<Crossing> some;
-  for (std::size_t i = 0; i < crossings.size(); i += step) some.push_back(crossings[i]);
-  std::vector<char> kept(some.size());
-  parallel_for(count_of(some), [&](int i) { kept[i] = condition(some[i]) ? 1 : 0; });
-  each *= static_cast<double>(crossings.size()) / static_cast<double>(std::max<std::size_t>(some.size(), 1));
-  crossings.clear();
-  for (std::size_t i = 0; i < some.size(); ++i)
-    if (kept[i] != 0) crossings.push_back(some[i]);
-}
-
-/// The way across that this share of them does not exceed.
-model::ThinPlaces summary(std::vector<Crossing> crossings, double each, double share) {
-  if (crossings.empty()) return {};
-  const auto at = crossings.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(crossings.size()));
-  std::nth_element(crossings.begin(), at, crossings.end(),
-                   [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
-  return {each * static_cast<double>(crossings.size()), at->distance, at->at(0.5 * at->distance)};
-}
-
-using Crossings = std::vector<std::optional<Crossing>>;
-
-/// Of each sample, towards one side.
-Crossings crossings(const TriangleTree& tree, const std::vector<SurfaceSample>& samples, double side, double least,
-                    double reach) {
-  Crossings found(samples.size());
+/// To one side, at least and at most so far.
+void cross(const SurfaceTree& surface, const SeparateSolids& solids, const std::vector<SurfaceSample>& samples,
+           double side, double least, double most, std::vector<std::optional<Crossing>>& found) {
+  found.resize(samples.size());
   constexpr int at_once = 1000;
   parallel_for((count_of(samples) + at_once - 1) / at_once, [&](int block) {
     const int end = std::min(count_of(samples), (block + 1) * at_once);
-    for (int i = block * at_once; i < end; ++i)
-      found[i] = crossing(tree, samples[i], side * samples[i].normal, least, reach);
+    for (int i = block * at_once; i < end; ++i) {
+      const SurfaceSample& sample = samples[i];
+      const Vector3 along = side * sample.normal;
+      const auto hit = surface.tree->first_hit(sample.point, along, least, most);
+      if (!hit) continue;
+      const Vector3 normal = twice_area(surface.tree->triangles[hit->triangle]);
+      found[i] = Crossing{sample.point, along, hit->distance, dot(normal, sample.normal) / length(normal),
+                          !solids.are_one(sample.triangle, surface.place(hit->triangle))};
+    }
   });
-  return found;
 }
 
-std::vector<Crossing> parallel(const Crossings& all) {
+/// Only those between void and solid, where solids may lie within each other; of so many samples that it is quick.
+void leave_outer(Crossings& all, const SurfaceTree& surface, double voxel_mm) {
+  const auto is_there = [](const auto& crossing) { return crossing.has_value(); };
+  const auto count = std::count_if(all.inwards.begin(), all.inwards.end(), is_there) +
+                     std::count_if(all.outwards.begin(), all.outwards.end(), is_there);
+  if (count == 0) return;
+  const std::size_t step = static_cast<std::size_t>(count) / most_verified + 1;
+  Crossings some{{}, {}, {}, all.each * static_cast<double>(step)};
+  for (std::size_t i = 0; i < all.samples.size(); i += step) {
+    some.samples.push_back(all.samples[i]);
+    some.inwards.push_back(all.inwards[i]);
+    some.outwards.push_back(all.outwards[i]);
+  }
+  const WindingNumber winding(surface.tree);
+  const double beside = 0.02 * voxel_mm;
+  const auto divides = [&](const Crossing& across, bool solid) {
+    const auto inside = [&](double way) { return winding(across.at(way)) > 0.5; };
+    return inside(0.5 * across.distance) == solid && inside(-beside) != solid &&
+           inside(across.distance + beside) != solid;
+  };
+  parallel_for(count_of(some.samples), [&](int i) {
+    if (some.inwards[i] && !divides(*some.inwards[i], true)) some.inwards[i].reset();
+    if (some.outwards[i] && !divides(*some.outwards[i], false)) some.outwards[i].reset();
+  });
+  all = std::move(some);
+}
+
+/// The n-th shortest way, and the area of all.
+model::ThinPlaces summary(std::vector<Crossing> crossings, std::size_t n, double area_mm2) {
+  if (crossings.size() <= n) return {};
+  const auto at = crossings.begin() + static_cast<std::ptrdiff_t>(n);
+  std::nth_element(crossings.begin(), at, crossings.end(),
+                   [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
+  return {area_mm2, at->distance, at->at(0.5 * at->distance)};
+}
+
+model::ThinPlaces between_faces(const std::vector<std::optional<Crossing>>& crossings, double each, double voxel_mm) {
   std::vector<Crossing> found;
-  for (const auto& one : all)
-    if (one && one->is_parallel()) found.push_back(*one);
-  return found;
+  for (const auto& one : crossings)
+    if (one && one->is_between_faces(voxel_mm)) found.push_back(*one);
+  const double enough = std::max(2.0, least_area * voxel_mm * voxel_mm / each);
+  const double area_mm2 = each * static_cast<double>(found.size());
+  return summary(std::move(found), static_cast<std::size_t>(enough) - 1, area_mm2);
 }
 
 /// Of blocks in which ridges and grooves are a tenth of the surface each.
-model::ThinPlaces relief(const std::vector<SurfaceSample>& samples, const Crossings& inwards, const Crossings& outwards,
-                         double each, double voxel_mm) {
+model::ThinPlaces relief(const Crossings& all, double voxel_mm) {
   struct Block {
     int samples = 0, ridges = 0, grooves = 0;
     std::vector<Crossing> edges;
     [[nodiscard]] bool has_relief() const { return 10 * ridges >= samples && 10 * grooves >= samples; }
   };
-  constexpr double half = 0.5;       // a ridge is pointed
-  constexpr double few = 12;         // samples on a plane through a block
-  constexpr double least_area = 30;  // faces of a voxel
-  const double side = std::max(3 * voxel_mm, std::sqrt(few * each));
+  constexpr double few = 12;   // samples on a plane through a block
+  constexpr double much = 30;  // faces of a voxel
+  const double side = std::max(3 * voxel_mm, std::sqrt(few * all.each));
   std::map<std::array<int, 3>, Block> blocks;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
+  for (std::size_t i = 0; i < all.samples.size(); ++i) {
     std::array<int, 3> at{};
-    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = floor_int(samples[i].point[axis] / side);
+    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = floor_int(all.samples[i].point[axis] / side);
     Block& block = blocks[at];
     ++block.samples;
     for (const auto& [crossing, count] :
-         {std::pair{&inwards[i], &block.ridges}, std::pair{&outwards[i], &block.grooves}}) {
-      if (!*crossing || !(*crossing)->is_edge()) continue;
+         {std::pair{&all.inwards[i], &block.ridges}, std::pair{&all.outwards[i], &block.grooves}}) {
+      if (!*crossing || !(*crossing)->is_edge() || (*crossing)->distance > model::thin_voxels * voxel_mm) continue;
       ++*count;
       block.edges.push_back(**crossing);
     }
@@ -130,46 +157,31 @@ model::ThinPlaces relief(const std::vector<SurfaceSample>& samples, const Crossi
     found += block.samples;
     edges.insert(edges.end(), block.edges.begin(), block.edges.end());
   }
-  model::ThinPlaces places = summary(std::move(edges), each, half);
-  places.area_mm2 = found * each;
-  return places.area_mm2 >= least_area * voxel_mm * voxel_mm ? places : model::ThinPlaces{};
+  const double area_mm2 = found * all.each;
+  if (area_mm2 < much * voxel_mm * voxel_mm) return {};
+  const std::size_t median = edges.size() / 2;
+  return summary(std::move(edges), median, area_mm2);
 }
 
 }  // namespace
 
 model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& repaired, double voxel_mm) {
   const SurfaceTree surface(mesh);
-  const TriangleTree& tree = *surface.tree;
-  if (tree.triangles.empty()) return {};
+  if (surface.tree->triangles.empty()) return {};
+  const double face = voxel_mm * voxel_mm;
   const double area = area_of(mesh);
-  const double count = std::clamp(area / (voxel_mm * voxel_mm), least_samples, most_samples);
-  const std::vector<SurfaceSample> samples = sample_surface(mesh, static_cast<int>(count));
-  const double reach = model::thin_voxels * voxel_mm;
+  Crossings all;
+  all.samples = sample_surface(mesh, static_cast<int>(std::clamp(area / face, least_samples, most_samples)));
+  all.each = area / static_cast<double>(all.samples.size());
   const double touching = least_gap * voxel_mm;
-  const Crossings inwards = crossings(tree, samples, -1, own * reach, reach);
-  const Crossings outwards = crossings(tree, samples, 1, touching, reach);
-  std::vector<Crossing> walls = parallel(inwards);
-  std::vector<Crossing> gaps = parallel(outwards);
-  const double each = area / static_cast<double>(samples.size());
-  double of_wall = each;
-  double of_gap = each;
-  const bool one_surface =
-      repaired.closed() && repaired.components == 1 && repaired.shared.low[0] > repaired.shared.high[0];
-  if (!one_surface && !(walls.empty() && gaps.empty())) {
-    const WindingNumber winding(surface.tree);
-    const double beside = 0.02 * voxel_mm;
-    const auto divides = [&](const Crossing& across, bool solid) {
-      const auto inside = [&](double way) { return winding(across.at(way)) > 0.5; };
-      return inside(0.5 * across.distance) == solid && inside(-beside) != solid &&
-             inside(across.distance + beside) != solid;
-    };
-    keep(walls, of_wall, [&](const Crossing& across) { return divides(across, true); });
-    keep(gaps, of_gap, [&](const Crossing& across) { return divides(across, false); });
-  }
-  constexpr double thinnest = 0.1;
-  return {summary(std::move(walls), of_wall, thinnest), summary(std::move(gaps), of_gap, thinnest),
-          relief(samples, inwards, outwards, each, voxel_mm),
-          separate_solids(surface, repaired, samples, touching, least_solid * voxel_mm * voxel_mm * voxel_mm)};
+  const SeparateSolids solids(surface, repaired, all.samples, touching, least_solid * face * voxel_mm);
+  const double reach = model::lost_voxels * voxel_mm;
+  cross(surface, solids, all.samples, -1, own * reach, reach, all.inwards);
+  cross(surface, solids, all.samples, 1, touching, reach, all.outwards);
+  const bool one_surface = repaired.closed() && repaired.components == 1 && repaired.non_manifold_edges == 0;
+  if (!one_surface) leave_outer(all, surface, voxel_mm);
+  return {between_faces(all.inwards, all.each, voxel_mm), between_faces(all.outwards, all.each, voxel_mm),
+          relief(all, voxel_mm), solids.count(), solids.specks()};
 }
 
 }  // namespace vam::solid

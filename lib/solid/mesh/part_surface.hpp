@@ -9,10 +9,11 @@
 
 namespace vam::solid {
 
-/// Separate solids, and walls and gaps of a repaired mesh that are thinner than thin_voxels of `voxel_mm`, by rays
+/// Separate solids, and walls and gaps of a repaired mesh that are thinner than lost_voxels of `voxel_mm`, by rays
 /// along the normals from points spread over the surface: about one for each face of a voxel, 200000 at most. Faces
-/// that converge by more than 28 degrees, as at the edge of a wedge, and those of overlapping solids within each other
-/// are none. Relief is where ridges and grooves of less than 80 degrees are within a few voxels of each other.
+/// that would meet within six voxels, as at the edge of a wedge or where a ball stands on a plate, are none unless they
+/// are of different solids; nor are faces of overlapping solids within each other. Relief is where ridges and grooves
+/// of less than 80 degrees and thin_voxels are within a few voxels of each other.
 [[nodiscard]] model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& repaired, double voxel_mm);
 
 }  // namespace vam::solid

@@ -179,7 +179,7 @@ Json figures(const Part& part, const FillSummary& content, const model::Grid& gr
               {"lost_gaps_mm3", content.unresolved.lost_gaps.voxels * std::pow(grid.voxel_mm, 3) / stretch_z}};
   if (const auto& surface = content.unresolved.surface) {
     const auto places = [&](const model::ThinPlaces& of) -> Json {
-      if (!of.matter(grid.voxel_mm)) return nullptr;
+      if (of.area_mm2 == 0) return nullptr;
       return {{"area_mm2", of.area_mm2}, {"mm", of.mm}, {"at_mm", {of.at_mm[0], of.at_mm[1], of.at_mm[2] / stretch_z}}};
     };
     report["solids"] = surface->places.solids > 0 ? Json(surface->places.solids) : Json(nullptr);

@@ -30,18 +30,24 @@ std::string heights(int first, int end, const model::Grid& grid, double stretch_
          format_number(grid.z_mm(end - 0.5) / stretch_z, 3) + " mm";
 }
 
-/// In two voxels at least one is wholly within.
-double resolving_mm(const model::ThinPlaces& places) { return 0.5 * places.mm; }
+/// Of which these are no longer narrow, in two digits.
+double resolving_mm(const model::ThinPlaces& places) {
+  const double mm = places.mm / model::narrow_voxels;
+  const double digit = std::pow(10, std::floor(std::log10(mm)) - 1);
+  constexpr double rounding = 1e-6;
+  return std::floor(mm / digit + rounding) * digit;
+}
 
-/// "part.stl: walls of 0.27 mm are thin for voxels of 0.3 mm, as near (1, 2, 3) mm; whether they print is not judged;
-/// voxels of 0.18 mm resolve them"
-std::string place_doubt(const std::string& subject, const char* kind, const model::ThinPlaces& places,
-                        const model::Grid& grid, double stretch_z) {
+/// "part.stl: walls of 0.27 mm are too fine for voxels of 0.3 mm, as near (1, 2, 3) mm, and whether they print is not
+/// judged; voxels of 0.14 mm resolve them"
+std::string place_doubt(const std::string& subject, const char* kind, const char* otherwise,
+                        const model::ThinPlaces& places, const model::Grid& grid, double stretch_z) {
   const auto& [x, y, z] = places.at_mm;
+  const bool judged = !places.are_below(model::thin_voxels, grid.voxel_mm);
   return subject + ": " + kind + " of " + format_number(places.mm, 2) + " mm are too fine for voxels of " +
          format_number(grid.voxel_mm, 3) + " mm, as near (" + format_number(x, 3) + ", " + format_number(y, 3) + ", " +
-         format_number(z / stretch_z, 3) + ") mm, and whether they print is not judged; voxels of " +
-         format_number(resolving_mm(places), 2) + " mm resolve them";
+         format_number(z / stretch_z, 3) + ") mm, and " + (judged ? otherwise : "whether they print is not judged") +
+         "; voxels of " + format_number(resolving_mm(places), 2) + " mm resolve them";
 }
 
 /// Of walls that are lost, if they are a thousandth of the part or more, and of rods.
@@ -53,7 +59,7 @@ std::string wall_doubt(const std::string& subject, const model::Unresolved& unre
                                : "walls or rods are";
   const auto most = static_cast<double>(lost.most);
   double thick = unresolved.loses_much() ? most : std::sqrt(most);  // of a rod its area is covered
-  if (unresolved.surface && unresolved.surface->has_walls())
+  if (unresolved.surface && unresolved.surface->may_lose_walls())
     thick = resolving_mm(unresolved.surface->places.walls) / grid.voxel_mm;
   return subject + ": " + what + " too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is half covered, and they will not be printed; voxels of " +
@@ -106,7 +112,7 @@ std::string gap_doubt(const std::string& subject, const model::Unresolved& unres
   double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
   double resolving = 0.5 * gap_mm;
   for (const auto* places : {&known.relief, &known.gaps}) {
-    if (places->area_mm2 == 0) continue;
+    if (!places->are_below(model::lost_voxels, grid.voxel_mm)) continue;
     gap_mm = places->mm;
     resolving = resolving_mm(*places);
   }
@@ -122,16 +128,17 @@ std::vector<std::string> resolution_doubts(const std::string& subject, const mod
   const auto& surface = unresolved.surface;
   if (unresolved.loses_walls()) {
     doubts.push_back(wall_doubt(subject, unresolved, grid, stretch_z));
-  } else if (surface && surface->has_walls()) {
-    doubts.push_back(place_doubt(subject, "walls", surface->places.walls, grid, stretch_z));
+  } else if (surface && surface->places.walls.are_below(model::narrow_voxels, grid.voxel_mm)) {
+    doubts.push_back(place_doubt(subject, "walls", "may not print", surface->places.walls, grid, stretch_z));
   }
   if (unresolved.shuts_gaps()) {
     doubts.push_back(gap_doubt(subject, unresolved, grid, stretch_z));
-  } else if (surface && surface->has_gaps()) {
-    doubts.push_back(place_doubt(subject, "gaps", surface->places.gaps, grid, stretch_z));
+  } else if (surface && surface->places.gaps.are_below(model::narrow_voxels, grid.voxel_mm)) {
+    doubts.push_back(place_doubt(subject, "gaps", "may be printed shut", surface->places.gaps, grid, stretch_z));
   }
   if (doubts.empty() && surface && surface->has_relief())
-    doubts.push_back(place_doubt(subject, "ridges and grooves", surface->places.relief, grid, stretch_z));
+    doubts.push_back(
+        place_doubt(subject, "ridges and grooves", "may be printed smooth", surface->places.relief, grid, stretch_z));
   if (doubts.empty() && unresolved.leaves_doubt()) doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
   return doubts;
 }

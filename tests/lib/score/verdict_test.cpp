@@ -149,6 +149,9 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
     CHECK(answer(made) == wanted);
   }
   CHECK(words(made).find("; the print is in 2 pieces, the part in 3") != std::string::npos);
+  made.unresolved.surface->places.specks = 1;  // a third solid that is too small to count on
+  set_pieces(made, counted);
+  CHECK(answer(made) == Answer::yes);
 
   surface.places.solids = 2;
   made.unresolved.whole = 1000;
@@ -170,10 +173,13 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
   CHECK(answer(made) == Answer::unsure);
   CHECK(words(made).find("; walls of 0.9 voxels and gaps of 0.5 voxels are not judged; smaller voxels resolve them") !=
         std::string::npos);
-  // Two faces of a voxel are a speck, and what is thicker than one and a half voxels is judged.
-  made.unresolved.surface->places.walls = {0.079, 0.18, {}};
+  // What is thicker than one and a half voxels is judged.
+  made.unresolved.surface->places.walls = {1, 0.31, {}};
   made.unresolved.surface->places.gaps = {1, 0.31, {}};
   CHECK(answer(made) == Answer::yes);
+  made.unresolved.lost_walls.voxels = 5;  // though none of its voxels may be half covered
+  CHECK(answer(made) == Answer::not_as_designed);
+  made.unresolved.lost_walls.voxels = 0;
   made.unresolved.surface->places.relief = {2, 0.1, {}};
   CHECK(words(made).find("; ridges and grooves of 0.5 voxels are not judged") != std::string::npos);
 }

@@ -79,13 +79,18 @@ TEST_CASE("a plate is a thin wall below one and a half voxels, with its thicknes
     CAPTURE(thick);
     const Mesh plate = oracle::box({-10, -10, 5}, {10, 10, 5 + thick});
     const auto thin = seen(turned(oracle::join(block, plate)));
-    CHECK(thin.has_walls());
+    CHECK(thin.has_thin_walls());
     CHECK(thin.places.walls.mm == doctest::Approx(thick));
     CHECK(thin.places.walls.area_mm2 == doctest::Approx(800).epsilon(0.1));  // 1/sqrt(2400) of samples, 3 times
-    CHECK(!thin.has_gaps());
+    CHECK(!thin.has_thin_gaps());
     CHECK(!thin.has_relief());
   }
-  CHECK(!seen(turned(oracle::box({-10, -10, 5}, {10, 10, 6.6}))).has_any());
+  for (const auto& [thick, narrow] : {std::pair{1.6, true}, {1.95, true}, {2.05, false}}) {
+    const auto judged = seen(turned(oracle::box({-10, -10, 5}, {10, 10, 5 + thick})));
+    CHECK(!judged.leaves_doubt());
+    CHECK(judged.places.walls.are_below(model::narrow_voxels, 1) == narrow);
+    CHECK(judged.may_lose_walls());
+  }
   const auto level = seen(oracle::join(block, oracle::box({-10, -10, 5}, {10, 10, 5.5})));
   CHECK(level.places.walls.at_mm[2] == doctest::Approx(5.25));
 }
@@ -96,14 +101,16 @@ TEST_CASE("a slit is a gap below one and a half voxels; the side counts in voxel
   };
   for (const double wide : {0.1, 0.6, 1.4}) {
     const auto thin = seen(slit(wide));
-    CHECK(thin.has_gaps());
+    CHECK(thin.has_thin_gaps());
     CHECK(thin.places.gaps.mm == doctest::Approx(wide));
     CHECK(thin.places.gaps.area_mm2 == doctest::Approx(400).epsilon(0.15));
-    CHECK(!thin.has_walls());
+    CHECK(!thin.has_thin_walls());
   }
-  CHECK(!seen(slit(1.6)).has_any());
-  CHECK(seen(slit(1.6), 2).has_gaps());
-  CHECK(!seen(slit(0.6), 0.3).has_any());
+  CHECK(!seen(slit(1.6)).leaves_doubt());
+  CHECK(seen(slit(1.6)).places.gaps.mm == doctest::Approx(1.6));
+  CHECK(!seen(slit(2.4)).may_lose_gaps());
+  CHECK(seen(slit(1.6), 2).has_thin_gaps());
+  CHECK(!seen(slit(0.6), 0.3).leaves_doubt());
 }
 
 TEST_CASE("balls that nearly touch have a gap, those farther apart none, and a ball has no wall") {
@@ -113,22 +120,22 @@ TEST_CASE("balls that nearly touch have a gap, those farther apart none, and a b
   };
   for (const double gap : {0.3, 0.5, 0.7}) {
     const auto thin = seen(pair(gap));
-    CHECK(thin.has_gaps());
+    CHECK(thin.has_thin_gaps());
     CHECK(thin.places.gaps.mm >= gap);
     CHECK(thin.places.gaps.mm < gap + 0.4);  // a tenth of a cap whose edge is 1.5 apart
-    CHECK(!thin.has_walls());
+    CHECK(!thin.has_thin_walls());
   }
-  CHECK(!seen(pair(2)).has_any());
-  CHECK(!seen(oracle::sphere(11.5, 60)).has_any());
+  CHECK(!seen(pair(2)).leaves_doubt());
+  CHECK(!seen(oracle::sphere(11.5, 60)).leaves_doubt());
 }
 
 TEST_CASE("faces of solids within each other are neither walls nor gaps") {
   const Mesh block = oracle::box({-10, -10, -10}, {10, 10, 0});
   // A plate on a block, of the block's own width, sunk by 0.4 and glued on.
-  CHECK(!seen(turned(oracle::join(block, oracle::box({-10, -10, -0.4}, {10, 10, 0.8})))).has_walls());
-  CHECK(!seen(turned(oracle::join(block, oracle::box({-8, -8, -1}, {8, 8, -0.2})))).has_any());
-  CHECK(!seen(turned(oracle::join(block, oracle::box({-8, -8, 0}, {8, 8, 1})))).has_walls());
-  CHECK(!seen(turned(oracle::join(block, block, {15, 0.3, 0.5}))).has_any());
+  CHECK(!seen(turned(oracle::join(block, oracle::box({-10, -10, -0.4}, {10, 10, 0.8})))).has_thin_walls());
+  CHECK(!seen(turned(oracle::join(block, oracle::box({-8, -8, -1}, {8, 8, -0.2})))).leaves_doubt());
+  CHECK(!seen(turned(oracle::join(block, oracle::box({-8, -8, 0}, {8, 8, 1})))).has_thin_walls());
+  CHECK(!seen(turned(oracle::join(block, block, {15, 0.3, 0.5}))).leaves_doubt());
 }
 
 TEST_CASE("solids that cross, touch or hold each other are one, and cavities none") {
@@ -149,18 +156,34 @@ TEST_CASE("solids that cross, touch or hold each other are one, and cavities non
   CHECK(solids(shell) == 1);
   CHECK(solids(oracle::join(shell, oracle::sphere(2, 24))) == 2);  // loose in the cavity
   CHECK(solids(oracle::join(shell, block, {0, 0, -20})) == 2);
-  // Not told: a speck, a mesh with a hole.
-  CHECK(solids(oracle::join(block, oracle::sphere(1, 24), {0, 0, 5})) == 0);
-  CHECK(solids(oracle::join(block, oracle::sphere(2, 24), {0, 0, 5})) == 2);
+  CHECK(solids(oracle::join(block, oracle::box({-10.0001, -10.0001, -10.0001}, {10.0001, 10.0001, 0.0001}))) ==
+        1);                                                                                       // coat
+  const auto speck = seen(turned(oracle::join(block, oracle::sphere(1, 24), {0, 0, 5}))).places;  // 4 voxels
+  CHECK(speck.solids == 2);
+  CHECK(speck.specks == 1);
+  CHECK(seen(turned(oracle::join(block, oracle::sphere(2, 24), {0, 0, 5}))).places.specks == 0);
   Mesh open = oracle::join(block, block, {30, 0, 0});
   open.triangles.pop_back();
   CHECK(solids(open) == 0);
 }
 
+TEST_CASE("where solids touch or cross at an angle there is no gap, and within them no relief") {
+  const Mesh plate = oracle::box({-10, -10, -4}, {10, 10, 0});
+  for (const double radius : {5.0, 10.0, 20.0}) {
+    const auto thin = seen(turned(oracle::join(plate, oracle::sphere(radius, 60), {0, 0, radius - 0.3})));
+    CHECK(!thin.leaves_doubt());
+    CHECK(!thin.may_lose_gaps());
+  }
+  Mesh bar = oracle::box({-20, -2.7, -2.7}, {20, 2.7, 2.7});
+  Mesh crossing = bar;
+  for (auto& p : crossing.points) p = {0.5 * p[0] - 0.866 * p[1], 0.866 * p[0] + 0.5 * p[1], p[2] + 0.2};
+  CHECK(!seen(turned(oracle::join(bar, crossing))).leaves_doubt());
+}
+
 TEST_CASE("the edge of a wedge is no wall, that of a blade is") {
-  CHECK(!seen(turned(wedge(60))).has_any());
-  CHECK(!seen(turned(wedge(35))).has_any());
-  CHECK(seen(turned(wedge(10))).has_walls());
+  CHECK(!seen(turned(wedge(60))).leaves_doubt());
+  CHECK(!seen(turned(wedge(35))).leaves_doubt());
+  CHECK(seen(turned(wedge(10))).has_thin_walls());
 }
 
 TEST_CASE("a knurl is relief where its teeth are no larger than voxels") {
@@ -176,8 +199,8 @@ TEST_CASE("of an open mesh the surface is taken as it is") {
   const Mesh plate = oracle::box({-10, -10, 5}, {10, 10, 6});
   Mesh open = plate;
   open.triangles.pop_back();
-  CHECK(seen(turned(oracle::join(oracle::box({-10, -10, -10}, {10, 10, 0}), open))).has_walls());
-  CHECK(!part_surface({}, {}, 1).walls.matter(1));
+  CHECK(seen(turned(oracle::join(oracle::box({-10, -10, -10}, {10, 10, 0}), open))).has_thin_walls());
+  CHECK(part_surface({}, {}, 1).walls.area_mm2 == 0);
 }
 
 TEST_CASE("the first triangle that a short ray meets is that of CGAL's AABB tree") {

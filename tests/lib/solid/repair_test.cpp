@@ -63,6 +63,27 @@ TEST_CASE("cracks are welded, features are not") {
   CHECK(wall.points.size() == 8);
 }
 
+TEST_CASE("a solid that fills a cavity of another leaves no cavity, whichever comes first") {
+  const auto inwards = [](model::TriangleSoup mesh) {
+    for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
+    return mesh;
+  };
+  const model::TriangleSoup block = oracle::box({-3, -3, -3}, {3, 3, 3});
+  const model::TriangleSoup core = oracle::sphere(2, 12);
+  const model::TriangleSoup pocket = inwards(core);
+  for (const auto& parts : {std::array{block, pocket, core}, {core, block, pocket}, {pocket, core, block}}) {
+    model::TriangleSoup mesh = oracle::join(oracle::join(parts[0], parts[1]), parts[2]);
+    const Repair done = repair(mesh, "test");
+    CHECK(done.closed());
+    CHECK(done.cavities == 0);
+    CHECK(oracle::signed_volume(mesh) == doctest::Approx(216));
+  }
+  // A body of which each triangle is there both ways round stays.
+  model::TriangleSoup twice = oracle::join(block, oracle::join(core, pocket), {8, 0, 0});
+  repair(twice, "test");
+  CHECK(oracle::signed_volume(twice) == doctest::Approx(216 + oracle::signed_volume(core)));
+}
+
 TEST_CASE("degenerate and duplicate triangles are removed") {
   TriangleSoup mesh = cube;
   mesh.triangles.push_back({0, 0, 1});

@@ -12,20 +12,38 @@
 
 namespace vam::solid {
 
-/// A mesh, the tree of its triangles that have an area, and where in the mesh each of these is.
+/// A mesh, and the tree of its triangles that have an area.
 struct SurfaceTree {
   const model::TriangleSoup& mesh;
-  std::vector<int> places;
+  std::vector<int> places;  // in the mesh, of what the tree was made of
   std::shared_ptr<const TriangleTree> tree;
 
   explicit SurfaceTree(const model::TriangleSoup& soup)
       : mesh(soup), tree(std::make_shared<const TriangleTree>(corners_of(soup, &places))) {}
+  /// In the mesh, of a triangle of the tree.
+  [[nodiscard]] int place(int triangle) const { return places[tree->order[triangle]]; }
 };
 
 /// Solids of a repaired mesh that are apart: they neither cross nor hold each other, and are no nearer than `near_mm`
-/// where a sample of the surface shows it. 0 where that cannot be told: the mesh is not closed, or one of them is
-/// smaller than `least_mm3`.
-[[nodiscard]] int separate_solids(const SurfaceTree& surface, const Repair& repaired,
-                                  const std::vector<SurfaceSample>& samples, double near_mm, double least_mm3);
+/// where a sample of the surface shows it. Smaller ones than `least_mm3` are specks.
+class SeparateSolids {
+ public:
+  SeparateSolids(const SurfaceTree& surface, const Repair& repaired, const std::vector<SurfaceSample>& samples,
+                 double near_mm, double least_mm3);
+  /// 0: they cannot be told, as the mesh is not closed.
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] int specks() const { return specks_; }
+  /// Whether two triangles are of one solid, as far as that can be told.
+  [[nodiscard]] bool are_one(int triangle, int other) const {
+    return solid_.empty() || solid_[mesh_.triangles[triangle][0]] == solid_[mesh_.triangles[other][0]];
+  }
+
+ private:
+  void find(const SurfaceTree& surface, const std::vector<SurfaceSample>& samples, double near_mm, double least_mm3);
+
+  const model::TriangleSoup& mesh_;
+  std::vector<int> solid_;  // of each point; empty: all are one, or cannot be told
+  int count_ = 0, specks_ = 0;
+};
 
 }  // namespace vam::solid
