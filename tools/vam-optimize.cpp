@@ -31,23 +31,24 @@ using namespace vam;
 using optimize_tool::Options;
 using optimize_tool::Scene;
 
-/// Three slices (four with --delivered) and three sinograms for each slice (four where the best light is kept, six with
-/// --robust), of all slices where they are one pass.
+/// Three slices (four with --delivered) and four sinograms for each slice (five where the best light is kept, six with
+/// --robust), of all slices where they are one pass; and images on their way out. Those are not kept in scratch files.
 void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, const light::Operator& light,
                         const std::string& subject) {
   const bool robust = task.scenarios != nullptr;
   const bool whole = optimize::takes_whole(task, light);
   const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
   const int slices = (count + lanes - 1) / lanes * lanes;
-  const double arrays = (task.source.delivered ? 4.0 : 3.0) * static_cast<double>(scene.grid.slice_size()) +
-                        (robust                     ? 6.0
-                         : task.limits.patience > 0 ? 4.0
-                                                    : 3.0) *
-                            light.sinogram().width * light.sinogram().height;
-  const double bytes = sizeof(float) * slices * arrays;
+  const auto pixels = [](light::Shape shape) { return static_cast<double>(shape.width) * shape.height; };
+  const double sinograms = robust ? 6 : task.limits.patience > 0 ? 5 : 4;
+  const double arrays = (task.source.delivered ? 4 : 3) * pixels(light.object()) + sinograms * pixels(light.sinogram());
+  const double images = sizeof(float) * pixels(light.image()) * std::min(3 * lanes, 3 * count);
+  const double bytes = sizeof(float) * slices * arrays + images;
   const std::string what = subject + ": " + model::size_text(scene.grid);
-  if (whole) return warn_of_scratch_files(bytes, what);
-  require_memory(bytes, what, "use larger voxels (vam-slice --voxel) or fewer --angles");
+  require_memory(whole ? images : bytes, what, "use larger voxels (vam-slice --voxel) or fewer --angles");
+  if (!whole) return;
+  warn_of_scratch_files(bytes, what);
+  keep_free(images);
 }
 
 /// Options -> volumes -> light and task -> one pass after the other -> stack.

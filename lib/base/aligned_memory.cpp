@@ -21,8 +21,10 @@ namespace {
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 constexpr std::size_t large = 2 * huge_page;
 
+std::atomic<std::uint64_t> kept_free{0};  // NOLINT: one per process, like the bound
+
 /// Of the bound, for all that is not a large block.
-std::uint64_t spare() { return std::min(std::uint64_t{256} << 20, memory_bound() / 8); }
+std::uint64_t spare() { return std::min(std::uint64_t{256} << 20, memory_bound() / 8) + kept_free; }
 
 std::align_val_t alignment_of(std::size_t bytes) { return std::align_val_t{bytes < large ? 64 : huge_page}; }
 
@@ -98,6 +100,8 @@ void free_aligned(void* memory, std::size_t bytes) {
   if (bytes >= large && mapped().remove(memory)) return;
   ::operator delete(memory, alignment_of(bytes));
 }
+
+void keep_free(double bytes) { kept_free = static_cast<std::uint64_t>(bytes); }
 
 void warn_of_scratch_files(double bytes, const std::string& subject) {
   const auto left = static_cast<double>(memory_left());

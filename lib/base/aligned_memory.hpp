@@ -26,6 +26,9 @@ struct CacheAligned {
   bool operator==(const CacheAligned&) const = default;
 };
 
+/// What a tool knows before it begins: so many bytes will be needed beside large blocks, which leave them free.
+void keep_free(double bytes);
+
 /// What a tool knows before it begins: the warning with both numbers, if `bytes` more do not fit.
 void warn_of_scratch_files(double bytes, const std::string& subject);
 

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/memory.hpp"
 #include "base/printable.hpp"
 #include "plot/private/cairo_library.hpp"
 #include "plot/private/letters.hpp"
@@ -22,6 +23,8 @@ namespace {
 
 constexpr double points_per_px = 72 / screen_dpi;
 constexpr int most_pixels = 32767;  // a side of cairo's images
+constexpr double bytes_per_pixel =
+    12;  // of a PNG while it is packed; cairo's own, before that, are 4 and 3 of the copy
 
 const CairoApi& cairo() { return cairo_api(); }
 
@@ -281,11 +284,12 @@ RgbImage Canvas::image(double dpi) const {
   const double scale = dpi / screen_dpi;
   const int columns = round_int(state_->width * scale);
   const int rows = round_int(state_->height * scale);
+  const std::string size = "figure: " + std::to_string(columns) + " x " + std::to_string(rows) + " pixels";
+  const std::string remedy = "reduce --image-size or --dpi, or write a PDF or SVG";
   if (std::max(columns, rows) > most_pixels) {
-    throw Error{Fault::usage, "figure: " + std::to_string(columns) + " x " + std::to_string(rows) +
-                                  " pixels are more than " + std::to_string(most_pixels) +
-                                  " a side; reduce --image-size or --dpi, or write a PDF or SVG"};
+    throw Error{Fault::usage, size + " are more than " + std::to_string(most_pixels) + " a side; " + remedy};
   }
+  require_memory(bytes_per_pixel * columns * rows, size, remedy);
   const Pixels pixels(columns, rows);
   state_->replay(pixels.surface(), scale);
   return pixels.give(columns, rows);

@@ -186,11 +186,19 @@ fails 71 'box.off: needs 0.0156 GiB of memory, but --memory leaves 0 GiB' vam-sl
 mv part.vdb free.vdb
 quiet 'a need that is met' vam-slice box.off --memory=1 --voxel 0.2 -o part.vdb
 same 'the bound is of no consequence, not even for the history' free.vdb part.vdb
+fails 71 '^vam-view: figure: [0-9]+ x [0-9]+ pixels: needs [0-9.]+ GiB of memory, but --memory leaves 0.[0-9]+ GiB; reduce --image-size or --dpi, or write a PDF or SVG, or allow more with --memory$' \
+  vam-view part.vdb -o x.png --dpi 1200 --memory 0.1
+# Projections are not kept in scratch files.
+fails 71 "^vam-optimize: part.vdb: $need" vam-optimize part.vdb --angles 3600 --memory 0.1 -o x.exr
+fails 71 "^vam-optimize: part.vdb: $need" vam-optimize part.vdb --geometry parallel --angles 20000 --memory 0.1 -o x.exr
 # Slices that light couples are optimised together: what does not fit in memory lies in scratch files.
 box 5 5 0.5 >block.off
 vam-slice block.off --voxel 0.016 --stretch-z 1 -o block.vdb
 coupled='vam-optimize block.vdb --set vial.radius_mm=6 --method dose-norm --angles 12 --iterations 1'
 quiet 'coupled slices in memory' sh -c "$coupled -o block.exr && mv block.exr free.exr"
+quiet 'coupled slices of many angles in memory' vam-optimize part.vdb --angles 900 --iterations 1 --set projector.columns=512 -o many.exr && mv many.exr want.exr
+ok 'in little more than their projections' vam-optimize part.vdb --angles 900 --iterations 1 --set projector.columns=512 --memory 0.06 -o many.exr
+same 'the same bytes again' want.exr many.exr
 mkdir scratch
 ok 'coupled slices beyond --memory' sh -c "TMPDIR=scratch $coupled --memory 0.12 -o block.exr 2>warning"
 ok 'a warning with both numbers and the remedy' grep -Eq \

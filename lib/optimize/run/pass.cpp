@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/parallel.hpp"
+
 namespace vam::optimize {
 
 PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, const SliceReader& reader,
@@ -57,16 +59,17 @@ std::vector<Image> expand_slab(const Pass& pass, std::size_t number, const Slab&
   Slab packed(shape.width, shape.height);
   light.expand(sinogram, packed);
   const int first = pass.low + static_cast<int>(number) * lanes;
-  const int used = std::min(lanes, pass.high - first);
-  Image one(shape.width, shape.height);
-  std::vector<float> values(one.size() * lanes);
-  unpack(packed, used, values.data());
-  std::vector<Image> images;
-  for (int job = std::max(first, pass.first); job < std::min(first + used, pass.last); ++job) {
-    const auto lane = static_cast<std::size_t>(job - first);
-    std::copy_n(values.data() + lane * one.size(), one.size(), one.values.begin());
-    images.push_back(one);
-  }
+  const int from = std::max(pass.first - first, 0);  // lane
+  const int count = std::max(std::min(pass.last - first, lanes) - from, 0);
+  std::vector<Image> images(count, Image(shape.width, shape.height));
+  parallel_for(shape.height, [&](int y) {
+    const float* row = packed.at(0, y) + from;
+    for (Image& image : images) {
+      float* to = image.row(y);
+      for (int x = 0; x < shape.width; ++x) to[x] = row[x * lanes];
+      ++row;
+    }
+  });
   return images;
 }
 

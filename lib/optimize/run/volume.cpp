@@ -249,6 +249,7 @@ class VolumeRun {
     tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, asked_, times_}, ledger_);
     if (light_.couples_slices() && !task_.demands.grey) outcome_.wrong = wrong_voxels(state.dose, problem);  // one pass
     if (whole && counts_pieces()) outcome_.pieces = print_pieces(state.dose, problem, task_.source);
+    work.method.reset();  // images take its memory
     hand_out(state, pass, light);
   }
 
