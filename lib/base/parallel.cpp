@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -39,6 +40,7 @@ int threads_to_have(int wanted) {
       });
     }
   } catch (const std::system_error&) {  // a container's limit, for one
+  } catch (const std::bad_alloc&) {     // of a limit of addresses
   }
   {
     const std::scoped_lock lock(mutex);

@@ -46,6 +46,7 @@ void leave(int status, void* /*unused*/) {
 }
 
 [[noreturn]] void on_terminate() {
+  if (starting) end_for_lack();  // which may leave no room for what is thrown
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {

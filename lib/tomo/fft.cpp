@@ -6,6 +6,7 @@
 #include <mutex>
 #include <new>
 
+#include "base/aligned_memory.hpp"
 #include "base/error.hpp"
 #include "base/slab.hpp"
 
@@ -17,6 +18,8 @@ std::mutex& planner() {  // FFTW's planner is not thread-safe, its transforms ar
   static std::mutex mutex;
   return mutex;
 }
+
+constexpr std::size_t enough = std::size_t{3} << 20;  // for a plan: FFTW ends the process where memory is refused
 
 fftwf_complex* raw(std::complex<float>* row) { return reinterpret_cast<fftwf_complex*>(row); }
 
@@ -41,6 +44,7 @@ int fft_length(int least) {
 Fft::Fft(int length) : state_(std::make_unique<State>()) {
   std::vector<std::complex<float>, CacheAligned<std::complex<float>>> example(length);
   const std::lock_guard<std::mutex> lock(planner());
+  free_aligned(allocate_aligned(enough), enough);
   state_->forward = fftwf_plan_dft_1d(length, raw(example.data()), raw(example.data()), FFTW_FORWARD, FFTW_ESTIMATE);
   state_->backward = fftwf_plan_dft_1d(length, raw(example.data()), raw(example.data()), FFTW_BACKWARD, FFTW_ESTIMATE);
   if (state_->forward == nullptr || state_->backward == nullptr) throw Error{Fault::bug, "FFTW made no plan"};

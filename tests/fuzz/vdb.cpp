@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   std::vector<char> memory(2 * vam::io::slot_bytes);
   std::thread parent(receive, vam::io::Slots{memory.data(), ends[0]});
   vam::io::Slots slots{memory.data(), ends[1]};
-  fuzz::attempt([&] {
+  fuzz::attempt_in_child([&] {
     vam::io::InputFile file(source.path);
     vam::io::Sender out(slots);
     std::vector<std::shared_ptr<void>> kept;

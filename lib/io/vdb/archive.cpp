@@ -50,8 +50,7 @@ void for_archives(InputFile& file, const std::function<void(std::istream&)>& arc
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    // One absurd request, that is: a volume that is merely too large is killed by the system when memory runs out.
-    throw Error{Fault::data, file.name() + ": declared size exceeds memory; it is damaged"};
+    throw;
   } catch (const std::ios_base::failure&) {
     throw Error{Fault::data, file.name() + ": is cut off after " + std::to_string(file.position()) +
                                  " bytes; the program that wrote it did not finish"};
