@@ -136,6 +136,8 @@ vam-stage status --set stage.device=sim:
 EOF
   done
   is 'with 4 to 16 open files a tool is done, or refused in one line' $odd 0
+  prlimit --nofile=6 vam-project few.exr --printer printer.toml -o few-none/ 2>.log/err
+  is 'and leaves no folder' "$? $(ls -A | grep -c '^\.vam-')" '71 0'
   holds 'most are refused at 4' "$refusals >= 15"
   # Fonts are files, too.
   drawn=0

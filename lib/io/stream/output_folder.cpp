@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <fstream>
 #include <system_error>
 
@@ -39,10 +40,14 @@ OutputFolder::OutputFolder(const std::string& path, bool (*like_these)(const fs:
   }
 }
 
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+OutputFolder::~OutputFolder() { discard(); }
+
+void OutputFolder::discard() {
+  const std::string folder = temporary_;
+  std::error_code problem;
+  if (!folder.empty()) fs::remove_all(folder, problem);
   forget();
+  if (problem) fs::remove_all(folder, problem);  // with the descriptor of its lock, which may be the last
 }
 
 void OutputFolder::forget() {
@@ -71,6 +76,11 @@ void OutputFolder::synchronize() const {
 
 void OutputFolder::commit() {
   synchronize();
+  if (renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+    synchronise_folder_of(target_.string());
+    return discard();  // the old files, which have the temporary name now
+  }
+  // There are none, or the file system cannot exchange names.
   std::error_code problem;
   const std::string old = temporary_ + "-old";
   const bool replaces = fs::exists(target_);

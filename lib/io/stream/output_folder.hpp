@@ -26,6 +26,7 @@ class OutputFolder {
 
  private:
   void synchronize() const;
+  void discard();
   void forget();
   std::filesystem::path target_;
   std::string temporary_;

@@ -115,15 +115,19 @@ bool runs(int pid) {
 }
 
 // The name is of a process that ended without removing it: none of that number runs here, and none on this machine or
-// another that shares the folder holds its lock. A folder of older files that stepped aside has another form of name.
+// another that shares the folder holds its lock. A folder and the older one that stepped aside for it stay where both
+// are there: neither has a name of its own.
 bool is_left_over(const fs::path& path) {
   int pid = 0;
   unsigned count = 0;
   int read = 0;
   const std::string name = path.filename().string();
   if (std::sscanf(name.c_str(), ".vam-%d-%u%n", &pid, &count, &read) != 2) return false;
-  if (name[read] != '\0' && name[read] != '.') return false;
+  const bool aside = name.substr(read) == "-old";
+  if (!aside && name[read] != '\0' && name[read] != '.') return false;
   if (pid <= 0 || runs(pid)) return false;
+  std::error_code ignored;
+  if (fs::exists(path.parent_path() / (aside ? name.substr(0, read) : name + "-old"), ignored)) return false;
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   const bool free = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
   if (file >= 0) close(file);

@@ -224,16 +224,20 @@ TEST_CASE("removes temporaries of killed writers, keeps those of live ones") {
   };
   (void)in_child(true);
   const pid_t alive = in_child(false);
-  std::filesystem::create_directory(folder / ".vam-999999-0-old");  // a person's files that stepped aside
+  std::filesystem::create_directory(folder / ".vam-999999-0-old");  // stepped aside for the next, which has no name yet
   spill(folder / ".vam-999999-0", "x");
-  CHECK(folder.count() == 4);  // the second process has tidied up after the first
+  std::filesystem::create_directory(folder / ".vam-999999-1-old");  // what it stepped aside for took its name
+  spill(folder / ".vam-999999-2", "x");
+  CHECK(folder.count() == 6);  // the second process has tidied up after the first
   const pid_t next = fork();   // once a process
   if (next == 0) {
     { OutputFile file(folder / "b.png", Content::binary, Temporary::named); }
     _exit(0);
   }
   waitpid(next, nullptr, 0);
-  CHECK(folder.count() == 3);
+  CHECK(folder.count() == 4);
+  CHECK(std::filesystem::exists(folder / ".vam-999999-0-old"));
+  CHECK(std::filesystem::exists(folder / ".vam-999999-0"));
   int of_alive = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path)) {
     of_alive += entry.path().filename().string().starts_with(".vam-" + std::to_string(alive) + "-") ? 1 : 0;
