@@ -11,16 +11,22 @@
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 namespace vam::tool {
 
-/// Throws Fault::usage without an isovalue, otherwise as io::read_volume().
+/// Throws Fault::usage without an isovalue, otherwise as io::read_volume() and io::require_usable(): a target whose
+/// surface is beyond 1 is grey.
 inline io::SparseVolume open_body(const std::string& path, std::optional<double> isovalue) {
-  if (isovalue) return io::read_volume(path, "");
-  throw Error{Fault::usage,
-              io::input_name(path) + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
+  if (!isovalue) {
+    throw Error{Fault::usage,
+                io::input_name(path) + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
+  }
+  io::SparseVolume body = io::read_volume(path, "");
+  io::require_usable(path, body, *isovalue > 1 ? io::TargetKind::grey : io::TargetKind::coverage);
+  return body;
 }
 
 /// Throws Fault::data where the volume does not cross it.

@@ -19,12 +19,16 @@ PY
 }
 bad minus.vdb -3
 bad huge.vdb 1e30
+bad grey.vdb 3
 fails 65 "minus.vdb: grid 'target' has -3 in voxel \(.*\); this is coverage, 0 to 1" vam-optimize minus.vdb -o x.exr
 fails 65 "huge.vdb: grid 'target' has 1e\+30 in voxel" vam-optimize huge.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-dose light.exr --like minus.vdb -o x.vdb
 fails 65 'coverage, 0 to 1' vam-sinogram minus.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-curethrough correct minus.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-score part.vdb --grid target --target minus.vdb
+fails 65 "huge.vdb: grid 'target' has 1e\+30 in voxel" vam-sdf part.vdb huge.vdb --isovalue 0.5
+fails 65 "minus.vdb: grid 'target' has -3 in voxel" vam-sdf minus.vdb part.vdb --isovalue 0.5
+ok 'a surface beyond 1 is of a grey target' vam-sdf grey.vdb part.vdb --isovalue 1.5 --align none
 fails 65 "stdin: grid 'target' occurs twice" sh -c 'cat part.vdb part.vdb | vam-optimize - -o x.exr'
 cat part.vdb part.vdb >two.vdb
 fails 65 "two.vdb: grid 'target' occurs twice; keep one of them, or rename it" vam-sinogram two.vdb -o x.exr
