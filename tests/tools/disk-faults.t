@@ -42,5 +42,6 @@ for call in fdatasync:1 fdatasync:2 fdatasync:3 fdatasync:4 fsync:1 fsync:2 writ
 done
 for call in fdatasync:2 fdatasync:3 write:2 write:3; do resumed "${call%:*}:error=EIO:when=${call#*:}" 74; done
 resumed write:error=ENOSPC:when=2 74
+is 'where the disk is full no image is left' "$(inject write:error=ENOSPC:when=2 vam-capture --device replay:views.exr --frames 2 -o full/; ls full)" manifest.jsonl
 resumed fsync:error=EIO:when=2 74
 done_testing

@@ -161,6 +161,7 @@ void CaptureFolder::keep(CaptureRecord record, const GreyImage& levels) {
     write_synced(file, encode_png(levels), path);
   } catch (...) {
     close(file);
+    unlinkat(directory_, name.c_str(), 0);
     throw;
   }
   close(file);
