@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <system_error>
@@ -158,6 +159,12 @@ void require_possible(model::Printer printer, const CalibrationRecord& record) {
   constexpr double least_radius_mm = 0.1;
   if (record.json->at("scan") == "edges" && printer.vial.radius_mm < least_radius_mm) {
     refuse("vial.radius_mm: " + format_number(printer.vial.radius_mm) + " is no radius of a vial");
+  }
+  constexpr double most_tilt_deg = 10;  // beyond, it is no axis that was seen
+  const double tilt_deg = printer.camera.tilt_deg.value_or(0);
+  if (record.json->at("scan") == "axis" && std::abs(tilt_deg) > most_tilt_deg) {
+    refuse("camera.tilt_deg: " + format_number(tilt_deg) + " is beyond " + format_number(most_tilt_deg) +
+           " degrees; align the camera");
   }
   const double column = printer.projector.axis_column;
   if (record.json->at("scan") == "edges" && !(column >= 0 && column <= printer.projector.columns - 1)) {

@@ -139,6 +139,16 @@ TEST_CASE("a record with an impossible value is refused, with the record, the nu
       has(refused(1e9, 12.7), "projector.axis_column: 1000000000 is not between -65536 and 131072; run vam-calibrate"));
   CHECK(has(refused(-40, 12.7), "projector.axis_column: -40 is not in the image of 1024 columns"));
   CHECK(has(refused(1024, 12.7), "not in the image"));
+  const auto tilted = [](double tilt_deg) {
+    const scratch::Folder folder;
+    const Json values{{"axis_column", {{"value", 300}, {"unit", "px"}}},
+                      {"tilt", {{"value", tilt_deg}, {"unit", "deg"}}}};
+    write_record(here(folder), "axis", {{"status", "pass"}, {"values", values}}, utc_seconds());
+    model::Printer printer;
+    return message_of([&] { apply_records(printer, here(folder), utc_seconds()); });
+  };
+  CHECK(tilted(-9).empty());
+  CHECK(has(tilted(80), "camera.tilt_deg: 80 is beyond 10 degrees; align the camera; run vam-calibrate"));
   CHECK(has(refused(511, -12.7), "vial.radius_mm: -12.7 is not between 0 (excluded)"));
 }
 
