@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "optics/private/refuse_negative.hpp"
 #include "optics/private/sample_taps.hpp"
 
 namespace vam::optics {
@@ -69,10 +70,8 @@ void FlatlandSlice::check() const {
     throw Error{Fault::data, subject_ + ": has no slice at " + z + "; its slices lie from " + format_number(low_mm_) +
                                  " to " + format_number(high_mm_) + " mm"};
   }
-  const float least = *std::min_element(nearest_.values.begin(), nearest_.values.end());
-  if (least < 0) {
-    throw Error{Fault::data, subject_ + ": has a value of " + format_number(least) + " at " + z +
-                                 "; intensity cannot be negative: clip or offset it in vam-sinogram"};
+  if (*std::min_element(nearest_.values.begin(), nearest_.values.end()) < 0) {
+    refuse_negative(subject_, nearest_, info_, nearest_mm_);
   }
   if (!(peak() > 0)) throw Error{Fault::data, subject_ + ": is dark at " + z + "; nothing to project"};
 }

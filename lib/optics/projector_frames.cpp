@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "optics/private/refuse_negative.hpp"
 #include "optics/private/sample_taps.hpp"
 
 namespace vam::optics {
@@ -106,11 +107,7 @@ Lit lit_columns(const Image& sinogram) {
 
 void FrameComposer::add(const Image& sinogram, double z_mm) {
   const Lit lit = lit_columns(sinogram);
-  if (lit.least < 0) {
-    throw Error{Fault::data, subject_ + ": has a value of " + format_number(lit.least) +
-                                 " at z = " + format_number(z_mm) +
-                                 " mm; intensity cannot be negative: clip or offset it in vam-sinogram"};
-  }
+  if (lit.least < 0) refuse_negative(subject_, sinogram, info_, z_mm);
   Slice& slice = slices_.emplace_back();
   slice.z_mm = z_mm;
   if (lit.high < 0) return;
