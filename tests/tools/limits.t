@@ -247,6 +247,12 @@ fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no
 python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 value=-2
 fails 65 'wrong.exr: has a value of -2 at z = [-0-9.]+ mm, 0 deg, column 0; intensity cannot be negative' \
   vam-project wrong.exr --printer printer.toml -o x.mkv
+python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 printer=AAAA
+python3 -c '
+data = open("wrong.exr", "rb").read()
+at = data.rfind(b"AAAA")
+open("wrong.exr", "wb").write(data[:at] + b"BBBB" + data[at + 4:])'
+fails 65 'wrong.exr: image 2 has another vam:printer than image 0; all of a stack are made by the same commands' vam-check wrong.exr
 python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 value=1 2>/dev/null
 sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory in addition to the [0-9.e-]+ GiB in use; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
 

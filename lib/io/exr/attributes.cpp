@@ -212,9 +212,15 @@ void require_alike(const Imf::Header& header, const StackInfo& first, const Stac
                                      {"vam:angle_step_deg", &StackInfo::angle_step_deg}}) {
     if (own.*member != first.*member) compare(name, format_number(own.*member, 9), format_number(first.*member, 9));
   }
-  if (own.history != first.history) {
-    throw std::runtime_error(image +
-                             " has another vam:history than image 0; all of a stack are made by the same commands");
+  const auto printer = [](const StackInfo& info) {
+    const auto stated = info.extra.find("vam:printer");
+    return stated == info.extra.end() ? "" : stated->second;
+  };
+  for (const auto& [name, same] :
+       {std::pair{"vam:history", own.history == first.history}, {"vam:printer", printer(own) == printer(first)}}) {
+    if (same) continue;
+    throw std::runtime_error(image + " has another " + name +
+                             " than image 0; all of a stack are made by the same commands");
   }
   if (first.kind != Kind::sinogram) return;
   const auto stated = number(header, "vam:z_mm");
