@@ -36,6 +36,12 @@ fails 65 "two.vdb: grid 'target' occurs twice; keep one of them, or rename it" v
 fails 65 "two.vdb: grid 'target' occurs twice; keep one of them, or rename it" vam-sdf two.vdb part.vdb --isovalue 0.5
 fails 65 "two.vdb: grid 'target' occurs twice" vam-score two.vdb --grid target --target part.vdb
 fails 65 "two.vdb: grid 'target' occurs twice" vam-curethrough model two.vdb -o x.vdb
+# A transform of another program.
+python3 -c '
+import struct
+data = open("part.vdb", "rb").read().replace(b"vam:seal", b"was:seal").replace(b"vam:facts_seal", b"was:facts_seal")
+open("nan.vdb", "wb").write(data.replace(struct.pack("<d", 0.2), struct.pack("<d", float("nan"))))'
+fails 65 'nan.vdb: a grid has a transform with a number that is not finite, or without an inverse; mend it' vam-check nan.vdb
 ok 'vam-view still shows it' vam-view minus.vdb -o x.png
 
 done_testing

@@ -54,6 +54,10 @@ void for_archives(InputFile& file, const std::function<void(std::istream&)>& arc
   } catch (const std::ios_base::failure&) {
     throw Error{Fault::data, file.name() + ": is cut off after " + std::to_string(file.position()) +
                                  " bytes; the program that wrote it did not finish"};
+  } catch (const openvdb::ArithmeticError&) {
+    throw Error{Fault::data, file.name() +
+                                 ": a grid has a transform with a number that is not finite, or without an inverse; "
+                                 "mend it in the program that wrote it"};
   } catch (const std::exception& problem) {
     std::string line = file.name() + ": " + problem.what();
     std::replace(line.begin(), line.end(), '\n', ' ');

@@ -73,14 +73,15 @@ class PassingGrid : public FloatGrid {
   }
   void readBuffers(std::istream& stream, const CoordBBox&) override { readBuffers(stream); }
 
-  void send(const std::string& shares) const {
+  void send(const std::string& shares) {
     GridHead head;
     head.facts = facts_of(*this, head.first);
     head.unique_name = unique_name_;
     head.shares = shares;
     const openvdb::Vec3d zero = indexToWorld(Coord(0));
     head.zero_mm = {zero.x(), zero.y(), zero.z()};
-    check(std::isfinite(head.facts.background));
+    first_ = head.first;
+    if (!std::isfinite(head.facts.background)) refuse("a background");
     add_seal(seals_, head.facts);
     send_head(std::move(head), out_);
   }
@@ -94,13 +95,19 @@ class PassingGrid : public FloatGrid {
   [[nodiscard]] bool sealed() const { return seals_.has_value(); }
 
  private:
-  void check(bool finite) const {
-    if (!finite) throw std::runtime_error("grid '" + getName() + "' has a value that is not a finite number");
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw std::runtime_error("grid '" + getName() + "' has " + what +
+                             " that is not a finite number; mend it in the program that wrote it");
+  }
+  [[noreturn]] void refuse_voxel(const Coord& at) const {
+    const Coord place = at - first_;
+    refuse("a value in voxel (" + std::to_string(place.x()) + ", " + std::to_string(place.y()) + ", " +
+           std::to_string(place.z()) + ")");
   }
 
   void send_tiles() const {
     for_tiles(constTree(), [this](const TileRecord& tile) {
-      check(std::isfinite(tile.value));
+      if (!std::isfinite(tile.value)) refuse_voxel(Coord(tile.corner.data()));
       out_.put(Record::tile);
       out_.put(tile);
     });
@@ -110,7 +117,11 @@ class PassingGrid : public FloatGrid {
     const LeafRecord record = record_of(leaf, leaf.buffer().data());
     if (seals_) voxels.add(record);
     if (!shown_) return;
-    check(all_finite(record.values.data(), Leaf::SIZE));
+    if (!all_finite(record.values.data(), Leaf::SIZE)) {
+      const auto* const bad =
+          std::find_if_not(record.values.begin(), record.values.end(), [](float v) { return std::isfinite(v); });
+      refuse_voxel(leaf.offsetToGlobalCoord(static_cast<openvdb::Index>(bad - record.values.begin())));
+    }
     out_.put(Record::leaf);
     out_.put(record);
   }
@@ -120,6 +131,7 @@ class PassingGrid : public FloatGrid {
   Sender& out_;
   std::optional<GridSeals> seals_;
   Digest values_;
+  Coord first_;  // voxel of the volume
 };
 
 // The grids of one archive after the other.

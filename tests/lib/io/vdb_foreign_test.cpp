@@ -125,10 +125,11 @@ TEST_CASE("unusable grids are status 65 with the reason") {
   };
   CHECK(read({one_voxel(1.0F)}) == 0);
   CHECK(read({one_voxel(std::numeric_limits<float>::quiet_NaN())}) == 65);
-  CHECK(line.find("not a finite number") != std::string::npos);
+  CHECK(line.find("'target' has a value in voxel (4, 5, 0) that is not a finite number; mend it") != std::string::npos);
   const auto tile = openvdb::FloatGrid::create();
   tile->tree().addTile(1, {0, 0, 0}, std::numeric_limits<float>::infinity(), true);
   CHECK(read({tile}) == 65);
+  CHECK(line.find("' has a value in voxel (0, 0, 0) that is not a finite") != std::string::npos);
   CHECK(read({openvdb::FloatGrid::create()}) == 65);
   CHECK(line.find("is empty") != std::string::npos);
   CHECK(read({openvdb::Vec3SGrid::create()}) == 65);
