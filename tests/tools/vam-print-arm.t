@@ -33,6 +33,7 @@ is 'a plan' "$(plan --turns 3 --printer watched.toml 2>&1 | sed 's/ .*//' | tr '
 is 'in which nothing moves' "$(grep -c '"event":"moving"' moved)" 0
 plan --turns 3 --light 'sim:?log=leds' >plan.txt
 is 'and no light is on' "$(grep -c '"bits":[1-9]' leds)" 0
+fails 65 'projector.axis_column: -500 is not in the image of 64 columns; set it' plan --set projector.axis_column=-500 --accept-printer
 is 'of three turns at 90 deg/s' "$(grep '^exposure' plan.txt)" 'exposure   3 turns at 90 deg/s: 12 s of light'
 is 'with the travel that they need' "$(grep -Ec '^motion     3 turns at 90 deg/s: from -[0-9.]+ to 1[0-9.]+ deg, within -1e\+07 to 1e\+07; [0-9.]+ s' plan.txt)" 1
 is 'no dose without a threshold in the sinogram' "$(grep -c 'dose  *unknown: the sinogram states no threshold' plan.txt)" 1

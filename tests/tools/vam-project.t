@@ -58,6 +58,7 @@ ok "a difference can be accepted" vam-project part.exr -o other.exr --set vial.r
 is "with a warning, and in the report" "$(grep -c 'warning.*vial.radius_mm 12.7, now 6; accepted' .log/err) $(json other.json printer_differences)" "1 ['vial.radius_mm 12.7, now 6']"
 is "frames name the printer that shows them" "$($exr attr other.exr vam:printer | grep -c 'vial.radius_mm=6')" 1
 quiet "a new calibration of the axis does not make another printer" vam-project part.exr -o near.exr --set projector.axis_column=31.6
+fails 65 'projector.axis_column: 64 is not in the image of 64 columns' vam-project part.exr -o x/ --set projector.axis_column=64 --accept-printer
 $exr make silent.exr space=projector width=64 height=36 count=3 printer=none
 ok "a sinogram without vam:printer" vam-project silent.exr -o silent/
 is "gives a warning" "$(grep -c 'silent.exr: the attribute vam:printer is missing' .log/err)" 1

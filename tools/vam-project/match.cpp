@@ -16,6 +16,12 @@ namespace vam::project {
 std::vector<std::string> require_printer(const Options& options, const model::StackInfo& info,
                                          const model::Printer& printer) {
   if (info.kind != model::Kind::sinogram || info.space != model::Space::projector) return {};
+  const model::Projector& projector = printer.projector;
+  if (!(projector.axis_column >= -0.5 && projector.axis_column <= projector.columns - 0.5)) {
+    throw Error{Fault::data, "projector.axis_column: " + format_number(projector.axis_column) +
+                                 " is not in the image of " + std::to_string(projector.columns) +
+                                 " columns; set it (vam-calibrate edges)"};
+  }
   const std::string name = io::input_name(options.input);
   const auto computed_for = info.extra.find("vam:printer");
   if (computed_for == info.extra.end()) {

@@ -12,7 +12,8 @@
 namespace vam::project {
 
 /// Compares vam:printer of a projector sinogram with the printer. Throws Fault::data where they differ, which with
-/// --accept-printer is a warning; one that does not say is a warning, too. Returns the differences, for the report.
+/// --accept-printer is a warning; one that does not say is a warning, too. Throws Fault::data where the printer's axis
+/// is beside its columns. Returns the differences, for the report.
 std::vector<std::string> require_printer(const Options& options, const model::StackInfo& info,
                                          const model::Printer& printer);
 
