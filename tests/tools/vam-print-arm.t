@@ -10,6 +10,13 @@ printf '[stage]\ndevice = "sim:?acceleration=9000&min_angle=-1e7&max_angle=1e7"\
 dry() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 "$@"; }
 print() { dry --uncalibrated "$@"; }
 
+# Limits of the system.
+for files in 5 7 10 63; do
+  prlimit --nofile=$files vam-print frames.exr --display null: 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&- >few 2>&1
+  is "with $files open files" "$? $(cat few)" "71 vam-print: needs 64 open files, and the limit is $files; raise it (ulimit -n)"
+done
+fails 71 '^vam-print: needs 64 processes, and the limit is 1; raise it \(ulimit -u\)$' prlimit --nproc=1 vam-print frames.exr --display null:
+
 # A sinogram for another printer.
 fails 65 'frames.exr: computed for another printer: vial.radius_mm 12.7, now 6; ' print --set vial.radius_mm=6 --run other
 ok 'which can be accepted' print --set vial.radius_mm=6 --accept-printer --run accepted
