@@ -169,6 +169,10 @@ vam-slice --shape cone:bottom=3,height=3 --voxel 0.2 $edge -o cone.vdb
 vam-optimize --angles 60 --method fbp $edge cone.vdb -o cone.exr
 vam-dose cone.exr --like cone.vdb $edge -o cone-dose.vdb
 ok "the dose of every voxel is accepted" vam-score cone-dose.vdb --target cone.vdb $edge
+vam-slice --shape cone:bottom=8,height=6 --voxel 0.3 -o cone.vdb
+vam-optimize --geometry parallel --angles 24 --method fbp cone.vdb -o cone.exr
+vam-dose cone.exr --like cone.vdb -o cone-dose.vdb
+ok "that of parallel light, too" vam-score cone-dose.vdb --target cone.vdb
 fails 73 nowhere vam-dose frames.exr -o nowhere/x.vdb
 fails 74 full vam-dose frames.exr -o /dev/full
 done_testing

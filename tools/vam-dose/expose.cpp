@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-dose/expose.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -64,6 +65,11 @@ class Blurred {
   light::BlurStream blur_;
 };
 
+/// Weights of rays that miss a voxel are 0 but for rounding.
+void clip(Image& dose) {
+  for (float& value : dose.values) value = std::max(value, 0.0F);
+}
+
 /// Every slice by its own row, a batch at a time.
 void expose_slices(Light& light, int count, const light::Simulation& simulation, int first, Insert& insert,
                    Blurred& sink) {
@@ -75,7 +81,10 @@ void expose_slices(Light& light, int count, const light::Simulation& simulation,
     simulation.dose(slices, doses, inserts);
     insert.look_for_dark(simulation, first, inserts);
     first += count_of(slices);
-    for (Image& dose : doses) sink.add(dose);
+    for (Image& dose : doses) {
+      if (light.seen().negative == 0) clip(dose);
+      sink.add(dose);
+    }
     progress.tick(static_cast<long>(slices.size()));
   }
   sink.finish();
