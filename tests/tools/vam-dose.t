@@ -85,6 +85,10 @@ vam-sinogram part.vdb --filter ram-lak | vam-resample --negative keep >negative.
 ok "negative intensities" vam-dose negative.exr --like part.vdb -o x.vdb; rm x.vdb
 is "negative intensities set to 0 are reported" "$(grep -c 'set to 0' .log/err)" 1
 
+python3 "$VAM_SOURCE/tests/tools/exr.py" make negative.exr space=virtual width=29 height=8 count=2 value=-1
+ok "those of another program" vam-dose negative.exr -o x.vdb; rm x.vdb
+is "are kept with a warning" "$(grep -c 'negative.exr: 100 % of the intensities are negative, the minimum is -1, .*; kept' .log/err)" 1
+
 # Around an insert (overprinting): as many voxels as 128 cubed, then coarsely with a parallel beam
 vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o fine.vdb
 vam-optimize --angles 90 fine.vdb -o fine.exr

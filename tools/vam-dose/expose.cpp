@@ -34,12 +34,14 @@ namespace {
 constexpr int batch = 64;               // slices a pass
 constexpr double climbing_slices = 90;  // of dose in memory where rays climb
 
-void warn_about(const Options& options, const light::LightSeen& seen, bool projector) {
-  if (!projector || seen.negative == 0) return;
+/// Of virtual sinograms those of these tools are known to have been asked for.
+void warn_about(const Options& options, const Light& light, bool projector) {
+  const light::LightSeen& seen = light.seen();
+  if (seen.negative == 0 || (!projector && light.sealed())) return;
   warn(io::input_name(options.inputs.front()) + ": " + format_number(100 * seen.negative / seen.values, 3) +
        " % of the intensities are negative, the minimum is " + format_number(seen.least, 3) + ", the maximum " +
        format_number(seen.peak, 3) +
-       (options.negative == "keep" ? "; kept, though no projector can show them" : "; set to 0"));
+       (!projector || options.negative == "keep" ? "; kept, though no projector can show them" : "; set to 0"));
 }
 
 /// Doses of slices, in ascending order, through what beam and resin smear.
@@ -152,7 +154,7 @@ Exposed expose(Light& light, const model::StackInfo& info, const Options& option
   exposed.metrics = sink.judged();
   if (judged) exposed.outside = sink.outside();
   if (insert.there() && place.target != nullptr) exposed.dark_part_voxels = insert.dark_part_voxels();
-  warn_about(options, exposed.light, projector);
+  warn_about(options, light, projector);
   tool::warn_of_dark_part(options.like, insert.dark_part_voxels());
   return exposed;
 }

@@ -84,7 +84,8 @@ struct Light::Part {
 };
 
 Light::Light(io::StackReader& first, const model::StackInfo& info, const Options& options,
-             const model::Printer& printer) {
+             const model::Printer& printer)
+    : sealed_(first.is_sealed()) {
   if (options.inputs.size() > 1 && options.shown.empty()) {
     throw Error{Fault::usage, "SINOGRAM: several add up only as a print showed them; give its --shown, or one of them"};
   }

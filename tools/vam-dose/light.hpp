@@ -29,6 +29,8 @@ class Light {
   /// Intensities of the next slices, times the turns for which each row was shown; empty after the last.
   [[nodiscard]] std::vector<Image> next();
   [[nodiscard]] const light::LightSeen& seen() const { return seen_; }
+  /// Whether these tools wrote the first sinogram.
+  [[nodiscard]] bool sealed() const { return sealed_; }
   /// Mean over the stage angles, of all sinograms; 0 without --shown.
   [[nodiscard]] double turns() const { return turns_; }
 
@@ -36,6 +38,7 @@ class Light {
   struct Part;
   std::vector<std::unique_ptr<Part>> parts_;
   light::LightSeen seen_;
+  bool sealed_;
   double turns_ = 0;
 };
 

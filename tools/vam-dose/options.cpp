@@ -59,7 +59,7 @@ void declare_beam(cli::App& app, Options& options) {
   app.was("--flat");
   app.choice("--negative", options.negative, {"clip", "keep"},
              "Negative intensities of a projector sinogram, which no projector can show: clip them to 0, or keep them. "
-             "Those of a virtual sinogram are always kept.");
+             "Those of a virtual sinogram are kept, with a warning where these tools did not write it.");
   app.was("--keep-negative", "keep");
 }
 
