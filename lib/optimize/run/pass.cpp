@@ -66,7 +66,7 @@ std::vector<Image> expand_slab(const Pass& pass, std::size_t number, const Slab&
     const float* row = packed.at(0, y) + from;
     for (Image& image : images) {
       float* to = image.row(y);
-      for (int x = 0; x < shape.width; ++x) to[x] = row[x * lanes];
+      for (int x = 0; x < shape.width; ++x) to[x] = row[std::ptrdiff_t{x} * lanes];
       ++row;
     }
   });
