@@ -71,7 +71,7 @@ void check_head(std::span<const char> bytes) {
   if (walk.number<std::int64_t>() != openvdb::OPENVDB_MAGIC) {
     const std::string foreign = foreign_format({bytes.data(), bytes.size()});
     throw std::runtime_error((foreign.empty() ? "is not" : "is " + foreign + ", not") +
-                             std::string(" an OpenVDB file (vam-slice and vam-dose write such files)"));
+                             std::string(" an OpenVDB file (vam-slice makes one of a mesh, vam-dose of projections)"));
   }
   const auto format = walk.number<std::uint32_t>();
   if (format > openvdb::OPENVDB_FILE_VERSION) {
