@@ -135,6 +135,7 @@ void run(const cli::App& app, Options& options) {
   solid::Part part = part_of(options, printer.projector, room, correction);
   std::optional<solid::Part> insert = insert_of(options, part, room);
   if (insert) warn_of_insert_size(app, options, *insert, room);
+  if (insert) insert->surface = {};  // whether it would print is not asked
   const double lift_mm = slice_tool::lift_mm(options, printer, part, room);
   part = solid::lifted(std::move(part), lift_mm);
   if (insert) insert = solid::lifted(std::move(*insert), lift_mm);

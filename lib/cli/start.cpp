@@ -46,7 +46,7 @@ void leave(int status, void* /*unused*/) {
 }
 
 [[noreturn]] void on_terminate() {
-  if (starting) end_for_lack();  // which may leave no room for what is thrown
+  if (starting) end_for_lack();  // before main() what is thrown may find no memory itself
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {

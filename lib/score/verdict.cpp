@@ -135,6 +135,7 @@ void add_to(Json& figures, const Verdict& verdict) {
                              {"iou", verdict.with_cut.iou}};
   if (!verdict.pieces) return;
   figures["part_pieces"] = verdict.pieces->part;
+  if (verdict.pieces->solids > 0) figures["solids"] = verdict.pieces->solids;
   figures["part_pieces_at_half"] = verdict.pieces->part_at_half;
   figures["print_pieces"] = verdict.pieces->print;
   figures["broken_voxels"] = verdict.pieces->broken;

@@ -77,14 +77,17 @@ void expose_slices(Light& light, int count, const light::Simulation& simulation,
                    Blurred& sink) {
   Progress progress("dose", count);
   light.begin(batch);
+  auto negative = light.seen().negative;
   for (std::vector<Image> slices = light.next(); !slices.empty(); slices = light.next()) {
+    const bool has_negative = light.seen().negative != negative;
+    negative = light.seen().negative;
     std::vector<Image> doses(slices.size());
     const std::vector<Image> inserts = insert.slices(first, count_of(slices));
     simulation.dose(slices, doses, inserts);
     insert.look_for_dark(simulation, first, inserts);
     first += count_of(slices);
     for (Image& dose : doses) {
-      if (light.seen().negative == 0) clip(dose);
+      if (!has_negative) clip(dose);
       sink.add(dose);
     }
     progress.tick(static_cast<long>(slices.size()));

@@ -152,7 +152,7 @@ void warn_of_resolution(const std::string& subject, const Filled& fine, double s
 
 /// Which half-covered voxels either leave out or show as thick as a voxel.
 bool has_walls_below_a_voxel(const model::Unresolved& unresolved, const solid::Walls& walls) {
-  const bool thin = walls.thinnest_voxels && *walls.thinnest_voxels < 1.5;
+  const bool thin = walls.thinnest_voxels && *walls.thinnest_voxels < model::thin_voxels;
   return unresolved.loses_walls() || (thin && unresolved.is_much());
 }
 
@@ -165,28 +165,43 @@ solid::Walls::Place place_of(const model::ThinPlaces& walls, const Plan& plan) {
   return {walls.mm / plan.grid.voxel_mm, walls.mm, {x, y, z / plan.stretch_z}};
 }
 
+solid::Part without_surface(solid::Part part) {
+  part.surface = {};
+  return part;
+}
+
+/// Where walls are measured on larger voxels, what the part's own surface tells.
+model::Unresolved of_printers_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
+  if (plan.wall_resolution == 1) return fine.content.unresolved;
+  model::Unresolved told;
+  if (part.surface) told.surface = {part.surface(plan.grid.voxel_mm), plan.grid.voxel_mm};
+  return told;
+}
+
 /// On the printer's voxels, or on larger ones where these are too many.
 void add_walls(Plan& plan, const solid::Part& part) {
   const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
   plan.wall_resolution = std::max(1, static_cast<int>(by));
-  const Filled fine = filled(part, plan.wall_resolution * plan.grid.voxel_mm);
+  const Filled fine =
+      filled(plan.wall_resolution == 1 ? part : without_surface(part), plan.wall_resolution * plan.grid.voxel_mm);
+  const model::Unresolved unresolved = of_printers_voxels(plan, part, fine);
   if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0)
     warn_of_resolution(part.subject, fine, plan.stretch_z);
   const solid::Walls walls = solid::walls(fine.volume, plan.stretch_z);
   plan.sharp_edges = walls.sharp_edges;
   plan.wall_voxels = walls.thinnest_voxels;
   plan.wall_mm = walls.thinnest_mm;
-  plan.in_doubt = doubts(fine.content.unresolved);
+  plan.in_doubt = doubts(unresolved);
   if (has_walls_below_a_voxel(fine.content.unresolved, walls)) plan.wall_voxels.reset();
   if (!plan.wall_voxels) return;
   *plan.wall_voxels *= plan.wall_resolution;
   plan.thinnest_place = walls.thinnest_place;
   if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
-  if (!part.surface) return;
-  const model::VoxelisedSurface surface{part.surface(plan.grid.voxel_mm), plan.grid.voxel_mm};
-  plan.in_doubt = plan.in_doubt || surface.leaves_doubt();
-  if (surface.places.walls.are_below(model::narrow_voxels, surface.voxel_mm))
-    plan.thinnest_place = place_of(surface.places.walls, plan);
+  if (!unresolved.surface) return;
+  const model::ThinPlaces& thin = unresolved.surface->places.walls;
+  if (!thin.are_below(model::narrow_voxels, plan.grid.voxel_mm)) return;
+  const solid::Walls::Place place = place_of(thin, plan);
+  if (!plan.thinnest_place || place.voxels < plan.thinnest_place->voxels) plan.thinnest_place = place;
 }
 
 double million_voxels(const model::Grid& grid, int coarseness) {
@@ -271,7 +286,7 @@ Plan plan(const Options& options, const model::Printer& printer) {
   made.stretch_z = 1 / model::vertical_magnification(printer);
   add_walls(made, part);
   if (options.no_preview) return made;
-  add_preview(made, part, printer);
+  add_preview(made, without_surface(part), printer);
   if (!made.preview) return made;
   const optimize::VolumeOutcome& outcome = made.preview->outcome;
   const auto per_radian = resin::dose_per_radian_mj_cm3(printer);

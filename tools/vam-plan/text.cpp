@@ -142,7 +142,7 @@ std::string table(const Plan& plan) {
   text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm / plan.stretch_z) + " mm");
   text += row("thinnest wall", wall_words(plan)) + place_row(plan);
   if (plan.sharp_edges)
-    text += row("sharp edges", "some, or tips, taper to less than 3 voxels, and seldom print there");
+    text += row("sharp edges", "some, or tips, taper to less than 3 voxels, and may not print there");
   return plan.coarseness > 0 ? text + print_rows(plan) : text;
 }
 

@@ -88,10 +88,10 @@ std::vector<std::string> notes() {
       "side by side, cause a warning with their thickness, a place and the voxels that resolve them; those below 1.5 "
       "voxels leave the verdict of vam-score and vam-optimize in doubt. Faces are found by short rays along the "
       "normals "
-      "from points on the surface, one for each face of a voxel, 200000 at most; from two such points on a wall "
-      "counts, "
-      "ridges from 30 on. Faces that would meet within six voxels, as at the edge of a wedge or where a ball stands on "
-      "a plate, are no walls and gaps, unless they are of separate solids.",
+      "from points on the surface, one for each face of a voxel, 200000 at most; a wall counts from two such faces on, "
+      "ridges from 30. Faces that would meet within six voxels or four times their distance, as at the edge of a wedge "
+      "or where a ball stands on a "
+      "plate, are no walls and gaps, unless they are of surfaces that do not touch.",
       "Speed: a million triangles on 512 x 512 x 512 voxels take 2 s on two cores. Memory: the mesh, 16 slices, and "
       "the volume, whose interior is stored as tiles.",
       "The volume is square in x and y and just contains the bounding circle of the part; metrics of the void use the "

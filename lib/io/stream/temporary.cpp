@@ -123,11 +123,14 @@ bool is_left_over(const fs::path& path) {
   int read = 0;
   const std::string name = path.filename().string();
   if (std::sscanf(name.c_str(), ".vam-%d-%u%n", &pid, &count, &read) != 2) return false;
-  const bool aside = name.substr(read) == "-old";
+  constexpr std::string_view old = "-old";
+  const bool aside = name.ends_with(old);
   if (!aside && name[read] != '\0' && name[read] != '.') return false;
   if (pid <= 0 || runs(pid)) return false;
   std::error_code ignored;
-  if (fs::exists(path.parent_path() / (aside ? name.substr(0, read) : name + "-old"), ignored)) return false;
+  if (fs::exists(path.parent_path() / (aside ? name.substr(0, name.size() - old.size()) : name + std::string(old)),
+                 ignored))
+    return false;
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   const bool free = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
   if (file >= 0) close(file);

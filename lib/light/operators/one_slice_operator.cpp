@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
+#include <vector>
 
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
@@ -44,8 +44,8 @@ bool OneSliceOperator::is_for(const tomo::ParallelGeometry& turn) {
   constexpr double exact = 1e-9;
   const double centre = 0.5 * (turn.nx - 1);
   return turn.alpha_per_px == 0 && turn.nx == turn.ny && turn.angles % 8 == 0 && turn.angle_start_rad == 0 &&
-         std::abs(std::abs(turn.angle_step_rad) * turn.angles - 2 * std::numbers::pi) < exact &&
-         turn.angle_step_rad > 0 && std::abs(turn.axis_x - centre) < exact && std::abs(turn.axis_y - centre) < exact;
+         std::abs(turn.angle_step_rad * turn.angles - 2 * std::numbers::pi) < exact &&
+         std::abs(turn.axis_x - centre) < exact && std::abs(turn.axis_y - centre) < exact;
 }
 
 OneSliceOperator::OneSliceOperator(const tomo::ParallelGeometry& turn) : all_(turn), eighth_(first_eighth(turn)) {}

@@ -88,11 +88,24 @@ class Patches {
     while (root_[t] != t) t = root_[t] = root_[root_[t]];
     return t;
   }
+  /// Single triangles of the others may be turned over still, and mislead beside them.
+  bool is_mostly_within(std::size_t patch) {
+    std::vector<int> points;
+    for (std::size_t t = 0; t < root_.size(); ++t)
+      if (find(t) == patch) points.push_back(mesh_.triangles[t][0]);
+    constexpr std::size_t some = 15;
+    const std::size_t step = points.size() / some + 1;
+    int within = 0;
+    int asked = 0;
+    for (std::size_t i = 0; i < points.size(); i += step, ++asked)
+      within += std::abs((*others_)(mesh_.points[points[i]])) > 0.5 ? 1 : 0;
+    return 2 * within > asked;
+  }
   bool is_within_others(std::size_t patch) {
     const auto [known, is_new] = within_.try_emplace(patch, false);
     if (is_new) {
       if (!others_) others_.emplace(model::TriangleSoup{mesh_.points, rest_});
-      known->second = std::abs((*others_)(mesh_.points[mesh_.triangles[patch][0]])) > 0.5;
+      known->second = is_mostly_within(patch);
     }
     return known->second;
   }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,7 +13,6 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "solid/mesh/private/separate_solids.hpp"
-#include "solid/mesh/private/winding.hpp"
 #include "solid/mesh/surface_samples.hpp"
 
 namespace vam::solid {
@@ -24,29 +22,30 @@ namespace {
 constexpr double most_samples = 200'000;
 constexpr double least_samples = 2'000;
 constexpr std::size_t most_verified = 10'000;
-constexpr double meet_voxels = 6;          // faces that meet nearer make an edge
-constexpr double facing_cosine = -0.5;     // of normals: 60 degrees apart from parallel
-constexpr double sharpest_cosine = -0.17;  // edges of less than 80 degrees
-constexpr double least_gap = 1 / 64.0;     // voxels: shells that are nearer touch
-constexpr double least_solid = 16;         // voxels: smaller ones may not count in a print
-constexpr double least_area = 2;           // faces of a voxel: less is a speck
-constexpr double own = 1e-6;               // of the reach: nearer is the face that the ray leaves from
+constexpr double meet_voxels = 6;               // faces that meet nearer make an edge
+constexpr double meet_times = 4;                // or of their distance: 14 degrees apart from parallel
+constexpr double facing_cosine = -0.5;          // of normals: 60 degrees apart from parallel
+constexpr double bluntest_edge_cosine = -0.17;  // of less than 80 degrees
+constexpr double least_gap = 1 / 64.0;          // voxels: shells that are nearer touch
+constexpr double least_solid = 16;              // voxels: smaller ones may not count in a print
+constexpr double least_area = 2;                // faces of a voxel: less is a speck
+constexpr double own = 1e-6;                    // of the reach: nearer is the face that the ray leaves from
 
 /// The way from a face straight to the one on the other side.
 struct Crossing {
   Vector3 from, along;
   double distance;
   double cosine;  // of both faces' normals
-  bool apart;     // they are of different solids
+  bool apart;     // they are of surfaces that do not touch
   [[nodiscard]] Vector3 at(double way) const { return from + way * along; }
-  [[nodiscard]] bool is_edge() const { return cosine <= sharpest_cosine; }
+  [[nodiscard]] bool is_edge() const { return cosine <= bluntest_edge_cosine; }
   /// How far off the faces meet, straight on.
   [[nodiscard]] double meets() const {
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     return sine > 0 ? -cosine * distance / sine : std::numeric_limits<double>::infinity();
   }
   [[nodiscard]] bool is_between_faces(double voxel_mm) const {
-    return cosine <= facing_cosine && (apart || meets() >= meet_voxels * voxel_mm);
+    return cosine <= facing_cosine && (apart || meets() >= std::max(meet_voxels * voxel_mm, meet_times * distance));
   }
 };
 
@@ -82,7 +81,8 @@ void cross(const SurfaceTree& surface, const SeparateSolids& solids, const std::
   });
 }
 
-/// Only those between void and solid, where solids may lie within each other; of so many samples that it is quick.
+/// Only those between void and solid, as surfaces may lie within others or cross themselves; of so many samples that it
+/// is quick.
 void leave_outer(Crossings& all, const SurfaceTree& surface, double voxel_mm) {
   const auto is_there = [](const auto& crossing) { return crossing.has_value(); };
   const auto count = std::count_if(all.inwards.begin(), all.inwards.end(), is_there) +
@@ -95,7 +95,7 @@ void leave_outer(Crossings& all, const SurfaceTree& surface, double voxel_mm) {
     some.inwards.push_back(all.inwards[i]);
     some.outwards.push_back(all.outwards[i]);
   }
-  const WindingNumber winding(surface.tree);
+  const WindingNumber& winding = surface.winding();
   const double beside = 0.02 * voxel_mm;
   const auto divides = [&](const Crossing& across, bool solid) {
     const auto inside = [&](double way) { return winding(across.at(way)) > 0.5; };
@@ -178,8 +178,7 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   const double reach = model::lost_voxels * voxel_mm;
   cross(surface, solids, all.samples, -1, own * reach, reach, all.inwards);
   cross(surface, solids, all.samples, 1, touching, reach, all.outwards);
-  const bool one_surface = repaired.closed() && repaired.components == 1 && repaired.non_manifold_edges == 0;
-  if (!one_surface) leave_outer(all, surface, voxel_mm);
+  leave_outer(all, surface, voxel_mm);
   return {between_faces(all.inwards, all.each, voxel_mm), between_faces(all.outwards, all.each, voxel_mm),
           relief(all, voxel_mm), solids.count(), solids.specks()};
 }

@@ -15,8 +15,6 @@ namespace vam::solid {
 
 namespace {
 
-constexpr std::size_t most_looked_at = 10'000;
-
 /// Points of a mesh that triangles connect.
 class ConnectedPoints {
  public:
@@ -49,21 +47,46 @@ struct Piece {
   int farthest = 0;  // the point of the largest x
 };
 
-/// What a face touches or lies within: a triangle of it.
-std::optional<int> met_by(const SurfaceTree& surface, const std::vector<int>& piece, const WindingNumber& winding,
-                          const SurfaceSample& sample, double near_mm, double far_mm) {
-  constexpr double own = 1e-6;
-  const auto close = surface.tree->first_hit(sample.point, sample.normal, own * near_mm, near_mm);
-  if (close) {
-    const int place = surface.place(close->triangle);
-    const auto& triangles = surface.mesh.triangles;
-    if (piece[triangles[place][0]] != piece[triangles[sample.triangle][0]]) return place;
+/// A piece's own triangles, and those of others, of a tree.
+class Pieces {
+ public:
+  Pieces(const SurfaceTree& surface, std::vector<int> piece_of) : surface_(surface), piece_of_(std::move(piece_of)) {}
+  /// By a triangle of the mesh.
+  [[nodiscard]] int piece(int triangle) const { return piece_of_[surface_.mesh.triangles[triangle][0]]; }
+  /// A triangle of another piece on this way, none or one.
+  [[nodiscard]] std::optional<int> other_on(int own, const Vector3& from, const Vector3& to) const {
+    const Vector3 way = to - from;
+    const double far = length(way);
+    if (!(far > 0)) return std::nullopt;
+    const auto is_other = [&](int triangle) { return piece(surface_.place(triangle)) != own; };
+    const auto hit = surface_.tree->first_hit(from, (1 / far) * way, 0, far, is_other);
+    if (!hit) return std::nullopt;
+    return surface_.place(hit->triangle);
   }
-  const Vector3 beside = sample.point + near_mm * sample.normal;
-  if (winding(beside) < 0.5) return std::nullopt;
-  const auto hit = surface.tree->first_hit(beside, sample.normal, 0, far_mm);
-  if (!hit) return std::nullopt;
-  return surface.place(hit->triangle);
+
+ private:
+  const SurfaceTree& surface_;
+  std::vector<int> piece_of_;  // of each point
+};
+
+/// Of each triangle in the box one of another piece that its edges cross.
+std::vector<std::optional<int>> crossed(const model::TriangleSoup& mesh, const Pieces& pieces, const Bounds& box) {
+  std::vector<std::optional<int>> found(mesh.triangles.size());
+  constexpr int at_once = 1000;
+  const int count = count_of(mesh.triangles);
+  parallel_for((count + at_once - 1) / at_once, [&](int block) {
+    for (int t = block * at_once; t < std::min(count, (block + 1) * at_once); ++t) {
+      const TriangleCorners c = corners(mesh, static_cast<std::size_t>(t));
+      Bounds own;
+      for (const Vector3& corner : c) own.add(corner);
+      bool apart = false;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        apart = apart || own.low[axis] > box.high[axis] || own.high[axis] < box.low[axis];
+      for (std::size_t side = 0; side < 3 && !apart && !found[t]; ++side)
+        found[t] = pieces.other_on(pieces.piece(t), c[side], c[(side + 1) % 3]);
+    }
+  });
+  return found;
 }
 
 }  // namespace
@@ -73,25 +96,30 @@ SeparateSolids::SeparateSolids(const SurfaceTree& surface, const Repair& repaire
     : mesh_(surface.mesh) {
   if (!repaired.closed() || repaired.unorientable > 0) return;
   count_ = 1;
-  if (repaired.components > 1) find(surface, samples, near_mm, least_mm3);
+  if (repaired.components > 1) find(surface, repaired.shared, samples, near_mm, least_mm3);
 }
 
-void SeparateSolids::find(const SurfaceTree& surface, const std::vector<SurfaceSample>& samples, double near_mm,
-                          double least_mm3) {
-  const WindingNumber winding(surface.tree);
+void SeparateSolids::find(const SurfaceTree& surface, const Bounds& shared, const std::vector<SurfaceSample>& samples,
+                          double near_mm, double least_mm3) {
   const Bounds bounds = bounding_box(mesh_);
   ConnectedPoints connected(mesh_);
   const auto point_of = [&](int triangle) { return mesh_.triangles[triangle][0]; };
-  std::vector<std::optional<int>> met(samples.size());
-  const std::vector<int> piece_of = connected.roots();
-  const std::size_t step = samples.size() / most_looked_at + 1;
-  std::vector<std::size_t> some;
-  for (std::size_t i = 0; i < samples.size(); i += step) some.push_back(i);
-  parallel_for(count_of(some), [&](int n) {
-    met[some[n]] = met_by(surface, piece_of, winding, samples[some[n]], near_mm, bounds.diagonal());
+  const Pieces pieces_alone(surface, connected.roots());
+  const std::vector<std::optional<int>> crossing = crossed(mesh_, pieces_alone, shared);
+  std::vector<std::optional<int>> touching(samples.size());
+  constexpr int at_once = 1000;
+  const int count = count_of(samples);
+  parallel_for((count + at_once - 1) / at_once, [&](int block) {
+    for (int i = block * at_once; i < std::min(count, (block + 1) * at_once); ++i) {
+      const Vector3 near = near_mm * samples[i].normal;
+      touching[i] = pieces_alone.other_on(pieces_alone.piece(samples[i].triangle), samples[i].point - near,
+                                          samples[i].point + near);
+    }
   });
-  for (const std::size_t i : some)
-    if (met[i]) connected.join(point_of(samples[i].triangle), point_of(*met[i]));
+  for (int t = 0; t < count_of(crossing); ++t)
+    if (crossing[t]) connected.join(point_of(t), point_of(*crossing[t]));
+  for (int i = 0; i < count; ++i)
+    if (touching[i]) connected.join(point_of(samples[i].triangle), point_of(*touching[i]));
 
   solid_ = connected.roots();
   std::map<int, Piece> pieces;
@@ -108,7 +136,7 @@ void SeparateSolids::find(const SurfaceTree& surface, const std::vector<SurfaceS
   count_ = 0;
   for (const auto& [point, piece] : pieces) {
     const Vector3 beyond = mesh_.points[piece.farthest] + Vector3{near_mm, 0, 0};
-    if (winding(beyond) > 0.5) continue;  // a cavity, or within another
+    if (surface.winding()(beyond) > 0.5) continue;  // a cavity, or within another
     ++count_;
     specks_ += piece.volume < least_mm3 ? 1 : 0;
   }

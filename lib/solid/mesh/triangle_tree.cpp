@@ -150,7 +150,8 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
   return best;
 }
 
-std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& along, double least, double most) const {
+std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& along, double least, double most,
+                                           const std::function<bool(int triangle)>& counts) const {
   const Vector3 end = from + most * along;
   Vector3 low{};
   Vector3 high{};
@@ -170,7 +171,8 @@ std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& a
     }
     for (int i = node.begin; i < node.end; ++i) {
       const auto distance = distance_to(triangles[i], from, along);
-      if (distance && *distance >= least && *distance <= most && (!first || *distance < first->distance))
+      if (distance && *distance >= least && *distance <= most && (!first || *distance < first->distance) &&
+          (!counts || counts(i)))
         first = {*distance, i};
     }
   }

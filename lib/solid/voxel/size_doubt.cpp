@@ -38,6 +38,15 @@ double resolving_mm(const model::ThinPlaces& places) {
   return std::floor(mm / digit + rounding) * digit;
 }
 
+/// Of what voxels lose: such places of the part's own surface, or its relief; null where the surface does not tell.
+const model::ThinPlaces* cause_of(const model::Unresolved& unresolved, model::ThinPlaces model::PartSurface::*kind) {
+  const auto& surface = unresolved.surface;
+  if (!surface) return nullptr;
+  const model::ThinPlaces& places = surface->places.*kind;
+  if (places.are_below(model::lost_voxels, surface->voxel_mm)) return &places;
+  return surface->has_relief() ? &surface->places.relief : nullptr;
+}
+
 /// "part.stl: walls of 0.27 mm are too fine for voxels of 0.3 mm, as near (1, 2, 3) mm, and whether they print is not
 /// judged; voxels of 0.14 mm resolve them"
 std::string place_doubt(const std::string& subject, const char* kind, const char* otherwise,
@@ -58,12 +67,12 @@ std::string wall_doubt(const std::string& subject, const model::Unresolved& unre
                                ? format_number(100 * unresolved.lost_share(), 2) + " % of the part is in walls"
                                : "walls or rods are";
   const auto most = static_cast<double>(lost.most);
-  double thick = unresolved.loses_much() ? most : std::sqrt(most);  // of a rod its area is covered
-  if (unresolved.surface && unresolved.surface->may_lose_walls())
-    thick = resolving_mm(unresolved.surface->places.walls) / grid.voxel_mm;
+  const double thick = unresolved.loses_much() ? most : std::sqrt(most);  // of a rod its area is covered
+  const model::ThinPlaces* cause = cause_of(unresolved, &model::PartSurface::walls);
+  const double resolving = cause != nullptr ? resolving_mm(*cause) : grid.voxel_mm * thick;
   return subject + ": " + what + " too thin for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
-         " no voxel of theirs is half covered, and they will not be printed; voxels of " +
-         format_number(grid.voxel_mm * thick, 2) + " mm or thicker walls may help";
+         " no voxel of theirs is half covered, and they will not be printed; voxels of " + format_number(resolving, 2) +
+         " mm or thicker walls may help";
 }
 
 std::string thin_doubt(const std::string& subject, const model::Unresolved& thin, const model::Grid& grid,
@@ -108,14 +117,9 @@ std::string gap_doubt(const std::string& subject, const model::Unresolved& unres
                       double stretch_z) {
   const model::LostGaps& lost = unresolved.lost_gaps;
   if (!unresolved.shuts_gaps()) return "";
-  const model::PartSurface known = unresolved.surface ? unresolved.surface->places : model::PartSurface{};
-  double gap_mm = grid.voxel_mm * static_cast<double>(lost.widest);
-  double resolving = 0.5 * gap_mm;
-  for (const auto* places : {&known.relief, &known.gaps}) {
-    if (!places->are_below(model::lost_voxels, grid.voxel_mm)) continue;
-    gap_mm = places->mm;
-    resolving = resolving_mm(*places);
-  }
+  const model::ThinPlaces* cause = cause_of(unresolved, &model::PartSurface::gaps);
+  const double gap_mm = cause != nullptr ? cause->mm : grid.voxel_mm * static_cast<double>(lost.widest);
+  const double resolving = cause != nullptr ? resolving_mm(*cause) : 0.5 * gap_mm;
   return subject + ": gaps of " + format_number(gap_mm, 2) +
          " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is more than three quarters free, and they will be printed shut; voxels of " +

@@ -228,14 +228,18 @@ TEST_CASE("removes temporaries of killed writers, keeps those of live ones") {
   spill(folder / ".vam-999999-0", "x");
   std::filesystem::create_directory(folder / ".vam-999999-1-old");  // what it stepped aside for took its name
   spill(folder / ".vam-999999-2", "x");
-  CHECK(folder.count() == 6);  // the second process has tidied up after the first
+  std::filesystem::create_directory(folder / ".vam-999999-3.d-old");  // of a folder whose name ends with .d
+  std::filesystem::create_directory(folder / ".vam-999999-3.d");
+  CHECK(folder.count() == 8);  // the second process has tidied up after the first
   const pid_t next = fork();   // once a process
   if (next == 0) {
     { OutputFile file(folder / "b.png", Content::binary, Temporary::named); }
     _exit(0);
   }
   waitpid(next, nullptr, 0);
-  CHECK(folder.count() == 4);
+  CHECK(folder.count() == 6);
+  CHECK(std::filesystem::exists(folder / ".vam-999999-3.d-old"));
+  CHECK(std::filesystem::exists(folder / ".vam-999999-3.d"));
   CHECK(std::filesystem::exists(folder / ".vam-999999-0-old"));
   CHECK(std::filesystem::exists(folder / ".vam-999999-0"));
   int of_alive = 0;

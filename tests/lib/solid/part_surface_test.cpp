@@ -148,6 +148,9 @@ TEST_CASE("solids that cross, touch or hold each other are one, and cavities non
   CHECK(solids(oracle::join(block, block, {20.01, 3, 1})) == 1);   // all but
   CHECK(solids(oracle::join(block, block, {20.1, 3, 1})) == 2);
   CHECK(solids(oracle::join(block, ball, {0, 0, -5})) == 1);  // within
+  Mesh plates = oracle::box({-2, -2, -1}, {2, 2, 80});  // a bar through plates, each held by a small ring of contact
+  for (int n = 0; n < 20; ++n) plates = oracle::join(plates, oracle::box({-50, -50, 0}, {50, 50, 2}), {0, 0, 4.0 * n});
+  CHECK(solids(plates) == 1);
   CHECK(solids(oracle::join(ball, ball, {6.3, 0, 0})) == 2);
   CHECK(solids(oracle::join(oracle::join(ball, ball, {4, 0, 0}), ball, {8, 0, 0})) == 1);  // a chain
   Mesh hollow = oracle::sphere(4, 24);

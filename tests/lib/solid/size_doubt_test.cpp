@@ -100,6 +100,37 @@ TEST_CASE("rods are told from half a voxel that is far from all half covered one
         "and they will not be printed; voxels of 0.08 mm or thicker walls may help");
 }
 
+TEST_CASE("the part's own surface names thickness and place, and keeps silent of what is only rough") {
+  model::PartSurface places;
+  const auto told = [&](model::Unresolved unresolved) {
+    unresolved.surface = {places, grid.voxel_mm};
+    return doubts(unresolved, 1.25);
+  };
+  CHECK(told(wall(0.4, 6)).empty());
+  CHECK(told(gap(0.2, 3)).empty());
+  places.relief = {5, 0.11, {1, 2, 3}};
+  CHECK(told(wall(0.4, 6)).front().find("; voxels of 0.055 mm or thicker walls may help") != std::string::npos);
+  CHECK(told(gap(0.2, 3)).front().find("gaps of 0.11 mm are too narrow") != std::string::npos);
+  CHECK(told({}) ==
+        std::vector<std::string>{"a.stl: ridges and grooves of 0.11 mm are too fine for voxels of 0.2 mm, as "
+                                 "near (1, 2, 2.4) mm, and whether they print is not judged; voxels of "
+                                 "0.055 mm resolve them"});
+  places.walls = {1, 0.35, {1, 2, 3}};
+  places.gaps = {1, 0.25, {1, 2, 3}};
+  const std::vector<std::string> both = told({});
+  REQUIRE(both.size() == 2);
+  CHECK(
+      both[0] ==
+      "a.stl: walls of 0.35 mm are too fine for voxels of 0.2 mm, as near (1, 2, 2.4) mm, and may not print; voxels of "
+      "0.17 mm resolve them");
+  CHECK(both[1].find("gaps of 0.25 mm are too fine") != std::string::npos);
+  CHECK(both[1].find("and whether they print is not judged; voxels of 0.12 mm resolve them") != std::string::npos);
+  CHECK(told(wall(0.4, 6)).front().find("; voxels of 0.17 mm or thicker walls may help") != std::string::npos);
+  places = {};
+  places.walls = {1, 0.4, {}};
+  CHECK(told({}).empty());
+}
+
 TEST_CASE("gaps are told from a voxel, a tenth of one a slice and a twentieth of a voxel of width on") {
   const std::string wide = gap_doubt("a.stl", gap(0.2, 3), grid, 1);
   CHECK(wide ==

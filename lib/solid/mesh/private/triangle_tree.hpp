@@ -2,6 +2,7 @@
 // Triangles in a tree of boxes: what closest points and winding numbers walk.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -54,9 +55,10 @@ struct TriangleTree {
 
   /// Triangle 'start' is tested first: a neighbour's answer saves half of the way. There must be a triangle.
   [[nodiscard]] Nearest nearest(const Vector3& point, int start = 0) const;
-  /// The first triangle that a short ray meets, least to most from its origin. `along` has length 1.
-  [[nodiscard]] std::optional<Hit> first_hit(const Vector3& from, const Vector3& along, double least,
-                                             double most) const;
+  /// The first triangle that a short ray meets, least to most from its origin, of those that count, or of all. `along`
+  /// has length 1. There must be a triangle.
+  [[nodiscard]] std::optional<Hit> first_hit(const Vector3& from, const Vector3& along, double least, double most,
+                                             const std::function<bool(int triangle)>& counts = {}) const;
 };
 
 /// The corners of all triangles of a mesh that have an area; their places in the mesh, where wanted.
