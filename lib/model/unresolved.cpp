@@ -5,6 +5,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "model/dose_metrics.hpp"
 
 namespace vam::model {
@@ -79,6 +80,20 @@ void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
 }
 
 }  // namespace
+
+std::string Unresolved::thin_places() const {
+  if (!surface) return "";
+  const auto voxels_of = [&](const char* kind, const ThinPlaces& places) {
+    return std::string(kind) + " of " + format_number(places.mm / surface->voxel_mm, 2) + " voxels";
+  };
+  std::string text;
+  if (surface->has_thin_walls() && !loses_walls()) text = voxels_of("walls", surface->places.walls);
+  if (surface->has_thin_gaps() && !shuts_gaps())
+    text += (text.empty() ? "" : " and ") + voxels_of("gaps", surface->places.gaps);
+  if (text.empty() && surface->has_relief() && !loses_walls() && !shuts_gaps())
+    text = voxels_of("ridges and grooves", surface->places.relief);
+  return text;
+}
 
 bool Unresolved::shuts_gaps() const {
   constexpr double least = 1;  // voxels

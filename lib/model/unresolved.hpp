@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "model/grid.hpp"
@@ -53,13 +54,16 @@ struct Unresolved {
   [[nodiscard]] bool is_much() const { return share() > 0.02; }
   /// A verdict on the voxels is none on the part: of its surface, or where that is not known of its voxels.
   [[nodiscard]] bool leaves_doubt() const { return surface ? surface->leaves_doubt() : is_much(); }
-  /// Walls will be missing in the print: more than specks, and where the part's surface is known more than its
+  /// Walls will be missing in the print: more than crumbs, and where the part's surface is known more than its
   /// roughness.
   [[nodiscard]] bool loses_walls() const {
     return (loses_much() || loses_rods()) && (!surface || surface->may_lose_walls());
   }
   [[nodiscard]] bool loses_much() const { return lost_share() > 1e-3; }
   [[nodiscard]] bool loses_rods() const { return lost_walls.far > 0.5; }
+  /// "walls of 0.9 voxels and gaps of 0.4 voxels", or ridges and grooves where there are neither: what the part's own
+  /// surface shows to be thin, and is not known to be lost. Empty: nothing.
+  [[nodiscard]] std::string thin_places() const;
   /// Gaps will be shut in the print: more than tips of grooves and corners between struts.
   [[nodiscard]] bool shuts_gaps() const;
 };

@@ -56,20 +56,6 @@ const char* beginning(Answer answer) {
   return "will print";
 }
 
-/// Of thin places that are not known to be lost.
-std::string thin_text(const model::Unresolved& un) {
-  const auto voxels_of = [&](const char* kind, const model::ThinPlaces& places) {
-    return std::string(kind) + " of " + format_number(places.mm / un.surface->voxel_mm, 2) + " voxels";
-  };
-  std::string what;
-  if (un.surface->has_thin_walls() && !un.loses_walls()) what = voxels_of("walls", un.surface->places.walls);
-  if (un.surface->has_thin_gaps() && !un.shuts_gaps())
-    what += (what.empty() ? "" : " and ") + voxels_of("gaps", un.surface->places.gaps);
-  if (what.empty() && un.surface->has_relief() && !un.loses_walls() && !un.shuts_gaps())
-    what = voxels_of("ridges and grooves", un.surface->places.relief);
-  return what.empty() ? "" : "; " + what + " are not judged; smaller voxels resolve them";
-}
-
 std::string unjudged(const model::Unresolved& un) {
   const auto percent = [](double share) { return format_number(100 * share, 3) + " % of the part"; };
   std::string text;
@@ -79,8 +65,9 @@ std::string unjudged(const model::Unresolved& un) {
     text += "; walls or rods too thin for the voxels will be missing";
   }
   if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
-  if (un.surface) return text + thin_text(un);
-  if (un.is_much())
+  const std::string thin = un.thin_places();
+  if (!thin.empty()) text += "; " + thin + " are not judged; smaller voxels resolve them";
+  if (!un.surface && un.is_much())
     text += "; walls and gaps too thin for the voxels are not judged: " + percent(un.share()) +
             "; smaller voxels resolve them";
   return text;

@@ -133,17 +133,9 @@ std::vector<std::string> lost(const model::Unresolved& target) {
     doubts.push_back(what + " too thin for the target's voxels and will be missing");
   }
   if (target.shuts_gaps()) doubts.emplace_back("gaps too narrow for the target's voxels will be shut");
-  if (target.surface) {
-    const double voxel_mm = target.surface->voxel_mm;
-    const model::PartSurface& places = target.surface->places;
-    const auto add = [&](const char* kind, const model::ThinPlaces& of) {
-      doubts.push_back(std::string(kind) + " of " + format_number(of.mm / voxel_mm, 2) +
-                       " of the target's voxels are not judged");
-    };
-    if (target.surface->has_thin_walls() && !target.loses_walls()) add("walls", places.walls);
-    if (target.surface->has_thin_gaps() && !target.shuts_gaps()) add("gaps", places.gaps);
-    if (doubts.empty() && target.surface->has_relief()) add("ridges and grooves", places.relief);
-  } else if (target.is_much()) {
+  const std::string thin = target.thin_places();
+  if (!thin.empty()) doubts.push_back(thin + " of the target are not judged");
+  if (!target.surface && target.is_much()) {
     doubts.push_back(format_number(100 * target.share(), 3) +
                      " % of the part are walls or gaps too thin for the target's voxels");
   }

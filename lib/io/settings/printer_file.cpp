@@ -220,7 +220,7 @@ toml::table parse_value(const std::string& value) {
   try {
     return toml::parse("value = " + value);
   } catch (const toml::parse_error&) {
-    const auto number = parse_number(value);
+    const auto number = is_whole(value) ? std::nullopt : parse_number(value);
     return number && std::isfinite(*number) ? toml::table{{"value", *number}} : toml::table{};
   }
 }

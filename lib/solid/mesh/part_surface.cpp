@@ -28,7 +28,7 @@ constexpr double facing_cosine = -0.5;          // of normals: 60 degrees apart 
 constexpr double bluntest_edge_cosine = -0.17;  // of less than 80 degrees
 constexpr double least_gap = 1 / 64.0;          // voxels: shells that are nearer touch
 constexpr double least_solid = 16;              // voxels: smaller ones may not count in a print
-constexpr double least_area = 2;                // faces of a voxel: less is a speck
+constexpr double least_area = 2;                // faces of a voxel: less is a tip
 constexpr double own = 1e-6;                    // of the reach: nearer is the face that the ray leaves from
 
 /// The way from a face straight to the one on the other side.
