@@ -170,6 +170,6 @@ int main(int argc, char** argv) {
   if (only.empty() || only == "stack") stack();
   if (only.empty() || only == "osmo") osmo();
   if (only.empty() || only == "certify")
-    certified(argc > 2 ? std::atoi(argv[2]) : 256, argc > 3 ? std::atoi(argv[3]) : 1000);
+    certified(argc > 2 ? std::atoi(argv[2]) : 256, argc > 3 ? std::atoi(argv[3]) : 1200);
   return 0;
 }

@@ -196,7 +196,8 @@ void declare_proof(cli::App& app, Options& options) {
              "dose that holds for any projections (certificate in the report), and write the weights that prove it as "
              "a volume (VDB); they are large in the regions that limit the process window. Takes up to " +
                  std::to_string(optimize::certify_iterations) +
-                 " additional iterations, until the bound is within 3 % of the least ratio reached.")
+                 " additional iterations, of a single slice in parallel light twice as many, until the bound is within "
+                 "3 % of the least ratio reached.")
       .writes({".vdb"});
 }
 
