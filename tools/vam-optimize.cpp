@@ -42,7 +42,7 @@ void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, co
   const auto pixels = [](light::Shape shape) { return static_cast<double>(shape.width) * shape.height; };
   const double sinograms = robust ? 6 : task.limits.patience > 0 ? 5 : 4;
   const double arrays = (task.source.delivered ? 4 : 3) * pixels(light.object()) + sinograms * pixels(light.sinogram());
-  const double images = sizeof(float) * pixels(light.image()) * std::min(3 * lanes, 3 * count);
+  const double images = sizeof(float) * pixels(light.image()) * 3 * std::min(lanes, count);
   const double bytes = sizeof(float) * slices * arrays + images;
   const std::string what = subject + ": " + model::size_text(scene.grid);
   require_memory(whole ? images : bytes, what, "use larger voxels (vam-slice --voxel) or fewer --angles");

@@ -5,11 +5,11 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "solid/mesh/private/topology.hpp"
-#include "solid/mesh/private/winding.hpp"
 
 namespace vam::solid {
 

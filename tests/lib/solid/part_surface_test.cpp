@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thin walls and gaps of meshes against those that they were made with; short rays against CGAL's.
+// Thin walls, gaps and pieces of meshes against those that they were made with.
 #include "solid/mesh/part_surface.hpp"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "oracle/meshes.hpp"
-#include "solid/mesh/private/triangle_tree.hpp"
 
 using namespace vam;
 using namespace vam::solid;
@@ -204,45 +198,4 @@ TEST_CASE("of an open mesh the surface is taken as it is") {
   open.triangles.pop_back();
   CHECK(seen(turned(oracle::join(oracle::box({-10, -10, -10}, {10, 10, 0}), open))).has_thin_walls());
   CHECK(part_surface({}, {}, 1).walls.area_mm2 == 0);
-}
-
-TEST_CASE("the first triangle that a short ray meets is that of CGAL's AABB tree") {
-  using Kernel = CGAL::Simple_cartesian<double>;
-  using Triangles = std::vector<Kernel::Triangle_3>;
-  using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  const auto any = [&](double size) { return Vector3{size * unit(random), size * unit(random), size * unit(random)}; };
-  std::vector<TriangleCorners> soup;
-  Triangles judges;
-  const auto to_cgal = [](const Vector3& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
-  for (int i = 0; i < 1500; ++i) {
-    const Vector3 a = any(3);
-    soup.push_back({a, a + any(0.7), a + any(0.7)});
-    judges.emplace_back(to_cgal(soup.back()[0]), to_cgal(soup.back()[1]), to_cgal(soup.back()[2]));
-  }
-  const CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> judge(judges.cbegin(), judges.cend());
-  const TriangleTree tree(soup);
-  int met = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const Vector3 from = any(3);
-    Vector3 along = any(1);
-    along = (1 / length(along)) * along;
-    constexpr double reach = 1.5;
-    const Kernel::Segment_3 way(to_cgal(from), to_cgal(from + reach * along));
-    double nearest = reach;
-    std::vector<Primitive::Id> crossed;
-    judge.all_intersected_primitives(way, std::back_inserter(crossed));
-    for (const auto& id : crossed) {
-      const Kernel::Plane_3 plane = id->supporting_plane();
-      const Kernel::Vector_3 normal = plane.orthogonal_vector();
-      nearest = std::min(nearest, normal * (plane.point() - way.source()) / (normal * way.to_vector()) * reach);
-    }
-    const auto hit = tree.first_hit(from, along, 0, reach);
-    CHECK(hit.has_value() == !crossed.empty());
-    if (!hit) continue;
-    ++met;
-    CHECK(hit->distance == doctest::Approx(nearest).epsilon(1e-9));
-  }
-  CHECK(met > 1000);
 }

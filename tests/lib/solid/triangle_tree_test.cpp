@@ -16,33 +16,94 @@
 using namespace vam;
 using namespace vam::solid;
 
-TEST_CASE("nearest points are those of CGAL's AABB tree, from any start") {
+namespace {
+
+/// CGAL's tree of the same triangles.
+struct Judge {
   using Kernel = CGAL::Simple_cartesian<double>;
   using Triangles = std::vector<Kernel::Triangle_3>;
   using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  const auto any = [&](double size) { return Vector3{size * unit(random), size * unit(random), size * unit(random)}; };
+
+  explicit Judge(const std::vector<TriangleCorners>& soup) {
+    for (const TriangleCorners& t : soup) triangles.emplace_back(point(t[0]), point(t[1]), point(t[2]));
+    tree.insert(triangles.cbegin(), triangles.cend());
+    tree.build();
+  }
+  static Kernel::Point_3 point(const Vector3& p) { return {p[0], p[1], p[2]}; }
+
+  Triangles triangles;
+  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> tree;
+};
+
+/// Vectors with coordinates between -size and size.
+class AnyVector {
+ public:
+  explicit AnyVector(unsigned seed) : random_(seed) {}
+  Vector3 operator()(double size) { return {size * unit_(random_), size * unit_(random_), size * unit_(random_)}; }
+
+ private:
+  std::mt19937 random_;
+  std::uniform_real_distribution<double> unit_{-1, 1};
+};
+
+}  // namespace
+
+TEST_CASE("nearest points are those of CGAL's AABB tree, from any start") {
+  AnyVector any(1);
   std::vector<TriangleCorners> soup;  // long, short, needles, crossing each other
   for (int i = 0; i < 2000; ++i) {
     const Vector3 a = any(5);
     const Vector3 b = a + any(i % 3 == 0 ? 2 : 0.1);
     soup.push_back({a, b, i % 7 == 0 ? b + any(1e-5) : a + any(0.3)});
   }
-  Triangles judges;
-  const auto to_cgal = [](const Vector3& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
-  for (const TriangleCorners& t : soup) judges.emplace_back(to_cgal(t[0]), to_cgal(t[1]), to_cgal(t[2]));
-  const CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> judge(judges.cbegin(), judges.cend());
+  const Judge judge(soup);
   const TriangleTree tree(soup);
   for (int i = 0; i < 2000; ++i) {
     const Vector3 p = any(i % 2 == 0 ? 5 : 20);
-    const double wanted = std::sqrt(judge.squared_distance(to_cgal(p)));
+    const double wanted = std::sqrt(judge.tree.squared_distance(Judge::point(p)));
     const Nearest found = tree.nearest(p, i);
     CHECK(std::sqrt(found.distance2) == doctest::Approx(wanted).epsilon(1e-9));
     CHECK(length(p - found.point) == doctest::Approx(wanted).epsilon(1e-9));
     const Vector3 on = nearest_on(tree.triangles[found.triangle], p);
     CHECK(length(on - found.point) == 0);
   }
+}
+
+TEST_CASE("the first triangle that a short ray meets is that of CGAL's AABB tree, of all or of every other one") {
+  AnyVector any(3);
+  std::vector<TriangleCorners> soup;
+  for (int i = 0; i < 1500; ++i) {
+    const Vector3 a = any(3);
+    soup.push_back({a, a + any(0.7), a + any(0.7)});
+  }
+  const Judge judge(soup);
+  const TriangleTree tree(soup);
+  int met = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const bool every_other = i % 2 == 0;
+    const Vector3 from = any(3);
+    Vector3 along = any(1);
+    along = (1 / length(along)) * along;
+    constexpr double reach = 1.5;
+    const Judge::Kernel::Segment_3 way(Judge::point(from), Judge::point(from + reach * along));
+    std::vector<Judge::Primitive::Id> crossed;
+    judge.tree.all_intersected_primitives(way, std::back_inserter(crossed));
+    double nearest = 2 * reach;
+    for (const auto& id : crossed) {
+      if (every_other && (id - judge.triangles.cbegin()) % 2 != 0) continue;
+      const auto plane = id->supporting_plane();
+      const auto normal = plane.orthogonal_vector();
+      nearest = std::min(nearest, normal * (plane.point() - way.source()) / (normal * way.to_vector()) * reach);
+    }
+    const auto counts = [&](int triangle) { return tree.order[triangle] % 2 == 0; };
+    const auto hit =
+        every_other ? tree.first_hit(from, along, 0, reach, counts) : tree.first_hit(from, along, 0, reach);
+    CHECK(hit.has_value() == (nearest < 2 * reach));
+    if (!hit) continue;
+    ++met;
+    CHECK(hit->distance == doctest::Approx(nearest).epsilon(1e-9));
+  }
+  CHECK(met > 1000);
 }
 
 TEST_CASE("heights from above: a box on a box, and a ball") {
