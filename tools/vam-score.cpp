@@ -110,12 +110,12 @@ void run(const cli::App& app, Options& options) {
   require_files_for_outputs(options);
   const Inputs in = read(options);
   const std::string& file = options.target.empty() ? options.input : options.target;
-  tool::warn_of_grey(in.target(), file);
+  const bool is_grey = tool::warn_of_grey(in.target(), file);
   options.how.target = io::input_name(file);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
   require_known(conditions, options);
   score::Score result = tool::score_print(in.dose(), in.target(), options.how);
-  warn_of_gaps(result.unresolved(), in.target(), file);
+  if (!is_grey) warn_of_gaps(result.unresolved(), in.target(), file);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
   if (!options.lit_fraction.empty())

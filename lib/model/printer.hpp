@@ -29,6 +29,9 @@ struct Projector {
   double latency_ms = 0;                // from a vertical blank to the light
   double max_led_current_percent = 40;  // of the light engine; more is refused
   std::string relay;                    // dead-man relay on the lamp's power; empty: none
+
+  /// The rotation axis is in the image.
+  [[nodiscard]] bool shows_axis() const { return axis_column >= 0 && axis_column <= columns - 1; }
 };
 
 struct Vial {

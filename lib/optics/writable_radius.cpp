@@ -27,7 +27,7 @@ double reach_mm(const View& view) { return largest_invariant(view) / view.shells
 double writable_radius_mm(const model::Printer& printer) {
   const model::Projector& projector = printer.projector;
   const int last = projector.columns - 1;
-  if (projector.axis_column < 0 || projector.axis_column > last) {
+  if (!projector.shows_axis()) {
     throw Error{Fault::data, "projector: the rotation axis, at column " + format_number(projector.axis_column) +
                                  ", is outside its columns 0 to " + std::to_string(last) +
                                  "; check projector.axis_column and projector.columns"};

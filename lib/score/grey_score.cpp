@@ -29,6 +29,7 @@ const std::vector<Figure>& figure_list() {
       {"cv", "root mean square error"},
       {"iou", "1 - ver"},
       {"bias", "mean of dose - target in the part"},
+      {"prints", "1 if the verdict is 'met', else 0"},
   };
   return all;
 }
@@ -76,6 +77,7 @@ double GreyScore::figure(const std::string& name) const {
   if (name == "pw") return -worst_;
   if (name == "ipdr") return largest_;
   if (name == "cv") return std::sqrt(squares_ / all);
+  if (name == "prints") return is_met() ? 1 : 0;
   return name == "iou" ? 1 - ver : mismatch_ / static_cast<double>(part_);
 }
 

@@ -201,7 +201,7 @@ Json Score::figures() const {
   if (m.part == 0) {
     throw Error{Fault::data, options_.target +
                                  ": no voxel of it is wholly inside the part; slice it with smaller voxels, at "
-                                 "most half as large as its thinnest wall, or thicken the part"};
+                                 "most half as large as its thinnest wall, thicken the part, or judge doses with --grey-target"};
   }
   if (m.void_ == 0) {
     throw Error{Fault::data, options_.target +

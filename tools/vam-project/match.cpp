@@ -17,7 +17,7 @@ std::vector<std::string> require_printer(const Options& options, const model::St
                                          const model::Printer& printer) {
   if (info.kind != model::Kind::sinogram || info.space != model::Space::projector) return {};
   const model::Projector& projector = printer.projector;
-  if (!(projector.axis_column >= -0.5 && projector.axis_column <= projector.columns - 0.5)) {
+  if (!projector.shows_axis()) {
     throw Error{Fault::data, "projector.axis_column: " + format_number(projector.axis_column) +
                                  " is not in the image of " + std::to_string(projector.columns) +
                                  " columns; set it (vam-calibrate edges)"};

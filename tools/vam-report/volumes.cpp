@@ -78,7 +78,8 @@ std::string section_views(const Volumes& volumes, int count, bool outlined) {
     const bool around = volume.name() == "dose" || volume.name() == "target";
     if (around && insert != nullptr && insert->grid() == volume.grid()) within.insert = insert;
     views += sections(volume, volumes.files[n], within, plot::Plane::axial, count);
-    views += sections(volume, volumes.files[n], within, plot::Plane::coronal, (count + 1) / 2);
+    const int with_axis = count / 2 / 2 * 2 + 1;  // of an odd number the middle one
+    views += sections(volume, volumes.files[n], within, plot::Plane::coronal, with_axis);
   }
   return views;
 }

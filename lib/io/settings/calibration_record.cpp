@@ -166,9 +166,8 @@ void require_possible(model::Printer printer, const CalibrationRecord& record) {
     refuse("camera.tilt_deg: " + format_number(tilt_deg) + " is beyond " + format_number(most_tilt_deg) +
            " degrees; align the camera");
   }
-  const double column = printer.projector.axis_column;
-  if (record.json->at("scan") == "edges" && !(column >= 0 && column <= printer.projector.columns - 1)) {
-    refuse("projector.axis_column: " + format_number(column) + " is not in the image of " +
+  if (record.json->at("scan") == "edges" && !printer.projector.shows_axis()) {
+    refuse("projector.axis_column: " + format_number(printer.projector.axis_column) + " is not in the image of " +
            std::to_string(printer.projector.columns) + " columns");
   }
 }

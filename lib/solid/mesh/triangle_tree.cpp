@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 
 namespace vam::solid {
 
@@ -13,53 +14,92 @@ namespace {
 
 constexpr int leaf_size = 4;
 
-// Builds the nodes over an order of the triangles.
+/// Nodes of a tree over so many triangles: those of a level have as many each, or one more.
+int node_count(int triangles) {
+  int count = 0;
+  for (int width = 1;; width *= 2) {
+    count += width;
+    const int each = triangles / width;
+    if (each < leaf_size) return count;
+    if (each == leaf_size) return count + 2 * (triangles % width);
+  }
+}
+
+/// Builds the nodes over an order of the triangles. As the median splits, every node's place is known beforehand, and
+/// subtrees are built side by side.
 class TreeBuilder {
  public:
   TreeBuilder(const std::vector<TriangleCorners>& soup, std::vector<TriangleNode>& nodes) : soup_(soup), nodes_(nodes) {
     order_.resize(soup.size());
     std::iota(order_.begin(), order_.end(), 0);
     for (const TriangleCorners& t : soup) centroids_.push_back((1.0 / 3.0) * (t[0] + t[1] + t[2]));
-    nodes_.reserve(soup.size());
-    if (!soup.empty()) build(0, count_of(soup));
+    if (soup.empty()) return;
+    nodes_.resize(static_cast<std::size_t>(node_count(count_of(soup))));
+    build_from_the_top();
   }
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
 
  private:
+  struct Subtree {
+    int root, begin, end;
+  };
+
   [[nodiscard]] std::size_t at(int position) const { return static_cast<std::size_t>(order_[position]); }
 
-  void build(int begin, int end) {
-    const std::size_t index = nodes_.size();
-    nodes_.emplace_back();
-    TriangleNode node{.low = soup_[at(begin)][0], .high = soup_[at(begin)][0], .begin = begin, .end = end};
-    if (end - begin <= leaf_size) {
-      for (int i = begin; i < end; ++i) {
-        for (const Vector3& corner : soup_[at(i)]) grow(node.low, node.high, corner);
-      }
-      nodes_[index] = node;
-      return;
+  void build_from_the_top() {
+    constexpr int levels = 6;
+    constexpr int few = 1000;  // triangles: not worth a split
+    std::vector<std::vector<Subtree>> upper{{{0, 0, count_of(soup_)}}};
+    for (int level = 0; level < levels; ++level) {
+      const std::vector<Subtree>& wide = upper.back();
+      if (wide[0].end - wide[0].begin < few) break;
+      std::vector<Subtree> halves(2 * wide.size());
+      parallel_for(count_of(wide), [&](int i) {
+        const auto [left, right] = split(wide[i]);
+        halves[2 * static_cast<std::size_t>(i)] = left;
+        halves[2 * static_cast<std::size_t>(i) + 1] = right;
+      });
+      upper.push_back(std::move(halves));
     }
-    const int middle = split(begin, end);
-    build(begin, middle);
-    node.right = count_of(nodes_);
-    build(middle, end);
-    for (const std::size_t child : {index + 1, static_cast<std::size_t>(node.right)}) {
-      grow(node.low, node.high, nodes_[child].low);
-      grow(node.low, node.high, nodes_[child].high);
-    }
-    nodes_[index] = node;
+    parallel_for(count_of(upper.back()), [&](int i) { build(upper.back()[i]); });
+    for (auto level = upper.rbegin() + 1; level != upper.rend(); ++level)
+      for (const Subtree& node : *level) join_halves(nodes_[node.root], node.root);
   }
 
-  int split(int begin, int end) {
+  void build(const Subtree& tree) {
+    TriangleNode& node = nodes_[tree.root];
+    if (tree.end - tree.begin > leaf_size) {
+      const auto [left, right] = split(tree);
+      build(left);
+      build(right);
+      return join_halves(node, tree.root);
+    }
+    node = {.low = soup_[at(tree.begin)][0], .high = soup_[at(tree.begin)][0], .begin = tree.begin, .end = tree.end};
+    for (int i = tree.begin; i < tree.end; ++i)
+      for (const Vector3& corner : soup_[at(i)]) grow(node.low, node.high, corner);
+  }
+
+  /// Orders its triangles, and names its halves in its node.
+  std::pair<Subtree, Subtree> split(const Subtree& tree) {
+    const auto [root, begin, end] = tree;
     Vector3 low = centroids_[at(begin)];
     Vector3 high = low;
     for (int i = begin; i < end; ++i) grow(low, high, centroids_[at(i)]);
     const Vector3 size = high - low;
     const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
-    const int middle = (begin + end) / 2;
+    const int middle = begin + (end - begin) / 2;
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                      [&](int a, int b) { return centroids_[a][axis] < centroids_[b][axis]; });
-    return middle;
+    const int right = root + 1 + node_count(middle - begin);
+    nodes_[root] = {.begin = begin, .end = end, .right = right};
+    return {{root + 1, begin, middle}, {right, middle, end}};
+  }
+
+  void join_halves(TriangleNode& node, int root) const {
+    node.low = nodes_[root + 1].low;
+    node.high = nodes_[root + 1].high;
+    grow(node.low, node.high, nodes_[node.right].low);
+    grow(node.low, node.high, nodes_[node.right].high);
   }
 
   static void grow(Vector3& low, Vector3& high, const Vector3& p) {
