@@ -87,4 +87,9 @@ TEST_CASE("a single slice is lit by four copies of it at an eighth of the angles
   auto later = parts::turn(64, 96);
   later.angle_start_rad = 0.01;
   CHECK(ParallelOperator(later).for_one_slice() == nullptr);
+  CHECK(ParallelOperator(parts::turn(64, 96).with_alpha(-0.01)).for_one_slice() == nullptr);
+  auto oblong = parts::turn(64, 96);
+  oblong.ny = 66;
+  oblong.axis_y += 1;
+  CHECK(ParallelOperator(oblong).for_one_slice() == nullptr);
 }
