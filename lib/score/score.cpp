@@ -199,9 +199,10 @@ double Score::print_threshold() const {
 Json Score::figures() const {
   const auto m = metrics();
   if (m.part == 0) {
-    throw Error{Fault::data, options_.target +
-                                 ": no voxel of it is wholly inside the part; slice it with smaller voxels, at "
-                                 "most half as large as its thinnest wall, thicken the part, or judge doses with --grey-target"};
+    throw Error{Fault::data,
+                options_.target +
+                    ": no voxel of it is wholly inside the part; slice it with smaller voxels, at "
+                    "most half as large as its thinnest wall, thicken the part, or judge doses with --grey-target"};
   }
   if (m.void_ == 0) {
     throw Error{Fault::data, options_.target +
