@@ -51,6 +51,7 @@ inline void state_surface(Facts& facts, const model::PartSurface& surface) {
   };
   facts["vam:thin_walls"] = text(surface.walls);
   facts["vam:thin_gaps"] = text(surface.gaps);
+  facts["vam:blocked_gaps"] = text(surface.blocked);
   facts["vam:thin_relief"] = text(surface.relief);
   if (surface.solids > 0) facts["vam:solids"] = std::to_string(surface.solids);
   if (surface.solids > 0 && surface.specks > 0) facts["vam:specks"] = std::to_string(surface.specks);
@@ -70,15 +71,16 @@ inline std::optional<model::PartSurface> stated_surface(const Facts& facts) {
   };
   const auto walls = places("vam:thin_walls");
   const auto gaps = places("vam:thin_gaps");
+  const auto blocked = places("vam:blocked_gaps");
   const auto relief = places("vam:thin_relief");
-  if (!walls || !gaps || !relief) return std::nullopt;
+  if (!walls || !gaps || !blocked || !relief) return std::nullopt;
   const auto count = [&](const char* name) {
     constexpr double most = 1e6;
     const double number = stated_number(facts, name).value_or(0);
     return number >= 0 && number <= most ? static_cast<int>(number) : 0;
   };
   const int solids = count("vam:solids");
-  return model::PartSurface{*walls, *gaps, *relief, solids, std::min(count("vam:specks"), solids)};
+  return model::PartSurface{*walls, *gaps, *blocked, *relief, solids, std::min(count("vam:specks"), solids)};
 }
 
 /// The dose at which the projections print, in the unit of the dose.

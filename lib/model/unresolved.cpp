@@ -89,7 +89,7 @@ std::string Unresolved::thin_places() const {
   std::string text;
   if (surface->has_thin_walls() && !loses_walls()) text = voxels_of("walls", surface->places.walls);
   if (surface->has_thin_gaps() && !shuts_gaps())
-    text += (text.empty() ? "" : " and ") + voxels_of("gaps", surface->places.gaps);
+    text += (text.empty() ? "" : " and ") + voxels_of("gaps", surface->thin_gaps());
   if (text.empty() && surface->has_relief() && !loses_walls() && !shuts_gaps())
     text = voxels_of("ridges and grooves", surface->places.relief);
   return text;

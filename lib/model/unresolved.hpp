@@ -60,7 +60,7 @@ struct Unresolved {
     return (loses_much() || loses_rods()) && (!surface || surface->may_lose_walls());
   }
   [[nodiscard]] bool loses_much() const { return lost_share() > 1e-3; }
-  [[nodiscard]] bool loses_rods() const { return lost_walls.far > 0.5; }
+  [[nodiscard]] bool loses_rods() const { return lost_walls.far > 2; }
   /// "walls of 0.9 voxels and gaps of 0.4 voxels", or ridges and grooves where there are neither: what the part's own
   /// surface shows to be thin, and is not known to be lost. Empty: nothing.
   [[nodiscard]] std::string thin_places() const;

@@ -14,16 +14,18 @@ namespace vam::plot {
 
 namespace {
 
-enum Cure : std::size_t { empty, cured, missing, overcured };
+enum Cure : std::size_t { empty, cured, missing, overcured, cut_missing, cut_overcured };
 
-constexpr std::array<Rgb, 4> colours{paint::white, Rgb{150, 150, 150}, paint::blue, paint::vermilion};
+constexpr std::array<Rgb, 6> colours{paint::white,     Rgb{150, 150, 150}, paint::blue,
+                                     paint::vermilion, Rgb{150, 200, 235}, Rgb{245, 190, 140}};
 
 /// `share`: of the part that is missing.
-Cure cure_of(float dose, model::Label label, float share, double threshold) {
+Cure cure_of(float dose, float coverage, float share, double threshold) {
   if (share > 0) return missing;
   const bool printed = static_cast<double>(dose) >= threshold;
-  if (label == model::Label::void_) return printed ? overcured : empty;
-  return printed ? cured : empty;
+  if (model::label_of(coverage) == model::Label::void_) return printed ? overcured : empty;
+  if (printed) return model::half_covered(coverage) ? cured : cut_overcured;
+  return model::half_covered(coverage) ? cut_missing : empty;
 }
 
 /// What is seen: of the part its volume, of the judged void its voxels, and how they cure.
@@ -70,7 +72,7 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
     for (int y = 0; y < picture.height; ++y) {
       for (int x = 0; x < picture.width; ++x) {
         const model::Label label = model::label_of(parts[n](x, y));
-        const Cure cure = cure_of(doses[n](x, y), label, shares[n](x, y), threshold);
+        const Cure cure = cure_of(doses[n](x, y), parts[n](x, y), shares[n](x, y), threshold);
         picture(x, y) = colours[cure];
         const auto [i, j] = plane_column(dose.grid(), options.plane, sections.indices[n], x, y);
         if (!hidden.empty() && model::half_covered(hidden[n](x, y))) continue;
@@ -89,15 +91,15 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
   }
   views::set_section_axes(figure, dose.grid(), options);
   figure.outline_name = "surface of the target";
-  figure.legend = {
-      {Mark::patch, colours[cured], "cured"},
-      {Mark::patch, colours[missing], with_share("missing", counts.missing, counts.part, "part")},
-      {Mark::patch, colours[overcured], with_share("overcured", counts.overcured, counts.outside, "void")},
-      {Mark::none,
-       {},
-       "voxels that the surface cuts are wrong only in walls that are missing; " +
-           std::string(insert == nullptr ? "void beyond the writable circle is not counted"
-                                         : "the insert, and void beyond the writable circle, are not counted")}};
+  figure.legend = {{Mark::patch, colours[cured], "cured"},
+                   {Mark::patch, colours[missing], with_share("missing", counts.missing, counts.part, "part")},
+                   {Mark::patch, colours[overcured], with_share("overcured", counts.overcured, counts.outside, "void")},
+                   {Mark::patch, colours[cut_missing], "not cured, cut by the surface (half or more is part)"},
+                   {Mark::patch, colours[cut_overcured], "cured, cut by the surface (less than half is part)"},
+                   {Mark::none,
+                    {},
+                    insert == nullptr ? "void beyond the writable circle is not counted"
+                                      : "the insert, and void beyond the writable circle, are not counted"}};
   figure.title = options.title.value_or(options.name + ": cured at " + format_number(threshold, 4) + " " + dose.units +
                                         views::sections_text(sections, options.plane));
   return figure;

@@ -23,7 +23,7 @@ quiet "surface voxels as figures of their own" vam-score --grid target part.vdb 
 is "the verdict has the window of --surface" "$(json all.json pw)" "$(json perfect.json with_surface.pw)"
 
 vam-slice --shape box:x=4,y=4,z=0.2 --voxel 0.3 -o thin.vdb 2>err
-fails 65 'thin.vdb: no voxel of it is wholly inside the part; slice it with smaller voxels, at most half as large as its thinnest wall, or thicken the part' \
+fails 65 'thin.vdb: no voxel of it is wholly inside the part; slice it with smaller voxels, at most half as large as its thinnest wall, thicken the part, or judge doses with --grey-target' \
   vam-score --grid target thin.vdb
 
 # Two plates with a slit of half a voxel between them: no void voxel is in it.

@@ -174,7 +174,7 @@ solid::Part without_surface(solid::Part part) {
 model::Unresolved of_printers_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
   if (plan.wall_resolution == 1) return fine.content.unresolved;
   model::Unresolved told;
-  if (part.surface) told.surface = {part.surface(plan.grid.voxel_mm), plan.grid.voxel_mm};
+  if (part.surface) told.surface = {part.surface(plan.grid), plan.grid.voxel_mm};
   return told;
 }
 

@@ -118,7 +118,7 @@ std::vector<Layer> layers_of(const io::SparseVolume& target, const std::optional
   design.limit = colour_limit(design.values, 1);
   design.unit = "%";
   design.meaning = "dose on the design's surface relative to the threshold; blue: too low";
-  Layer printed{"print", solid::isosurface(dose, print->threshold), {}, 1, "mm", ""};
+  Layer printed{"print", solid::fine_isosurface(dose, print->threshold), {}, 1, "mm", ""};
   if (printed.mesh.triangles.empty() || !shows) return layers;
   const std::vector<float> away = solid::Surface(resolved).signed_distances(printed.mesh.points);
   printed.values.assign(away.begin(), away.end());

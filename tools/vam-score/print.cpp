@@ -21,7 +21,7 @@ void write_print(const Options& options, const io::SparseVolume& dose, double th
   const auto read_slices = [&](int k, int count, float* out) { dose.read_slices(k, count, out); };
   const std::vector<std::string> comments{"threshold dose " + format_number(threshold) + " " + dose.units};
   if (options.print_as == "mesh") {
-    auto mesh = solid::isosurface(dose.grid(), read_slices, threshold);
+    auto mesh = solid::fine_isosurface(dose.grid(), read_slices, threshold);
     require_print(mesh.triangles.empty());
     tool::unstretch(mesh, dose.metadata);
     for (const std::string& ending : io::written_mesh_endings())

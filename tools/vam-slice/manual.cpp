@@ -86,7 +86,9 @@ std::vector<std::string> notes() {
       "Test shapes are accurate to 2e-4 of their volume for features of a few voxels.",
       "Walls and gaps of a mesh between faces less than 2 voxels apart, and ridges and grooves of less than 1.5 voxels "
       "side by side, cause a warning with their thickness, a place and the voxels that resolve them; those below 1.5 "
-      "voxels leave the verdict of vam-score and vam-optimize in doubt. Faces are found by short rays along the "
+      "voxels leave the verdict of vam-score and vam-optimize in doubt, and so do gaps below 2.83 voxels, such as "
+      "bores, where no voxel at their middle or beside it is wholly outside the part (blocked_gaps in the report). "
+      "Faces are found by short rays along the "
       "normals "
       "from points on the surface, one for each face of a voxel, 200000 at most; a wall counts from two such faces on, "
       "ridges from 30. Faces that would meet within six voxels or four times their distance, as at the edge of a wedge "

@@ -15,7 +15,7 @@ constexpr double air = 1.04;  // of the square around the body
 }
 
 model::TriangleSoup surface_of(const io::SparseVolume& volume, double level, const io::SparseVolume& part) {
-  model::TriangleSoup mesh = solid::isosurface(
+  model::TriangleSoup mesh = solid::fine_isosurface(
       volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, level);
   tool::unstretch(mesh, part.metadata);
   return mesh;

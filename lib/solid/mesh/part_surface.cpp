@@ -109,6 +109,42 @@ void leave_outer(Crossings& all, const SurfaceTree& surface, double voxel_mm) {
   all = std::move(some);
 }
 
+/// The voxels of a grid, which goes on beyond its ends, and the part that is on them.
+class Voxels {
+ public:
+  Voxels(const SurfaceTree& surface, const model::Grid& grid) : surface_(surface), grid_(grid) {}
+  /// Whether the voxel that holds a point, or one of its 26 neighbours, is wholly outside the part.
+  [[nodiscard]] bool has_void_near(const Vector3& point) const {
+    constexpr int neighbours = 27;
+    for (int n = 0; n < neighbours; ++n) {
+      const std::array<int, 3> step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+      Vector3 centre{};
+      for (std::size_t d = 0; d < 3; ++d) {
+        const double at = std::round((point[d] - grid_.origin_mm[d]) / grid_.voxel_mm) + step[d];
+        centre[d] = grid_.origin_mm[d] + at * grid_.voxel_mm;
+      }
+      if (!surface_.tree->meets_cube(centre, touched * grid_.voxel_mm) && surface_.winding()(centre) < 0.5) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr double touched = 0.499;  // half of a side: what cuts off less is rounding
+  const SurfaceTree& surface_;
+  const model::Grid& grid_;
+};
+
+/// Of the gaps those that no voxel resolves.
+std::vector<std::optional<Crossing>> blocked(const std::vector<std::optional<Crossing>>& gaps, const Voxels& voxels,
+                                             double voxel_mm) {
+  std::vector<std::optional<Crossing>> found(gaps.size());
+  parallel_for(count_of(gaps), [&](int i) {
+    const auto& gap = gaps[i];
+    if (gap && gap->is_between_faces(voxel_mm) && !voxels.has_void_near(gap->at(0.5 * gap->distance))) found[i] = gap;
+  });
+  return found;
+}
+
 /// The n-th shortest way, and the area of all.
 model::ThinPlaces summary(std::vector<Crossing> crossings, std::size_t n, double area_mm2) {
   if (crossings.size() <= n) return {};
@@ -118,10 +154,12 @@ model::ThinPlaces summary(std::vector<Crossing> crossings, std::size_t n, double
   return {area_mm2, at->distance, at->at(0.5 * at->distance)};
 }
 
-model::ThinPlaces between_faces(const std::vector<std::optional<Crossing>>& crossings, double each, double voxel_mm) {
+/// Of those that are at most so long.
+model::ThinPlaces between_faces(const std::vector<std::optional<Crossing>>& crossings, double most, double each,
+                                double voxel_mm) {
   std::vector<Crossing> found;
   for (const auto& one : crossings)
-    if (one && one->is_between_faces(voxel_mm)) found.push_back(*one);
+    if (one && one->distance <= most && one->is_between_faces(voxel_mm)) found.push_back(*one);
   const double enough = std::max(2.0, least_area * voxel_mm * voxel_mm / each);
   const double area_mm2 = each * static_cast<double>(found.size());
   return summary(std::move(found), static_cast<std::size_t>(enough) - 1, area_mm2);
@@ -165,9 +203,10 @@ model::ThinPlaces relief(const Crossings& all, double voxel_mm) {
 
 }  // namespace
 
-model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& repaired, double voxel_mm) {
+model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& repaired, const model::Grid& grid) {
   const SurfaceTree surface(mesh);
   if (surface.tree->triangles.empty()) return {};
+  const double voxel_mm = grid.voxel_mm;
   const double face = voxel_mm * voxel_mm;
   const double area = area_of(mesh);
   Crossings all;
@@ -175,12 +214,20 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   all.each = area / static_cast<double>(all.samples.size());
   const double touching = least_gap * voxel_mm;
   const SeparateSolids solids(surface, repaired, all.samples, touching, least_solid * face * voxel_mm);
-  const double reach = model::lost_voxels * voxel_mm;
-  cross(surface, solids, all.samples, -1, own * reach, reach, all.inwards);
+  const double lost = model::lost_voxels * voxel_mm;
+  const double reach = model::free_voxels * voxel_mm;
+  cross(surface, solids, all.samples, -1, own * lost, lost, all.inwards);
   cross(surface, solids, all.samples, 1, touching, reach, all.outwards);
   leave_outer(all, surface, voxel_mm);
-  return {between_faces(all.inwards, all.each, voxel_mm), between_faces(all.outwards, all.each, voxel_mm),
-          relief(all, voxel_mm), solids.count(), solids.specks()};
+  const auto without_void = blocked(all.outwards, Voxels(surface, grid), voxel_mm);
+  model::PartSurface found;
+  found.walls = between_faces(all.inwards, lost, all.each, voxel_mm);
+  found.gaps = between_faces(all.outwards, lost, all.each, voxel_mm);
+  found.blocked = between_faces(without_void, reach, all.each, voxel_mm);
+  found.relief = relief(all, voxel_mm);
+  found.solids = solids.count();
+  found.specks = solids.specks();
+  return found;
 }
 
 }  // namespace vam::solid

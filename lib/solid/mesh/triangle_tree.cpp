@@ -2,6 +2,7 @@
 #include "solid/mesh/private/triangle_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 
@@ -140,6 +141,29 @@ std::optional<double> distance_to(const TriangleCorners& triangle, const Vector3
   return dot(ac, q) / determinant;
 }
 
+/// Whether a plane across this direction has the cube around the origin on one side and the triangle on the other.
+bool is_between(const Vector3& direction, const TriangleCorners& triangle, double half_side) {
+  const double reach = half_side * (std::abs(direction[0]) + std::abs(direction[1]) + std::abs(direction[2]));
+  const auto [low, high] =
+      std::minmax({dot(direction, triangle[0]), dot(direction, triangle[1]), dot(direction, triangle[2])});
+  return low > reach || high < -reach;
+}
+
+/// The cube around the origin [AM01]: they are apart if a plane across an axis, the triangle's normal, or an axis and
+/// an edge is between them.
+bool meets(const TriangleCorners& triangle, double half_side) {
+  const std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
+  if (is_between(twice_area(triangle), triangle, half_side)) return false;
+  for (const Vector3& axis : axes) {
+    if (is_between(axis, triangle, half_side)) return false;
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Vector3 edge = triangle[(side + 1) % 3] - triangle[side];
+      if (is_between(cross(axis, edge), triangle, half_side)) return false;
+    }
+  }
+  return true;
+}
+
 bool overlap(const TriangleNode& node, const Vector3& low, const Vector3& high) {
   for (std::size_t d = 0; d < 3; ++d) {
     if (node.low[d] > high[d] || node.high[d] < low[d]) return false;
@@ -217,6 +241,28 @@ std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& a
     }
   }
   return first;
+}
+
+bool TriangleTree::meets_cube(const Vector3& centre, double half_side) const {
+  const Vector3 half{half_side, half_side, half_side};
+  std::array<int, 64> stack;  // the median split keeps the depth below 32
+  std::size_t waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const int index = stack[--waiting];
+    const TriangleNode& node = nodes[index];
+    if (!overlap(node, centre - half, centre + half)) continue;
+    if (node.right != 0) {
+      stack[waiting++] = node.right;
+      stack[waiting++] = index + 1;
+      continue;
+    }
+    for (int i = node.begin; i < node.end; ++i) {
+      const auto& [a, b, c] = triangles[i];
+      if (meets({a - centre, b - centre, c - centre}, half_side)) return true;
+    }
+  }
+  return false;
 }
 
 std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh, std::vector<int>* places) {

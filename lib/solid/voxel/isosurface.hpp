@@ -20,6 +20,12 @@ using ReadSlices = std::function<void(int k, int count, float* out)>;
 [[nodiscard]] model::TriangleSoup isosurface(const model::Grid& grid, const ReadSlices& read, double level);
 [[nodiscard]] model::TriangleSoup isosurface(const model::Volume& volume, double level);
 
+/// The same, of voxels half as large, which the field is interpolated on, unless that would be more than a million
+/// triangles or so: where one voxel holds several of the surface's sheets, as around rods and gaps of two voxels, one
+/// vertex cannot follow them.
+[[nodiscard]] model::TriangleSoup fine_isosurface(const model::Grid& grid, const ReadSlices& read, double level);
+[[nodiscard]] model::TriangleSoup fine_isosurface(const model::Volume& volume, double level);
+
 /// Centres in mm of the voxels with value >= level, and their values: the print as a point cloud [CAL17 fig 8].
 struct PrintedPoints {
   model::TriangleSoup points;  // without triangles

@@ -53,9 +53,10 @@ Part lifted(Part part, double lift_mm) {
     return fill(grid, sink);
   };
   if (!part.surface) return part;
-  part.surface = [lift_mm, surface = std::move(part.surface)](double voxel_mm) {
-    model::PartSurface places = surface(voxel_mm);
-    for (auto* kind : {&places.walls, &places.gaps, &places.relief}) kind->at_mm[2] += lift_mm;
+  part.surface = [lift_mm, surface = std::move(part.surface)](model::Grid grid) {
+    grid.origin_mm[2] -= lift_mm;
+    model::PartSurface places = surface(grid);
+    for (auto* kind : {&places.walls, &places.gaps, &places.blocked, &places.relief}) kind->at_mm[2] += lift_mm;
     return places;
   };
   return part;
@@ -102,7 +103,7 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
     if (voted) require_settled(vote, repair, is_tiny(extent, grid.voxel_mm), subject);
     return vote;
   };
-  part.surface = [kept, repair = *part.repair](double voxel_mm) { return part_surface(*kept, repair, voxel_mm); };
+  part.surface = [kept, repair = *part.repair](const model::Grid& grid) { return part_surface(*kept, repair, grid); };
   return part;
 }
 
@@ -154,7 +155,7 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
     sink(k0, count, slices);
   });
   content.unresolved = finder.found();
-  if (part.surface) content.unresolved.surface = {part.surface(grid.voxel_mm), grid.voxel_mm};
+  if (part.surface) content.unresolved.surface = {part.surface(grid), grid.voxel_mm};
   if (voxels == 0) {
     throw Error{Fault::data, part.subject + ": covers no voxel of " + format_number(grid.voxel_mm) +
                                  " mm; check its unit and the voxel size"};
@@ -185,6 +186,7 @@ Json figures(const Part& part, const FillSummary& content, const model::Grid& gr
     report["solids"] = surface->places.solids > 0 ? Json(surface->places.solids) : Json(nullptr);
     report["thin_walls"] = places(surface->places.walls);
     report["thin_gaps"] = places(surface->places.gaps);
+    report["blocked_gaps"] = places(surface->places.blocked);
     report["thin_relief"] = places(surface->places.relief);
   }
   if (part.repair) {

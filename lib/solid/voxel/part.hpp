@@ -27,7 +27,7 @@ struct Part {
   bool voted = false;            // inside is found by vote
   Lattice lattice;
   std::function<Vote(const model::Grid&, const SliceSink&)> fill;
-  std::function<model::PartSurface(double voxel_mm)> surface;  // empty: the part has no surface of its own
+  std::function<model::PartSurface(const model::Grid&)> surface;  // empty: the part has no surface of its own
 };
 
 /// The part of a shape (see make_shape) under a placement.

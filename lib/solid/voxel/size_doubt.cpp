@@ -30,9 +30,9 @@ std::string heights(int first, int end, const model::Grid& grid, double stretch_
          format_number(grid.z_mm(end - 0.5) / stretch_z, 3) + " mm";
 }
 
-/// Of which these are no longer narrow, in two digits.
-double resolving_mm(const model::ThinPlaces& places) {
-  const double mm = places.mm / model::narrow_voxels;
+/// Of which these are so many across, in two digits.
+double resolving_mm(const model::ThinPlaces& places, double voxels = model::narrow_voxels) {
+  const double mm = places.mm / voxels;
   const double digit = std::pow(10, std::floor(std::log10(mm)) - 1);
   constexpr double rounding = 1e-6;
   return std::floor(mm / digit + rounding) * digit;
@@ -47,16 +47,17 @@ const model::ThinPlaces* cause_of(const model::Unresolved& unresolved, model::Th
   return surface->has_relief() ? &surface->places.relief : nullptr;
 }
 
-/// "part.stl: walls of 0.27 mm are too fine for voxels of 0.3 mm, as near (1, 2, 3) mm, and whether they print is not
-/// judged; voxels of 0.14 mm resolve them"
-std::string place_doubt(const std::string& subject, const char* kind, const char* otherwise,
-                        const model::ThinPlaces& places, const model::Grid& grid, double stretch_z) {
+constexpr const char* unknown = "whether they print is not judged";
+
+/// "part.stl: walls of 0.27 mm are too fine for voxels of 0.3 mm, as near (1, 2, 3) mm, and may not print; voxels of
+/// 0.14 mm resolve them": of so many voxels across.
+std::string place_doubt(const std::string& subject, const std::string& kind, const std::string& outcome,
+                        const model::ThinPlaces& places, double voxels, const model::Grid& grid, double stretch_z) {
   const auto& [x, y, z] = places.at_mm;
-  const bool judged = !places.are_below(model::thin_voxels, grid.voxel_mm);
   return subject + ": " + kind + " of " + format_number(places.mm, 2) + " mm are too fine for voxels of " +
          format_number(grid.voxel_mm, 3) + " mm, as near (" + format_number(x, 3) + ", " + format_number(y, 3) + ", " +
-         format_number(z / stretch_z, 3) + ") mm, and " + (judged ? otherwise : "whether they print is not judged") +
-         "; voxels of " + format_number(resolving_mm(places), 2) + " mm resolve them";
+         format_number(z / stretch_z, 3) + ") mm, and " + outcome + "; voxels of " +
+         format_number(resolving_mm(places, voxels), 2) + " mm resolve them";
 }
 
 /// Of walls that are lost, if they are a thousandth of the part or more, and of rods.
@@ -133,16 +134,21 @@ std::vector<std::string> resolution_doubts(const std::string& subject, const mod
   if (unresolved.loses_walls()) {
     doubts.push_back(wall_doubt(subject, unresolved, grid, stretch_z));
   } else if (surface && surface->places.walls.are_below(model::narrow_voxels, grid.voxel_mm)) {
-    doubts.push_back(place_doubt(subject, "walls", "may not print", surface->places.walls, grid, stretch_z));
+    doubts.push_back(place_doubt(subject, "walls",
+                                 surface->has_thin_walls() ? unknown : "may not print, as vam-score tells",
+                                 surface->places.walls, model::narrow_voxels, grid, stretch_z));
   }
   if (unresolved.shuts_gaps()) {
     doubts.push_back(gap_doubt(subject, unresolved, grid, stretch_z));
+  } else if (surface && surface->has_thin_gaps()) {
+    doubts.push_back(place_doubt(subject, "gaps", unknown, surface->thin_gaps(), model::free_voxels, grid, stretch_z));
   } else if (surface && surface->places.gaps.are_below(model::narrow_voxels, grid.voxel_mm)) {
-    doubts.push_back(place_doubt(subject, "gaps", "may be printed shut", surface->places.gaps, grid, stretch_z));
+    doubts.push_back(place_doubt(subject, "gaps", "may be printed shut, as vam-score tells", surface->places.gaps,
+                                 model::narrow_voxels, grid, stretch_z));
   }
   if (doubts.empty() && surface && surface->has_relief())
-    doubts.push_back(
-        place_doubt(subject, "ridges and grooves", "may be printed smooth", surface->places.relief, grid, stretch_z));
+    doubts.push_back(place_doubt(subject, "ridges and grooves", unknown, surface->places.relief, model::narrow_voxels,
+                                 grid, stretch_z));
   if (doubts.empty() && unresolved.leaves_doubt()) doubts.push_back(thin_doubt(subject, unresolved, grid, stretch_z));
   return doubts;
 }

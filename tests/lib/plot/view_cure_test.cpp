@@ -2,6 +2,7 @@
 // What cures, is missing or too much, in a picture.
 #include <doctest/doctest.h>
 
+#include <tuple>
 #include <vector>
 
 #include "plot/view.hpp"
@@ -10,10 +11,12 @@ using namespace vam::io;
 using namespace vam::plot;
 using vam::Rgb;
 
-TEST_CASE("the cure map tells what is missing and what is too much, but not where the surface cuts") {
+TEST_CASE("the cure map tells what is missing and what is too much, and where the surface cuts") {
   const auto grid = vam::model::centred_grid(5, 1, 1, 1.0, 0);
   SparseVolume target("target", grid);
   const std::vector<float> covered{1, 1, 0.5F, 0, 0};
+  const Rgb cut_missing{150, 200, 235};
+  const Rgb cut_cured{245, 190, 140};
   target.write_slices(0, 1, covered.data());
   SparseVolume dose("dose", grid);
   const std::vector<float> doses{0.4F, 1, 0.2F, 0.6F, 0.1F};
@@ -21,9 +24,20 @@ TEST_CASE("the cure map tells what is missing and what is too much, but not wher
   const vam::model::Circle all{2, 0, 2};
   const ImageFigure figure = view_cure(dose, target, 0.5, all, {});
   const auto& seen = figure.panels[0].picture.values;
-  CHECK(seen == std::vector<Rgb>{paint::blue, {150, 150, 150}, paint::white, paint::vermilion, paint::white});
+  CHECK(seen == std::vector<Rgb>{paint::blue, {150, 150, 150}, cut_missing, paint::vermilion, paint::white});
   CHECK(figure.legend[1].words == "missing (40 % of the part seen)");  // 1 of 2.5 voxels
   CHECK(figure.legend[2].words == "overcured (50 % of the void seen)");
+  for (const auto& [coverage, dose_there, colour] :
+       {std::tuple{0.4F, 0.6F, cut_cured}, {0.4F, 0.4F, paint::white}, {0.6F, 0.6F, Rgb{150, 150, 150}}}) {
+    std::vector<float> cut = covered;
+    std::vector<float> there = doses;
+    cut[2] = coverage;
+    there[2] = dose_there;
+    SparseVolume target2("target", grid), dose2("dose", grid);
+    target2.write_slices(0, 1, cut.data());
+    dose2.write_slices(0, 1, there.data());
+    CHECK(view_cure(dose2, target2, 0.5, all, {}).panels[0].picture(2, 0) == colour);
+  }
   // Void outside the circle is seen, but not judged.
   const vam::model::Circle inner{2, 0, 1};
   const ImageFigure judged = view_cure(dose, target, 0.5, inner, {});
@@ -64,5 +78,5 @@ TEST_CASE("the cure map shows walls that no voxel is half covered by, and where 
   CHECK(view_cure(dose, target, 0.5, all, {}).title == ": cured at 0.5 relative, axial section at z = 2 mm");
   doses[9 * 7 + 4] = 1;  // it prints all the same
   dose.write_slices(0, grid.nz, doses.data());
-  CHECK(view_cure(dose, target, 0.5, all, along).panels[0].picture(1, 1) == Rgb{150, 150, 150});
+  CHECK(view_cure(dose, target, 0.5, all, along).panels[0].picture(1, 1) == Rgb{245, 190, 140});
 }

@@ -27,9 +27,41 @@ Mesh turned(Mesh mesh) {
   return mesh;
 }
 
-model::VoxelisedSurface seen(Mesh mesh, double voxel_mm = 1) {
+/// By voxels of which one has its centre there.
+model::VoxelisedSurface seen(Mesh mesh, double voxel_mm = 1, const std::array<double, 3>& centre_mm = {}) {
   const Repair repaired = repair(mesh, "test");
-  return {part_surface(mesh, repaired, voxel_mm), voxel_mm};
+  model::Grid grid = model::centred_grid(1, 1, 1, voxel_mm);
+  grid.origin_mm = centre_mm;
+  return {part_surface(mesh, repaired, grid), voxel_mm};
+}
+
+/// A round block along z of radius 8 and height 12, with a bore around its axis.
+Mesh bored(double wide) {
+  Mesh mesh;
+  constexpr int facets = 64;
+  const double to_facet = 1 / std::cos(std::numbers::pi / facets);
+  for (const double radius : {8.0, 0.5 * wide * to_facet}) {
+    for (const double z : {-6.0, 6.0}) {
+      for (int n = 0; n < facets; ++n) {
+        const double angle = 2 * std::numbers::pi * n / facets;
+        mesh.points.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+      }
+    }
+  }
+  const auto quads = [&](int low, int high) {  // rings of points
+    for (int n = 0; n < facets; ++n) {
+      const int a = low * facets + n;
+      const int b = low * facets + (n + 1) % facets;
+      const int up = (high - low) * facets;
+      mesh.triangles.push_back({a, b, b + up});
+      mesh.triangles.push_back({a, b + up, a + up});
+    }
+  };
+  quads(0, 1);
+  quads(1, 3);
+  quads(3, 2);
+  quads(2, 0);
+  return mesh;
 }
 
 /// A tooth every `pitch` along x, of that height, on a block.
@@ -100,11 +132,30 @@ TEST_CASE("a slit is a gap below one and a half voxels; the side counts in voxel
     CHECK(thin.places.gaps.area_mm2 == doctest::Approx(400).epsilon(0.15));
     CHECK(!thin.has_thin_walls());
   }
-  CHECK(!seen(slit(1.6)).leaves_doubt());
-  CHECK(seen(slit(1.6)).places.gaps.mm == doctest::Approx(1.6));
+  CHECK(!seen(slit(2)).leaves_doubt());
+  CHECK(seen(slit(2)).places.gaps.mm == doctest::Approx(2));
   CHECK(!seen(slit(2.4)).may_lose_gaps());
   CHECK(seen(slit(1.6), 2).has_thin_gaps());
   CHECK(!seen(slit(0.6), 0.3).leaves_doubt());
+}
+
+TEST_CASE("a bore is a gap where no voxel is wholly within it, up to the diagonals of two voxels' faces") {
+  for (const double wide : {1.6, 2.0, 2.75}) {
+    CAPTURE(wide);
+    const auto between = seen(bored(wide), 1, {0.5, 0.5, 0});  // four voxels share it
+    CHECK(between.has_thin_gaps());
+    CHECK(between.thin_gaps().mm == doctest::Approx(wide).epsilon(0.01));
+    CHECK(between.thin_gaps().area_mm2 == doctest::Approx(12 * std::numbers::pi * wide).epsilon(0.15));
+    CHECK(!between.has_thin_walls());
+    CHECK(!seen(bored(wide)).leaves_doubt());  // one lies in its middle
+  }
+  CHECK(seen(bored(1.3)).has_thin_gaps());
+  CHECK(!seen(bored(2.9), 1, {0.5, 0.5, 0}).leaves_doubt());
+  CHECK(seen(bored(2.9), 2, {1, 1, 0}).has_thin_gaps());
+  // A square slot of 1.8 voxels between two rows of them, and along one.
+  const Mesh slot = oracle::join(oracle::box({-9, -9, -9}, {-0.9, 9, 9}), oracle::box({0.9, -9, -9}, {9, 9, 9}));
+  CHECK(seen(slot, 1, {0.5, 0, 0}).has_thin_gaps());
+  CHECK(!seen(slot).leaves_doubt());
 }
 
 TEST_CASE("balls that nearly touch have a gap, those farther apart none, and a ball has no wall") {
@@ -197,5 +248,5 @@ TEST_CASE("of an open mesh the surface is taken as it is") {
   Mesh open = plate;
   open.triangles.pop_back();
   CHECK(seen(turned(oracle::join(oracle::box({-10, -10, -10}, {10, 10, 0}), open))).has_thin_walls());
-  CHECK(part_surface({}, {}, 1).walls.area_mm2 == 0);
+  CHECK(part_surface({}, {}, model::centred_grid(1, 1, 1, 1)).walls.area_mm2 == 0);
 }

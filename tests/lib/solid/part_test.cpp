@@ -40,18 +40,20 @@ TEST_CASE("a part that is lifted takes its box, its voxels and what its surface 
     CHECK(asked.origin_mm[2] == doctest::Approx(grid.origin_mm[2] - 2.5));
     return Vote{};
   };
-  part.surface = [](double voxel_mm) {
-    CHECK(voxel_mm == 0.5);
-    return model::PartSurface{{1, 0.2, {3, 4, 5}}, {2, 0.1, {6, 7, 8}}, {3, 0.3, {9, 10, 11}}, 2, 1};
+  part.surface = [&](const model::Grid& asked) {
+    CHECK(asked.origin_mm[2] == doctest::Approx(grid.origin_mm[2] - 2.5));
+    return model::PartSurface{
+        {1, 0.2, {3, 4, 5}}, {2, 0.1, {6, 7, 8}}, {1, 0.1, {0, 0, 1}}, {3, 0.3, {9, 10, 11}}, 2, 1};
   };
   const Part higher = lifted(part, 2.5);
   CHECK(higher.extent.box.low == Vector3{0, 0, 1.5});
   CHECK(higher.extent.box.high == Vector3{1, 1, 3.5});
   CHECK(higher.map.shift[2] == doctest::Approx(part.map.shift[2] + 2.5));
   (void)higher.fill(grid, [](int, int, const float*) {});
-  const model::PartSurface surface = higher.surface(0.5);
+  const model::PartSurface surface = higher.surface(grid);
   CHECK(surface.walls.at_mm == Vector3{3, 4, 7.5});
   CHECK(surface.gaps.at_mm == Vector3{6, 7, 10.5});
+  CHECK(surface.blocked.at_mm == Vector3{0, 0, 3.5});
   CHECK(surface.relief.at_mm == Vector3{9, 10, 13.5});
   CHECK(surface.solids == 2);
   part.surface = {};

@@ -89,13 +89,13 @@ TEST_CASE("walls are told from a thousandth of the part on, with their share, he
   CHECK(doubts(at_block(5)).size() == 1);
 }
 
-TEST_CASE("rods are told from half a voxel that is far from all half covered ones, however little of the part") {
-  CHECK(doubts(rod(0.16, 10, 3)).empty());
-  const std::vector<std::string> thin = doubts(rod(0.16, 10, 4));
+TEST_CASE("rods are told from two voxels that are far from all half covered ones, however little of the part") {
+  CHECK(doubts(rod(0.16, 10, 12)).empty());
+  const std::vector<std::string> thin = doubts(rod(0.16, 10, 13));
   REQUIRE(thin.size() == 1);
   // A square rod of 0.16 voxels of area is 0.4 voxels thick.
   CHECK(thin[0] ==
-        "a.stl: walls or rods are too thin for the voxels: between z = 1.9 and 2.7 mm no voxel of theirs is half "
+        "a.stl: walls or rods are too thin for the voxels: between z = 1.9 and 4.5 mm no voxel of theirs is half "
         "covered, "
         "and they will not be printed; voxels of 0.08 mm or thicker walls may help");
 }
@@ -119,15 +119,21 @@ TEST_CASE("the part's own surface names thickness and place, and keeps silent of
   places.gaps = {1, 0.25, {1, 2, 3}};
   const std::vector<std::string> both = told({});
   REQUIRE(both.size() == 2);
-  CHECK(
-      both[0] ==
-      "a.stl: walls of 0.35 mm are too fine for voxels of 0.2 mm, as near (1, 2, 2.4) mm, and may not print; voxels of "
-      "0.17 mm resolve them");
+  CHECK(both[0] ==
+        "a.stl: walls of 0.35 mm are too fine for voxels of 0.2 mm, as near (1, 2, 2.4) mm, and may not print, as "
+        "vam-score "
+        "tells; voxels of 0.17 mm resolve them");
   CHECK(both[1].find("gaps of 0.25 mm are too fine") != std::string::npos);
-  CHECK(both[1].find("and whether they print is not judged; voxels of 0.12 mm resolve them") != std::string::npos);
+  CHECK(both[1].find("and whether they print is not judged; voxels of 0.088 mm resolve them") != std::string::npos);
   CHECK(told(wall(0.4, 6)).front().find("; voxels of 0.17 mm or thicker walls may help") != std::string::npos);
+  places.gaps = {1, 0.37, {1, 2, 3}};
+  CHECK(told({})[1].find("gaps of 0.37 mm are too fine") != std::string::npos);
+  CHECK(told({})[1].find("and may be printed shut, as vam-score tells; voxels of 0.18 mm") != std::string::npos);
+  places.blocked = {1, 0.41, {1, 2, 3}};
+  CHECK(told({})[1].find("gaps of 0.41 mm are too fine") != std::string::npos);
+  CHECK(told({})[1].find("and whether they print is not judged; voxels of 0.14 mm") != std::string::npos);
   places = {};
-  places.walls = {1, 0.4, {}};
+  places.walls = {1, 0.397, {}};  // of a tube, by its facets
   CHECK(told({}).empty());
 }
 

@@ -129,3 +129,26 @@ TEST_CASE("heights from above: a box on a box, and a ball") {
     }
   }
 }
+
+TEST_CASE("a cube meets the triangles that CGAL's AABB tree has it meet") {
+  AnyVector any(5);
+  std::vector<TriangleCorners> soup;
+  for (int i = 0; i < 400; ++i) {
+    const Vector3 a = any(5);
+    soup.push_back({a, a + any(i % 5 == 0 ? 3 : 0.3), a + any(0.5)});
+  }
+  const Judge judge(soup);
+  const TriangleTree tree(soup);
+  int met = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3 centre = any(5);
+    const double half = i % 2 == 0 ? 0.2 : 0.6;
+    const Vector3 to{half, half, half};
+    const Judge::Kernel::Iso_cuboid_3 cube(Judge::point(centre - to), Judge::point(centre + to));
+    const bool wanted = judge.tree.do_intersect(cube);
+    CHECK(tree.meets_cube(centre, half) == wanted);
+    met += wanted ? 1 : 0;
+  }
+  CHECK(met > 300);
+  CHECK(met < 2700);
+}

@@ -59,6 +59,8 @@ struct TriangleTree {
   /// has length 1. There must be a triangle.
   [[nodiscard]] std::optional<Hit> first_hit(const Vector3& from, const Vector3& along, double least, double most,
                                              const std::function<bool(int triangle)>& counts = {}) const;
+  /// Whether a triangle has a point in the cube around that centre.
+  [[nodiscard]] bool meets_cube(const Vector3& centre, double half_side) const;
 };
 
 /// The corners of all triangles of a mesh that have an area; their places in the mesh, where wanted.
