@@ -88,12 +88,17 @@ class PieceCounter {
   explicit PieceCounter(std::int64_t least_voxels) : least_(least_voxels) {}
   /// The next slice, as of runs_of().
   void add(const std::vector<VoxelRun>& slice, const Joins& joins);
-  [[nodiscard]] int count() const;
+  [[nodiscard]] int count() const { return count(least_, complete_); }
+  /// Smaller ones, too.
+  [[nodiscard]] int count_all() const { return count(1, all_complete_); }
 
  private:
+  [[nodiscard]] int count(std::int64_t least, int complete) const;
+
   std::int64_t least_;
   RunSets open_;      // that reach the last slice
   int complete_ = 0;  // the others
+  int all_complete_ = 0;
 };
 
 /// Counts pieces of a field at a level > 0: its voxels that reach it, joined across an edge where the bilinear
@@ -105,6 +110,7 @@ class FieldPieces {
   /// The next slice, row-major.
   void add(std::vector<float> slice);
   [[nodiscard]] int count() const { return counter_.count(); }
+  [[nodiscard]] int count_all() const { return counter_.count_all(); }
 
  private:
   [[nodiscard]] bool joins(const VoxelPair& pair, const std::vector<float>& slice) const;

@@ -32,7 +32,9 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
       threshold_(threshold),
       part_(PrintPieces::least_voxels),
       part_at_half_(width, height, half_surface, PrintPieces::least_voxels),
-      print_(width, height, threshold, PrintPieces::least_voxels) {}
+      print_(width, height, threshold, PrintPieces::least_voxels),
+      print_above_(width, height, (1 + PrintPieces::rough) * threshold, PrintPieces::least_voxels),
+      print_below_(width, height, (1 - PrintPieces::rough) * threshold, PrintPieces::least_voxels) {}
 
 void PrintPieceCounter::add(int count, const float* coverage, const float* dose) {
   const std::size_t size = product(width_, height_);
@@ -57,20 +59,23 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
     broken_.add(slice.part);
     shut_.add(slice.gap);
   }
-  constexpr int counters = 3;
+  part_at_half_.add(count, coverage);
+  const std::array<FieldHoles*, 3> prints{&print_, &print_above_, &print_below_};
+  for (FieldHoles* print : prints) print->add(count, dose);
+  const auto add_pieces = [&](FieldHoles& field, const float* values) {
+    for (int k = 0; k < count; ++k) field.add_pieces({values + product(k, size), values + product(k + 1, size)});
+  };
+  constexpr int counters = 5;
   parallel_for(counters, [&](int counter) {
-    for (int k = 0; k < count; ++k) {
-      const auto slice = [&](const float* of) {
-        return std::vector<float>(of + product(k, size), of + product(k + 1, size));
-      };
-      if (counter == 0) {
-        const auto runs = runs_of(width_, height_, [&](std::size_t i) { return (slices[k][i] & printed::trace) != 0; });
-        part_.add(runs, at_corners);
-      } else if (counter == 1) {
-        part_at_half_.add(slice(coverage));
-      } else {
-        print_.add(slice(dose));
+    if (counter == 0) {
+      for (const Slice& slice : slices) {
+        part_.add(runs_of(width_, height_, [&](std::size_t i) { return (slice[i] & printed::trace) != 0; }),
+                  at_corners);
       }
+    } else if (counter == 1) {
+      add_pieces(part_at_half_, coverage);
+    } else {
+      add_pieces(*prints[counter - 2], dose);
     }
   });
   std::vector<Slice> last;
@@ -86,7 +91,9 @@ PrintPieces PrintPieceCounter::found() const {
     broken.add(top.part);
     shut.add(top.gap);
   }
-  return {part_.count(), part_at_half_.count(), print_.count(), broken.voxels(), shut.voxels()};
+  const std::int64_t likewise = std::max(print_above_.holes(), print_below_.holes());
+  const std::int64_t holes = std::min(print_.holes(), likewise) - part_at_half_.holes();
+  return {part_.count(), part_at_half_.pieces(), print_.pieces(), broken.voxels(), shut.voxels(), holes};
 }
 
 }  // namespace vam::model

@@ -37,6 +37,10 @@ std::string pieces_text(const model::PrintPieces& pieces) {
     text +=
         "; gaps are shut: " + std::to_string(pieces.shut) + " voxels that the part fills by less than a quarter cure";
   }
+  if (pieces.has_holes()) {
+    text += "; walls are pierced or gaps bridged: the print has " + std::to_string(pieces.holes) +
+            (pieces.holes == 1 ? " hole" : " holes") + " that the part has not";
+  }
   return text;
 }
 
@@ -127,6 +131,7 @@ void add_to(Json& figures, const Verdict& verdict) {
   figures["print_pieces"] = verdict.pieces->print;
   figures["broken_voxels"] = verdict.pieces->broken;
   figures["shut_voxels"] = verdict.pieces->shut;
+  figures["holes"] = verdict.pieces->holes;
 }
 
 }  // namespace vam::score

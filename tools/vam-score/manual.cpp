@@ -20,7 +20,9 @@ std::vector<std::string> description() {
       "It will not print as designed if walls or rods are too thin for the voxels (more than 0.1 % of the part, or 2 "
       "voxels of it farther than 3 voxels from any half covered voxel), if gaps are too narrow for them, or if the "
       "print "
-      "has broken walls, shut gaps, or more or fewer pieces than the part can have. It may print if vam-slice found "
+      "has broken walls, holes that the part has not, shut gaps, or more or fewer pieces than the part can have. It "
+      "may print if "
+      "vam-slice found "
       "walls or gaps thinner than 1.5 voxels, ridges and grooves as fine, or bores without a voxel that is wholly "
       "outside "
       "the part, by the part's surface; where the target "
@@ -37,7 +39,10 @@ std::vector<std::string> description() {
       "(broken_voxels) where the part that cures around them is in more than one piece, as at a rod that is cut, or "
       "where that is so for three or more of these voxels by themselves, or none around them cures, as in a hole of a "
       "wall; sets of voxels less than a quarter part that cure in the same way (shut_voxels), by the void that stays "
-      "liquid.",
+      "liquid. Holes of the print beyond those of the part (holes) are counted by the Euler characteristics of the "
+      "dose "
+      "at the threshold and of the coverage at a half: tunnels through walls and between bridges over gaps, less "
+      "cavities.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",
       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "

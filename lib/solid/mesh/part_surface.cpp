@@ -49,10 +49,12 @@ struct Crossing {
   }
 };
 
+using Ways = std::vector<std::optional<Crossing>>;
+
 /// Points of a surface, the ways from them to both sides, and the area that each stands for.
 struct Crossings {
   std::vector<SurfaceSample> samples;
-  std::vector<std::optional<Crossing>> inwards, outwards;
+  Ways inwards, outwards;  // of each sample
   double each = 0;
 };
 
@@ -64,7 +66,7 @@ double area_of(const model::TriangleSoup& mesh) {
 
 /// To one side, at least and at most so far.
 void cross(const SurfaceTree& surface, const SeparateSolids& solids, const std::vector<SurfaceSample>& samples,
-           double side, double least, double most, std::vector<std::optional<Crossing>>& found) {
+           double side, double least, double most, Ways& found) {
   found.resize(samples.size());
   constexpr int at_once = 1000;
   parallel_for((count_of(samples) + at_once - 1) / at_once, [&](int block) {
@@ -135,9 +137,8 @@ class Voxels {
 };
 
 /// Of the gaps those that no voxel resolves.
-std::vector<std::optional<Crossing>> blocked(const std::vector<std::optional<Crossing>>& gaps, const Voxels& voxels,
-                                             double voxel_mm) {
-  std::vector<std::optional<Crossing>> found(gaps.size());
+Ways blocked(const Ways& gaps, const Voxels& voxels, double voxel_mm) {
+  Ways found(gaps.size());
   parallel_for(count_of(gaps), [&](int i) {
     const auto& gap = gaps[i];
     if (gap && gap->is_between_faces(voxel_mm) && !voxels.has_void_near(gap->at(0.5 * gap->distance))) found[i] = gap;
@@ -154,9 +155,58 @@ model::ThinPlaces summary(std::vector<Crossing> crossings, std::size_t n, double
   return {area_mm2, at->distance, at->at(0.5 * at->distance)};
 }
 
+/// Cubes of that side.
+class Blocks {
+ public:
+  using Place = std::array<int, 3>;
+  explicit Blocks(double side) : side_(side) {}
+  [[nodiscard]] Place place(const Vector3& point) const {
+    Place at{};
+    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = floor_int(point[axis] / side_);
+    return at;
+  }
+
+ private:
+  double side_;
+};
+
+/// Of a cube of three voxels or more, in which a plane has a dozen samples.
+double side_of_block(double each, double voxel_mm) { return std::max(3 * voxel_mm, std::sqrt(12 * each)); }
+
+/// Without those between faces that are a small share of the surface around them, as the small facets along an edge and
+/// the run-out of a thread are.
+Ways without_lone(Ways ways, const Crossings& all, double voxel_mm) {
+  constexpr int share = 4;
+  struct Block {
+    int samples = 0, ways = 0;
+  };
+  const Blocks blocks_of(side_of_block(all.each, voxel_mm) / 3);
+  std::map<Blocks::Place, Block> blocks;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    Block& block = blocks[blocks_of.place(all.samples[i].point)];
+    ++block.samples;
+    block.ways += ways[i] && ways[i]->is_between_faces(voxel_mm) ? 1 : 0;
+  }
+  const auto around = [&](const Blocks::Place& place) {  // in 27 blocks
+    Block sum;
+    for (int n = 0; n < 27; ++n) {
+      const auto block = blocks.find({place[0] + n % 3 - 1, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1});
+      if (block == blocks.end()) continue;
+      sum.samples += block->second.samples;
+      sum.ways += block->second.ways;
+    }
+    return sum;
+  };
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if (!ways[i]) continue;
+    const Block block = around(blocks_of.place(all.samples[i].point));
+    if (share * block.ways < block.samples) ways[i].reset();
+  }
+  return ways;
+}
+
 /// Of those that are at most so long.
-model::ThinPlaces between_faces(const std::vector<std::optional<Crossing>>& crossings, double most, double each,
-                                double voxel_mm) {
+model::ThinPlaces between_faces(const Ways& crossings, double most, double each, double voxel_mm) {
   std::vector<Crossing> found;
   for (const auto& one : crossings)
     if (one && one->distance <= most && one->is_between_faces(voxel_mm)) found.push_back(*one);
@@ -172,14 +222,11 @@ model::ThinPlaces relief(const Crossings& all, double voxel_mm) {
     std::vector<Crossing> edges;
     [[nodiscard]] bool has_relief() const { return 10 * ridges >= samples && 10 * grooves >= samples; }
   };
-  constexpr double few = 12;   // samples on a plane through a block
   constexpr double much = 30;  // faces of a voxel
-  const double side = std::max(3 * voxel_mm, std::sqrt(few * all.each));
-  std::map<std::array<int, 3>, Block> blocks;
+  const Blocks blocks_of(side_of_block(all.each, voxel_mm));
+  std::map<Blocks::Place, Block> blocks;
   for (std::size_t i = 0; i < all.samples.size(); ++i) {
-    std::array<int, 3> at{};
-    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = floor_int(all.samples[i].point[axis] / side);
-    Block& block = blocks[at];
+    Block& block = blocks[blocks_of.place(all.samples[i].point)];
     ++block.samples;
     for (const auto& [crossing, count] :
          {std::pair{&all.inwards[i], &block.ridges}, std::pair{&all.outwards[i], &block.grooves}}) {
@@ -219,11 +266,11 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   cross(surface, solids, all.samples, -1, own * lost, lost, all.inwards);
   cross(surface, solids, all.samples, 1, touching, reach, all.outwards);
   leave_outer(all, surface, voxel_mm);
-  const auto without_void = blocked(all.outwards, Voxels(surface, grid), voxel_mm);
+  const Ways gaps = without_lone(all.outwards, all, voxel_mm);
   model::PartSurface found;
-  found.walls = between_faces(all.inwards, lost, all.each, voxel_mm);
-  found.gaps = between_faces(all.outwards, lost, all.each, voxel_mm);
-  found.blocked = between_faces(without_void, reach, all.each, voxel_mm);
+  found.walls = between_faces(without_lone(all.inwards, all, voxel_mm), lost, all.each, voxel_mm);
+  found.gaps = between_faces(gaps, lost, all.each, voxel_mm);
+  found.blocked = between_faces(blocked(gaps, Voxels(surface, grid), voxel_mm), reach, all.each, voxel_mm);
   found.relief = relief(all, voxel_mm);
   found.solids = solids.count();
   found.specks = solids.specks();

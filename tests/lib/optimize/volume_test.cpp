@@ -117,6 +117,7 @@ TEST_CASE("pieces and torn voxels are those of the volume, whatever the passes, 
     if (blur_px > 0) continue;
     CHECK(found.broken == counter.found().broken);
     CHECK(found.shut == counter.found().shut);
+    CHECK(found.holes == counter.found().holes);
   }
 }
 

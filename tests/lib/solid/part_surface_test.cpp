@@ -234,6 +234,31 @@ TEST_CASE("the edge of a wedge is no wall, that of a blade is") {
   CHECK(seen(turned(wedge(10))).has_thin_walls());
 }
 
+TEST_CASE("a nib along an edge is no wall, however parallel its faces; a fin is") {
+  const auto ridge = [](double high) {  // a roof of 60 degrees, cut off where it is 0.1 wide, with a nib on top
+    const double foot = 6;
+    const double top = (foot - 0.05) * std::sqrt(3.0);
+    const std::vector<std::array<double, 2>> outline{{-foot, 0},         {foot, 0},           {0.05, top},
+                                                     {0.05, top + high}, {-0.05, top + high}, {-0.05, top}};
+    const int corners = static_cast<int>(outline.size());
+    Mesh mesh;
+    for (const double y : {0.0, 16.0})
+      for (const auto& [x, z] : outline) mesh.points.push_back({x, y, z});
+    mesh.points.push_back({0, 0, 4});
+    mesh.points.push_back({0, 16, 4});
+    for (int a = 0; a < corners; ++a) {
+      const int b = (a + 1) % corners;
+      mesh.triangles.push_back({a, b, 2 * corners});
+      mesh.triangles.push_back({b + corners, a + corners, 2 * corners + 1});
+      mesh.triangles.push_back({b, a, a + corners});
+      mesh.triangles.push_back({b, a + corners, b + corners});
+    }
+    return seen(turned(mesh));
+  };
+  CHECK(!ridge(0.2).leaves_doubt());
+  CHECK(ridge(3).has_thin_walls());
+}
+
 TEST_CASE("a knurl is relief where its teeth are no larger than voxels") {
   const auto fine = seen(turned(toothed(20, 1.5, 1)));
   CHECK(fine.has_relief());
