@@ -62,6 +62,12 @@ is 'a target that is not is told' "$(grep -c 'ramp.npy: the print will be 3.7 % 
 quiet 'as it is, if so meant' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --stretch-z 1 -o short.vdb
 printf '[projector\n' >broken.toml
 fails 65 'broken.toml' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --printer broken.toml -o x.vdb
+below() { npy make low.npy '<f4' 1,1,2; perl -pi -e 's/\0\0\0\0\0\0\x80\x3f$/pack("f<2", '"$1"', 1)/e' low.npy; }
+below -5e-5
+quiet 'a value that rounding left just below 0' vam-convert low.npy --voxel 0.5 --stretch-z 1 -o low.vdb
+ok 'is taken by those that read targets' vam-sinogram low.vdb -o low.exr
+below -2e-4
+fails 65 "low.npy: grid 'target' has -0.0002 in voxel .0, 0, 0." vam-convert low.npy --voxel 0.5 --stretch-z 1 -o none.vdb
 npy make one.npy '<f4' 1,3,4
 quiet 'a plane stays one, however low' vam-convert one.npy --voxel 0.5 --grid weight --stretch-z 0.1 -o low.vdb
 vam-convert low.vdb >b.npy

@@ -17,7 +17,7 @@ namespace {
 
 using Tree = openvdb::FloatTree;
 
-constexpr float slack = 1e-4F;  // of coverage that other programs compute
+constexpr float slack = 1e-4F;  // of targets that other programs compute
 constexpr double least_mm = 0.1;
 constexpr double most_mm = 2000;
 
@@ -33,7 +33,7 @@ bool is_shape(const std::string& name) { return name == "target" || name == "ins
 std::optional<Promise> promise_of(const std::string& name, TargetKind target) {
   constexpr float most = 1e9F;
   if (name == "target" && target == TargetKind::grey) {
-    return Promise{0, most, "a grey target is a dose, 0 and more; make it again"};
+    return Promise{-slack, most, "a grey target is a dose, 0 and more; make it again"};
   }
   if (is_shape(name)) {
     return Promise{-slack, 1 + slack,

@@ -15,8 +15,8 @@ enum class TargetKind { coverage, grey };
 
 /// Throws Fault::data with file, voxel and remedy: two grids of one name, a level set named target or insert, a
 /// background of these other than 0, a size that is none in mm (below 0.1 mm or above 2 m), a value outside what the
-/// grid can have: target and insert 0 to 1 (to 1e-4), weight, tolerance and dose 0 to 1e9. Grids of other names may be
-/// anything. `path` begins the message, "-" is stdin.
+/// grid can have: target and insert 0 to 1, a grey target 0 to 1e9 (to 1e-4), weight, tolerance and dose 0 to 1e9.
+/// Grids of other names may be anything. `path` begins the message, "-" is stdin.
 void require_usable(const std::string& path, const std::vector<SparseVolume>& volumes,
                     TargetKind target = TargetKind::coverage);
 void require_usable(const std::string& path, const SparseVolume& volume, TargetKind target = TargetKind::coverage);

@@ -71,6 +71,7 @@ TEST_CASE("a tile is a value as well") {
 
 TEST_CASE("a grey target is a dose") {
   CHECK(refusal(one_voxel("target", 40), TargetKind::grey) == "no error");
+  CHECK(refusal(one_voxel("target", -5e-5F), TargetKind::grey) == "no error");
   CHECK(has(refusal(one_voxel("target", -1), TargetKind::grey), "grey target"));
   CHECK(has(refusal(one_voxel("target", 1e30F), TargetKind::grey), "grey target"));
 }
