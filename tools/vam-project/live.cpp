@@ -54,8 +54,10 @@ int Live::take_offer(int turn) {
   return offer_->turns;
 }
 
-// From here on each flip is a heartbeat.
+// From here on each flip is a heartbeat. The log's threads begin before the print hurries.
 void Live::begin() {
+  log_.write_aside();
+  keeper_.emplace(options_.log, options_.log_seals);
   device::hurry(device::Urgency::driver);
   if (relay_ != nullptr) relay_->close();
 }
@@ -89,6 +91,7 @@ device::PlayTally Live::play_through(double hold_s, bool forever) {
 device::PlayTally Live::ended(const device::PlayTally& tally) {
   if (relay_ != nullptr) relay_->open();
   log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});
+  log_.sync();
   return tally;
 }
 

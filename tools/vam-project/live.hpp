@@ -12,6 +12,7 @@
 
 #include "base/json.hpp"
 #include "device/os/event_log.hpp"
+#include "device/os/log_keeper.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/projector/player.hpp"
 #include "device/projector/relayed_lamp.hpp"
@@ -39,6 +40,7 @@ class Live {
     bool taken = false;
   };
   void offer(Offer offer);
+  [[nodiscard]] int frames() const { return frames_; }
   [[nodiscard]] device::DisplayMode mode() const { return display_->mode(); }
   /// The frames of whole turns are loaded: prints with them.
   device::PlayTally play(int frames_per_turn, double speed_deg_s, int turns);
@@ -53,7 +55,8 @@ class Live {
   std::function<void(const device::FlipRecord&)> logger();
 
   LiveOptions options_;
-  device::Guardian guardian_;  // first: it forks before any thread, window or device
+  device::Guardian guardian_;                // first: it forks before any thread, window or device
+  std::optional<device::LogKeeper> keeper_;  // ends after the log that it keeps
   device::EventLog log_;
   device::Clock& clock_;
   std::unique_ptr<device::Relay> relay_;

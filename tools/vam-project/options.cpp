@@ -86,7 +86,10 @@ void add_live(cli::App& app, Options& all) {
       "that is clipped and counted in the log.");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
-             "reason of the end; - is standard error.");
+             "reason of the end; - is standard error. Every second it is brought to the disk.");
+  app.option("--log-seals", "FILE", options.log_seals,
+             "Append to FILE, whenever --log was brought to the disk, the number of its bytes and their SHA-256, by "
+             "which lines that are lost later are found out; used by vam-print.");
   app.flag("--plan", all.only_plan,
            "Print frames, memory, duration and dose, query display and light engine for their identity, and show "
            "nothing; with --pattern only the query.");
@@ -155,7 +158,7 @@ void refuse_unknown_display(const std::string& output) {
 void refuse_live(const cli::App& app, const std::string& output) {
   refuse_unknown_display(output);
   for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--max-missed",
-                           "--max-missed-lit", "--plan", "--log", "--frames-from"}) {
+                           "--max-missed-lit", "--plan", "--log", "--log-seals", "--frames-from"}) {
     if (!app.given(flag)) continue;
     throw Error{Fault::usage, std::string(flag) + ": applies only to a display, but the output is " +
                                   (output == "-" ? "standard output" : output) + "; give -o " +

@@ -7,7 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <utility>
 
@@ -16,6 +15,7 @@
 #include "base/system_error.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
+#include "device/os/line_writer.hpp"
 
 namespace vam::device {
 
@@ -50,6 +50,7 @@ EventLog::EventLog(const std::string& path) : path_(path) {
 }
 
 EventLog::~EventLog() {
+  writer_.reset();
   if (fd_ >= 0) close(fd_);
 }
 
@@ -68,14 +69,16 @@ void EventLog::line(const Json& facts) {
   if (fd_ < 0) return;
   // Bytes that a device made up need not be UTF-8.
   const std::string text = facts.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  for (std::size_t at = 0; at < text.size();) {  // a disk that is just full takes a part, and says why at the rest
-    const ssize_t count = write(fd_, text.data() + at, text.size() - at);
-    if (count < 0) throw Error{Fault::io, path_ + ": write failed (" + std::strerror(errno) + ")"};
-    at += static_cast<std::size_t>(count);
-  }
+  if (writer_) return writer_->put(text);
+  write_text(fd_, text, path_);
+}
+
+void EventLog::write_aside() {
+  if (fd_ >= 0 && !writer_) writer_ = std::make_unique<LineWriter>(fd_, path_);
 }
 
 void EventLog::sync() {
+  if (writer_) writer_->finish();
   if (fd_ >= 0) fdatasync(fd_);
 }
 

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "base/json_fwd.hpp"
 
 namespace vam::device {
+
+class LineWriter;
 
 /// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file, one write a line, so that several
 /// processes may share it. "-" is standard error; an empty path logs nothing. Throws Fault::no_output, Fault::io.
@@ -23,6 +26,9 @@ class EventLog {
   void at(double t_s, const std::string& event, const Json& facts);
   /// A line as it is.
   void line(const Json& facts);
+  /// From now on lines are written by a thread of their own, in order: nobody waits for the disk. What cannot be
+  /// written is thrown by the next line, or by sync().
+  void write_aside();
   /// Until now on the disk.
   void sync();
   /// Takes the file away again, if there was none before.
@@ -32,6 +38,7 @@ class EventLog {
   std::string path_;
   int fd_ = -1;
   bool made_ = false;
+  std::unique_ptr<LineWriter> writer_;
 };
 
 /// Runs body; what ends it early is logged to that path, {"event": "error", "status": 75, "message": "..."} or

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "device/os/log_keeper.hpp"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "device/os/event_log.hpp"
+#include "fault_of.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+namespace {
+
+struct Folder {
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "vam-test-XXXXXX").string();
+    path = mkdtemp(name.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+  std::filesystem::path path;
+};
+
+std::string slurp(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<Json> lines_of(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<Json> all;
+  for (std::string line; std::getline(file, line);) all.push_back(Json::parse(line));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("Lines that are written aside come in order, all of them, and whole") {
+  const Folder folder;
+  {
+    EventLog log(folder / "log");
+    log("first");
+    log.write_aside();
+    for (int n = 0; n < 1000; ++n) log("next", {{"n", n}});
+    log.sync();
+    CHECK(lines_of(folder / "log").size() == 1001);
+    log("last");
+  }
+  const auto lines = lines_of(folder / "log");
+  REQUIRE(lines.size() == 1002);
+  for (int n = 0; n < 1000; ++n) CHECK(lines[n + 1]["n"] == n);
+  CHECK(lines[1001]["event"] == "last");
+}
+
+TEST_CASE("Nobody waits for a log whose reader is slow") {
+  std::array<int, 2> ends{};
+  REQUIRE(pipe(ends.data()) == 0);
+  constexpr int lines = 2000;  // 150 kB, more than a pipe holds
+  const std::string path = "/proc/self/fd/" + std::to_string(ends[1]);
+  EventLog log(path);
+  log.write_aside();
+  const auto begun = std::chrono::steady_clock::now();
+  for (int n = 0; n < lines; ++n) log("line", {{"n", n}});
+  CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(5));
+  std::string read_back;
+  std::array<char, 4096> room{};
+  while (std::count(read_back.begin(), read_back.end(), '\n') < lines) {
+    const ssize_t count = read(ends[0], room.data(), room.size());
+    REQUIRE(count > 0);
+    read_back.append(room.data(), static_cast<std::size_t>(count));
+  }
+  log.sync();
+  close(ends[0]);
+  close(ends[1]);
+}
+
+TEST_CASE("What cannot be written aside is told by the next line, and by sync()") {
+  EventLog log("/dev/full");
+  log.write_aside();
+  log("first");
+  CHECK(has(error_of([&] { log.sync(); }, Fault::io), "/dev/full: write failed (No space left on device)"));
+  CHECK(fault_of([&] { log("second"); }) == Fault::io);
+}
+
+TEST_CASE("A log is sealed by its whole lines, at the latest when its keeper ends") {
+  const Folder folder;
+  std::ofstream(folder / "flips.jsonl") << "one\ntwo\n";
+  {
+    const LogKeeper keeper(folder / "flips.jsonl", folder / "events.jsonl");
+    for (int tries = 0; tries < 500 && slurp(folder / "events.jsonl").empty(); ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::ofstream(folder / "flips.jsonl", std::ios::app) << "three\nfou";
+  }
+  const auto seals = lines_of(folder / "events.jsonl");
+  REQUIRE(seals.size() == 2);
+  CHECK(seals[0]["event"] == "sealed");
+  CHECK(seals[0]["log"] == "flips.jsonl");
+  CHECK(seals[0]["bytes"] == 8);
+  CHECK(seals[0]["sha256"] == sha256("one\ntwo\n"));
+  CHECK(seals[1]["bytes"] == 14);
+  CHECK(seals[1]["sha256"] == sha256("one\ntwo\nthree\n"));
+}
+
+TEST_CASE("A keeper leaves alone what is no file, and states nothing of a log that does not grow") {
+  const Folder folder;
+  { const LogKeeper keeper("", folder / "events.jsonl"); }
+  { const LogKeeper keeper("-", folder / "events.jsonl"); }
+  { const LogKeeper keeper("/dev/null", folder / "events.jsonl"); }
+  CHECK_FALSE(std::filesystem::exists(folder / "events.jsonl"));
+  std::ofstream(folder / "log") << "";
+  { const LogKeeper keeper(folder / "log", folder / "events.jsonl"); }
+  CHECK(slurp(folder / "events.jsonl").empty());
+}
