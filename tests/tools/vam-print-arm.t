@@ -180,6 +180,31 @@ fails 65 'known: printed with another stage .stage.json differs.' dry --resume k
 is 'a refused print leaves no mark' "$(ls known/resumed.json 2>/dev/null)" ''
 printf '{"event":"flip","t_monotonic_s":9,"frame":1,"angle_deg":7' >>cut/flips.jsonl
 is 'a truncated last line of the log is ignored' "$(print --resume cut --plan 2>&1 | grep ^exposure)" "$(print --resume again --plan 2>&1 | grep ^exposure)"
+# Flips that were lost or changed would be light that is given twice.
+refuses() {  # refuses REGEX COMMAND: a killed print whose log of flips (standard input) becomes what COMMAND makes of it
+  rm -rf spoilt; cp -r again spoilt; eval "$2" <again/flips.jsonl >spoilt/flips.jsonl
+  fails 65 "^vam-print: spoilt/flips.jsonl$1" print --resume spoilt --run none
+  fails 65 "^vam-dose: spoilt/flips.jsonl$1" vam-dose frames.exr --shown spoilt -o none.vdb
+  fails 65 "^vam-check: spoilt/flips.jsonl$1" vam-check spoilt
+  fails 65 "^vam-check: spoilt/flips.jsonl$1" vam-check spoilt/flips.jsonl
+}
+cut_short='has [0-9]+ bytes of whole lines, but events.jsonl states [0-9]+ at [-0-9T:.]+Z; it was cut; restore it$'
+changed='; the log was changed; restore it$'
+line=$(grep -n '"frame":[0-9]' again/flips.jsonl | sed -n '100s/:.*//p')  # of the 100th lit image
+refuses ": $cut_short" :
+refuses ": $cut_short" "head -n $line"
+refuses ": $cut_short" 'head -c 20000'
+refuses ":[0-9]+: flips are missing before it .vertical blanks: [0-9]+.$changed" "sed $((line - 20)),${line}d"
+refuses ":$line: frame 99999 is none of the [0-9]+ of the print$changed" "sed '${line}s/\"frame\":[-0-9]*/\"frame\":99999/'"
+refuses ":$line: time 1e.308 s is not between 0 and 1e.09 s since the machine started$changed" "sed '${line}s/\"t_monotonic_s\":[0-9.]*/\"t_monotonic_s\":1e308/'"
+refuses ":$line: angle -1000 deg is not between 0 and 720 deg, where images are shown$changed" "sed '${line}s/\"angle_deg\":[-+0-9.e]*/\"angle_deg\":-1000/'"
+refuses ":[0-9]+: time goes back by [0-9.]+ s from that of the flip before$changed" "sed '$((line - 20))h;${line}G'"
+refuses ': has [0-9]+ bytes whose SHA-256 begins [0-9a-f]{8}, but events.jsonl states [0-9a-f]{8}; it was changed; restore it$' "sed '${line}s/\"utc\":\"2/\"utc\":\"3/'"
+rm -r spoilt; cp -r again spoilt; rm spoilt/flips.jsonl
+fails 65 "^vam-print: spoilt/flips.jsonl: $cut_short" print --resume spoilt --run none
+: >spoilt/flips.jsonl; sed -i '/"event":"sealed"/d' spoilt/events.jsonl  # as of a former version
+fails 65 '^vam-print: spoilt/flips.jsonl: has no light, [0-9.]+ s before angles.jsonl, in which the stage turned on to [0-9.]+ deg; it was cut; restore it$' print --resume spoilt --run none
+is 'what is refused leaves no mark' "$(ls spoilt/resumed.json none 2>/dev/null)" ''
 # The rest is printed with the same dose at the same position.
 other='again: printed with other settings: vial.radius_mm 12.7, now 12.72; stage.speed_deg_s 90.0, now 40.0; '
 set_other() { "$@" --set stage.speed_deg_s=40 --set vial.radius_mm=12.72; }

@@ -8,6 +8,7 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "io/image/view_source.hpp"
+#include "io/settings/flip_rules.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-calibrate/scan.hpp"
 
@@ -43,17 +44,23 @@ void refuse_over_exposed(const ScanOptions& options, const Image& image, const s
 
 std::vector<Showing> read_flips(const std::string& path) {
   std::vector<Showing> flips;
+  io::FlipRules rules(io::FlipRules::Order::required);
   int number = 0;
   for (const auto& line : split(io::read_all(path), '\n')) {
     ++number;
     if (line.empty()) continue;
-    const Json event = parse_distinct(line, path + ":" + std::to_string(number));
+    const std::string place = path + ":" + std::to_string(number);
+    const Json event = parse_distinct(line, place);
     try {
-      if (event.at("event") != "flip") continue;
-      const Showing showing{event.at("t_monotonic_s"), event.at("frame")};
+      if (event.at("event") != "flip") {
+        rules.note(event, place);
+        continue;
+      }
+      const io::LoggedFlip flip = rules.take(event, place);
+      const Showing showing{flip.t_s, flip.frame};
       if (flips.empty() || flips.back().frame != showing.frame) flips.push_back(showing);
     } catch (const Json::exception&) {
-      throw Error{Fault::data, path + ":" + std::to_string(number) + ": is not an event of a vam-project log"};
+      throw Error{Fault::data, place + ": is not an event of a vam-project log"};
     }
   }
   if (flips.empty()) throw Error{Fault::data, path + ": contains no flips; give the log of vam-project"};

@@ -48,7 +48,8 @@ void declare_beam(cli::App& app, Options& options) {
       .needs({"--like"});
   app.option("--shown", "RUN", options.shown,
              "Compute the dose that this print delivered: the run folder of vam-print, or the flip log of vam-project. "
-             "Give it once for the print and once for each resumption.");
+             "Give it once for the print and once for each resumption. Logs that were cut or changed are refused "
+             "(vam-formats(7), EVENT LOGS).");
   app.option("--before", "SECONDS", options.before_s, cli::any,
              "With --shown, count light before this time only, on the clock of the logs (t_monotonic_s). Where a print "
              "that goes on has not reached it, its light goes on as in its last frames.")

@@ -139,7 +139,10 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
     live.offer({std::move(screen.bytes), facts, turn_named(path), its_turns});
   };
   LiveSink sink(live, [&] {
-    live.note("sinogram", facts_of(options.input, hash_of(options.input), full_scale));
+    Json facts = facts_of(options.input, hash_of(options.input), full_scale);
+    facts["frames"] = live.frames();
+    facts["turns"] = turns;
+    live.note("sinogram", facts);
     std::optional<Renewal> renewal;  // its thread begins before the print hurries
     if (!options.live.frames_from.empty()) renewal.emplace(options.live.frames_from, live, renew);
     return live.play(frames, printer.stage.speed_deg_s, turns);

@@ -18,7 +18,6 @@
 #include "base/json_text.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
-#include "base/sha256.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
@@ -167,7 +166,7 @@ void RunFolder::read_flips() {
   if (progress_.turns > 0 && settled_) progress_.given_fraction = 0;
   const auto stated = io::stated_flips(path_);
   if (!flips_) {
-    if (!io::has_regular_file(file("flips.jsonl"))) return io::require_stated_flips(path_, stated, 0, sha256(""));
+    if (!io::has_regular_file(file("flips.jsonl"))) return io::require_stated_flips(path_);
     flips_.emplace(path_);
   }
   flips_->read();

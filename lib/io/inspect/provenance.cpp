@@ -104,6 +104,11 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
     require_stated_flips(path);
     return {{"flips of a print", true, "", {}}};
   }
+  const std::filesystem::path file(path);
+  if (!fast && file.filename() == "flips.jsonl" && has_regular_file((file.parent_path() / "events.jsonl").string())) {
+    require_stated_flips(path);
+    return {{"flips of a print without a summary", false, "", {}}};
+  }
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
   if (is_manifest(path, text)) {

@@ -50,6 +50,12 @@ std::set<std::string> hashes_of(const std::string& run) {
   return hashes;
 }
 
+// A print that has ended is held to the hash of its flips.
+bool has_stated_hash(const std::string& run) {
+  const auto stated = stated_flips(run);
+  return stated && !stated->sha256.empty();
+}
+
 std::string beginnings(const std::set<std::string>& hashes) {
   std::vector<std::string> short_ones;
   for (const std::string& hash : hashes) short_ones.push_back(hash.substr(0, 8));
@@ -58,32 +64,45 @@ std::string beginnings(const std::set<std::string>& hashes) {
 
 }  // namespace
 
-FlipLog::FlipLog(const std::string& path) : file_(log_of(path)), lines_(file_) {
+FlipLog::FlipLog(const std::string& path)
+    : file_(log_of(path)),
+      lines_(file_),
+      rules_(has_stated_hash(path) ? FlipRules::Order::free : FlipRules::Order::required) {
   if (!has_regular_file(file_)) throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(ENOENT)};
+  if (!has_stated_hash(path)) proof_.emplace(file_);
 }
 
 void FlipLog::read() {
+  if (proof_) proof_->read();
   for (std::string text; lines_.next(text);) {
     ++line_;
     text.push_back('\n');
     hash_.add(text.data(), text.size());
-    const Json event = parse_distinct(text, file_ + ":" + std::to_string(line_));
-    try {
-      if (event.at("event") == "display") begin_run();
-      if (event.at("event") == "sinogram" || event.at("event") == "frames") {
-        sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale")});
-        sinogram_ = count_of(sinograms_) - 1;
-      }
-      if (event.at("event") != "flip") continue;
-      const LoggedFlip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false, sinogram_};
-      flips_.push_back(flip);
-      if (flip.angle_deg < last_run_up_deg) continue;
-      const long missed = event.value("missed", 0L);
-      missed_ += missed;
-      blanks_ += 1 + missed;
-    } catch (const Json::exception&) {
-      throw Error{Fault::data, file_ + ":" + std::to_string(line_) + ": is not an event of a vam-project log"};
+    bytes_ += text.size();
+    take(parse_distinct(text, place()));
+    if (proof_) proof_->check(bytes_, hash_);
+  }
+  if (!proof_) return;
+  const bool is_lit = !flips_.empty() && flips_.back().frame >= 0;
+  proof_->require_all(bytes_, {is_lit, lit() > 0, flips_.empty() ? 0 : flips_.back().t_s});
+}
+
+std::string FlipLog::place() const { return file_ + ":" + std::to_string(line_); }
+
+void FlipLog::take(const Json& event) {
+  try {
+    if (event.at("event") == "display") begin_run();
+    if (event.at("event") == "sinogram" || event.at("event") == "frames") {
+      sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale")});
+      sinogram_ = count_of(sinograms_) - 1;
     }
+    if (event.at("event") != "flip") return rules_.note(event, place());
+    flips_.push_back({rules_.take(event, place()), false, sinogram_});
+    if (flips_.back().angle_deg < last_run_up_deg) return;
+    missed_ += flips_.back().missed;
+    blanks_ += 1 + flips_.back().missed;
+  } catch (const Json::exception&) {
+    throw Error{Fault::data, place() + ": is not an event of a vam-project log"};
   }
 }
 
@@ -127,7 +146,7 @@ void FlipLog::go_on(double image_s, std::vector<ShownImage>& shown) const {
 }
 
 long FlipLog::lit() const {
-  return std::count_if(flips_.begin(), flips_.end(), [](const LoggedFlip& flip) { return flip.frame >= 0; });
+  return std::count_if(flips_.begin(), flips_.end(), [](const RunFlip& flip) { return flip.frame >= 0; });
 }
 
 std::string FlipLog::sha256() const { return Sha256(hash_).digest(); }
@@ -135,13 +154,13 @@ std::string FlipLog::sha256() const { return Sha256(hash_).digest(); }
 void FlipLog::end_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }
 
 std::vector<ShownImage> FlipLog::shown() const {
-  return images([](const LoggedFlip&) { return true; });
+  return images([](const RunFlip&) { return true; });
 }
 
 std::vector<ShownImage> FlipLog::shown_of(const std::string& sha256) const {
   const auto is_it = [&](const ShownSinogram& one) { return !one.sha256.empty() && one.sha256 == sha256; };
   const bool stated = std::any_of(sinograms_.begin(), sinograms_.end(), is_it);
-  return images([&](const LoggedFlip& flip) {
+  return images([&](const RunFlip& flip) {
     const bool is_unknown = flip.sinogram < 0 || sinograms_[flip.sinogram].sha256.empty();
     return is_unknown ? !stated : is_it(sinograms_[flip.sinogram]);
   });
@@ -182,8 +201,10 @@ void require_stated_flips(const std::string& run, const std::optional<StatedFlip
 
 void require_stated_flips(const std::string& run) {
   const auto stated = stated_flips(run);
-  if (!stated || (!stated->lit && stated->sha256.empty())) return;
-  if (!has_regular_file(log_of(run))) return require_stated_flips(run, stated, 0, vam::sha256(""));
+  if (!has_regular_file(log_of(run))) {
+    require_stated_flips(run, stated, 0, vam::sha256(""));
+    return require_no_flips(log_of(run));
+  }
   FlipLog log(run);
   log.read();
   require_stated_flips(run, stated, log.lit(), log.sha256());

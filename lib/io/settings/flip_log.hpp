@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "base/sha256.hpp"
+#include "io/settings/flip_proof.hpp"
+#include "io/settings/flip_rules.hpp"
 #include "io/stream/log_lines.hpp"
 
 namespace vam::io {
@@ -29,7 +31,9 @@ class FlipLog {
   /// flips.jsonl, or the run folder (vam-print) that holds it. Throws Fault::no_input, Fault::data for no regular file.
   explicit FlipLog(const std::string& path);
 
-  /// Takes in the whole lines that were added since the last call. Throws Fault::data for another kind of file.
+  /// Takes in the whole lines that were added since the last call. Throws Fault::data for another kind of file, for
+  /// lines that no print leaves (FlipRules), and, of a run folder without a summary, to whose hash its lines are held,
+  /// where other logs prove that lines are missing or were changed (FlipProof).
   void read();
 
   /// The lit images so far, in order.
@@ -50,13 +54,12 @@ class FlipLog {
   [[nodiscard]] std::string sha256() const;
 
  private:
-  struct LoggedFlip {
-    double t_s;
-    int frame;
-    double angle_deg;
-    bool last;     // of its run
-    int sinogram;  // -1: not stated, as by former versions
+  struct RunFlip : LoggedFlip {
+    bool last = false;  // of its run
+    int sinogram = -1;  // -1: not stated, as by former versions
   };
+  void take(const Json& event);
+  [[nodiscard]] std::string place() const;
   void begin_run();
   template <class Counts>
   [[nodiscard]] std::vector<ShownImage> images(const Counts& counts) const;
@@ -65,9 +68,12 @@ class FlipLog {
 
   std::string file_;
   LogLines lines_;
+  FlipRules rules_;
+  std::optional<FlipProof> proof_;
   Sha256 hash_;
+  std::uint64_t bytes_ = 0;
   int line_ = 0;
-  std::vector<LoggedFlip> flips_;
+  std::vector<RunFlip> flips_;
   std::vector<ShownSinogram> sinograms_;
   int sinogram_ = -1;  // that is shown
   std::optional<double> end_s_;
@@ -90,7 +96,8 @@ struct StatedFlips {
 /// the beginnings of both hashes. A log that is gone has neither.
 void require_stated_flips(const std::string& run, const std::optional<StatedFlips>& stated, long lit,
                           const std::string& sha256);
-/// Throws as stated_flips(), FlipLog and require_stated_flips(); a log that is not stated is not read.
+/// Throws as stated_flips(), FlipLog and require_stated_flips(); of a run folder also where flips.jsonl is gone, and
+/// its other logs prove that there was light.
 void require_stated_flips(const std::string& run);
 
 /// What a run showed of a sinogram.

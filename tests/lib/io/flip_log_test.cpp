@@ -19,7 +19,7 @@ using vam::io::turns_shown;
 namespace {
 
 std::string flip(double t_s, int frame, double angle_deg) {
-  return R"({"utc":"x","t_monotonic_s":)" + std::to_string(t_s) + R"(,"event":"flip","sequence":1,"frame":)" +
+  return R"({"utc":"x","t_monotonic_s":)" + std::to_string(t_s) + R"(,"event":"flip","frame":)" +
          std::to_string(frame) + R"(,"angle_deg":)" + std::to_string(angle_deg) + "}\n";
 }
 

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/settings/flip_proof.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "base/sha256.hpp"
+#include "fault_of.hpp"
+#include "io/settings/flip_log.hpp"
+#include "lib/io/scratch.hpp"
+
+using vam::Fault;
+
+namespace {
+
+std::string flip(double t_s, int frame, double angle_deg) {
+  return R"({"t_monotonic_s":)" + std::to_string(t_s) + R"(,"event":"flip","frame":)" + std::to_string(frame) +
+         R"(,"angle_deg":)" + std::to_string(angle_deg) + "}\n";
+}
+
+std::string seal(const std::string& lines) {
+  return R"({"utc":"2026-11-27T10:00:01Z","event":"sealed","log":"flips.jsonl","bytes":)" +
+         std::to_string(lines.size()) + R"(,"sha256":")" + vam::sha256(lines) + "\"}\n";
+}
+
+std::string angle(double t_s, double angle_deg) {
+  return R"({"t_monotonic_s":)" + std::to_string(t_s) + R"(,"angle_deg":)" + std::to_string(angle_deg) + "}\n";
+}
+
+const std::string armed = R"({"event":"armed","turns":3,"from_deg":0})"
+                          "\n";
+
+struct Run : scratch::Folder {
+  std::string read(const std::string& flips) const {
+    (void)write("flips.jsonl", flips);
+    return error_of([&] { (void)vam::io::read_shown(path.string()); }, Fault::data);
+  }
+  void holds(const std::string& flips) const {
+    (void)write("flips.jsonl", flips);
+    (void)vam::io::read_shown(path.string());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a log is held to what was sealed of it while it was written; what came later may be cut") {
+  const Run run;
+  const std::string first = flip(10, -1, -3) + flip(11, 0, 2);
+  const std::string second = first + flip(12, 1, 92);
+  const std::string all = second + flip(13, 2, 182);
+  (void)run.write("events.jsonl", armed + seal(first) + seal(second));
+  run.holds(all);
+  run.holds(second);
+  run.holds(second + R"({"t_mono)");
+  const std::string sealed = std::to_string(second.size());
+  CHECK(has(run.read(""), "flips.jsonl: has 0 bytes of whole lines, but events.jsonl states " + sealed +
+                              " at 2026-11-27T10:00:01Z; it was cut; restore it"));
+  CHECK(has(run.read(first), "has " + std::to_string(first.size()) + " bytes of whole lines"));
+  CHECK(has(run.read(second.substr(0, second.size() - 2)), "it was cut"));
+  CHECK(has(run.read(flip(10, -1, -4) + all.substr(flip(10, -1, -4).size())), "bytes whose SHA-256 begins"));
+  CHECK(
+      has(run.read(all.substr(flip(10, -1, -3).size())), "no line that ends at byte " + std::to_string(first.size())));
+  std::filesystem::remove(run.path / "flips.jsonl");
+  CHECK(has(error_of([&] { vam::io::require_stated_flips(run.path.string()); }, Fault::data), "has 0 bytes"));
+  // A log alone, and one by another name, are taken on trust.
+  (void)vam::io::read_shown(run.write("copy.jsonl", first));
+}
+
+TEST_CASE("a stage that turned on long after the last image proves that flips are missing") {
+  const Run run;
+  (void)run.write("events.jsonl", armed);
+  const std::string lit = flip(10, -1, -3) + flip(11, 0, 2) + flip(12, 1, 92);
+  (void)run.write("angles.jsonl", angle(9, -90) + angle(13.5, 230));
+  run.holds(lit);
+  (void)run.write("angles.jsonl", angle(9, -90) + angle(11, 1) + angle(14.5, 320) + R"({"t_mo)");
+  CHECK(has(run.read(lit), "flips.jsonl: ends 2.5 s before angles.jsonl, in which the stage turned on to 320 deg"));
+  CHECK(has(run.read(""), "has no light, 3.5 s before angles.jsonl"));
+  run.holds(lit + flip(12.1, -1, 0));  // dark
+  (void)run.write("angles.jsonl", angle(5, -400) + angle(9, -10));
+  run.holds("");  // killed in the run-up
+}
