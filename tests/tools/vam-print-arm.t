@@ -166,7 +166,9 @@ lit() { [ "$(cat killed/flips.jsonl 2>/dev/null | grep -c '"frame":[0-9]')" -gt 
 await lit; kill -KILL $printing; wait $printing 2>/dev/null
 for tool in '[v]am-project' '[v]am-stage'; do await sh -c "! pgrep -f '$tool.*killed/printer.toml' >/dev/null"; done
 cp -r killed known; cp -r killed cut; cp -r killed again
+is 'a killed print leaves its pipes' "$(ls -A killed | grep '^[.]' | tr '\n' ' ')" '.capture .project .reserve .stage .views '
 ok 'a killed print is resumed' print --resume killed --run rest
+is 'which removes them' "$(ls -A killed | grep -c '^[.]')" 0
 fails 65 'killed: already resumed, by .*/rest; resume that one instead' print --resume killed --run none
 is 'for its last turn' "$(grep -o '"turns":[0-9]*,"from_deg":[0-9]*' rest/events.jsonl | cut -d, -f1) $(json rest/summary.json outcome)" '"turns":1 done'
 # One that was calibrated needs no records to be resumed: its settings hold them. Its devices must be the same.
