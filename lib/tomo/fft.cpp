@@ -56,6 +56,35 @@ Fft::~Fft() {
   fftwf_destroy_plan(state_->backward);
 }
 
+struct RealFft::State {
+  fftwf_plan forward = nullptr;
+  fftwf_plan backward = nullptr;
+};
+
+RealFft::RealFft(int length) : state_(std::make_unique<State>()) {
+  std::vector<float, CacheAligned<float>> row(static_cast<std::size_t>(length) + 2);
+  auto* const spectrum = reinterpret_cast<fftwf_complex*>(row.data());
+  const std::lock_guard<std::mutex> lock(planner());
+  free_aligned(allocate_aligned(enough), enough);
+  state_->forward = fftwf_plan_dft_r2c_1d(length, row.data(), spectrum, FFTW_ESTIMATE);
+  state_->backward = fftwf_plan_dft_c2r_1d(length, spectrum, row.data(), FFTW_ESTIMATE);
+  if (state_->forward == nullptr || state_->backward == nullptr) throw Error{Fault::bug, "FFTW made no plan"};
+}
+
+RealFft::~RealFft() {
+  const std::lock_guard<std::mutex> lock(planner());
+  fftwf_destroy_plan(state_->forward);
+  fftwf_destroy_plan(state_->backward);
+}
+
+void RealFft::forward(float* row) const {
+  fftwf_execute_dft_r2c(state_->forward, row, reinterpret_cast<fftwf_complex*>(row));
+}
+
+void RealFft::backward(float* row) const {
+  fftwf_execute_dft_c2r(state_->backward, reinterpret_cast<fftwf_complex*>(row), row);
+}
+
 void Fft::forward(std::complex<float>* row) const { fftwf_execute_dft(state_->forward, raw(row), raw(row)); }
 void Fft::backward(std::complex<float>* row) const { fftwf_execute_dft(state_->backward, raw(row), raw(row)); }
 

@@ -32,10 +32,14 @@ bool is_even_full_turn(const ParallelGeometry& geometry) {
 
 }  // namespace
 
-Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<const Slab> sinograms) {
+void check_shapes(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<const Slab> sinograms) {
   check_shapes(images, geometry.nx, geometry.ny, "image");
   check_shapes(sinograms, geometry.columns, geometry.angles, "sinogram");
   if (images.size() != sinograms.size()) throw Error{Fault::bug, "radon: numbers of images and sinograms differ"};
+}
+
+Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<const Slab> sinograms) {
+  check_shapes(geometry, images, sinograms);
   const double reach = std::hypot(std::max(std::abs(geometry.axis_x), std::abs(geometry.nx - geometry.axis_x)),
                                   std::max(std::abs(geometry.axis_y), std::abs(geometry.ny - geometry.axis_y)));
   if (!(std::abs(geometry.alpha_per_px) * reach < largest_exponent)) {

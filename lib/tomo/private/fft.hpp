@@ -26,4 +26,20 @@ class Fft {
   std::unique_ptr<State> state_;
 };
 
+/// In-place transforms of an even number of real values, on a 64-byte boundary and followed by room for two more, to
+/// the non-negative half of their spectrum, and back; sums are not scaled.
+class RealFft {
+ public:
+  explicit RealFft(int length);
+  ~RealFft();
+  RealFft(const RealFft&) = delete;
+  RealFft& operator=(const RealFft&) = delete;
+  void forward(float* row) const;
+  void backward(float* row) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 }  // namespace vam::tomo

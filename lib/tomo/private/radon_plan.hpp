@@ -28,7 +28,10 @@ struct Plan {
   bool folded;            // angle a + half holds the mirror image of angle a
 };
 
-/// Checks shapes; throws Error{Fault::bug} when slabs do not fit the geometry, Fault::data when e^{alpha u} overflows.
+/// Throws Error{Fault::bug} when slabs do not fit the geometry.
+void check_shapes(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<const Slab> sinograms);
+
+/// Checks shapes; throws Fault::data when e^{alpha u} overflows.
 /// A full turn of an even number of angles without attenuation is folded: P(t, theta + pi) = P(-t, theta).
 Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<const Slab> sinograms);
 
