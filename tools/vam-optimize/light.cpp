@@ -79,13 +79,21 @@ void place_poses(Scene& scene, const model::Grid& part) {
   scene.margin.above += std::max(0, scene.rows - scene.grid.nz);
 }
 
-light::Beam beam_of(const Scene& scene, const Options& options) {
+/// auto: footprints where the light is absorbed or blocked.
+light::LineIntegrals integrals_of(const Scene& scene, const Options& options, double mu, bool inserts) {
+  if (options.line_integrals == "fourier") return light::fourier_for(scene.grid.nz);
+  if (options.line_integrals == "footprints" || mu > 0 || inserts) return light::LineIntegrals::footprints;
+  return light::quicker_for(scene.grid.nz, scene.turn);
+}
+
+light::Beam beam_of(const Scene& scene, const Options& options, bool inserts) {
   if (options.in_vial()) return light_of(scene.printer, scene, options);
   const double voxel_mm = scene.grid.voxel_mm;
   const model::Printer printer = modelled(scene.printer, options);
-  return light::ParallelBeam{scene.turn, printer.resin.absorption_per_mm * voxel_mm,
-                             model::resin_radius_mm(printer.vial) / voxel_mm,
-                             options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact};
+  const double mu = printer.resin.absorption_per_mm * voxel_mm;
+  return light::ParallelBeam{scene.turn, mu, model::resin_radius_mm(printer.vial) / voxel_mm,
+                             options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact,
+                             integrals_of(scene, options, mu, inserts)};
 }
 
 std::string reaches(const Options& options, double farthest_mm) {
@@ -154,7 +162,7 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
   place_poses(scene, grid);
   scene.grid = light::extended(grid, scene.margin);
   if (options.in_vial() && poses.empty()) {
-    require_rows(grid, std::get<light::VialSetup>(beam_of(scene, options)));
+    require_rows(grid, std::get<light::VialSetup>(beam_of(scene, options, false)));
   } else if (!options.in_vial()) {
     scene.circle.radius = std::min(scene.circle.radius, 0.5 * columns);
   }
@@ -186,7 +194,7 @@ double blur_px(const model::Resin& resin, const Scene& scene, const Options& opt
 double blur_px(const Scene& scene, const Options& options) { return blur_px(scene.printer.resin, scene, options); }
 
 std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options, std::span<const Slab> inserts) {
-  return light::make_operator(beam_of(scene, options), inserts);
+  return light::make_operator(beam_of(scene, options, !inserts.empty()), inserts);
 }
 
 namespace {

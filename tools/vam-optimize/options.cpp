@@ -229,6 +229,12 @@ void declare_beam(cli::App& app, Options& options) {
              "Absorption by the resin (resin.absorption_per_mm): exact; corrected once by the dose of a uniform disc, "
              "for parallel beams; or neglected.");
   app.was("--absorption");
+  app.choice(
+      "--line-integrals", options.line_integrals, {"footprints", "fourier", "auto"},
+      "Parallel beam in clear resin: sums along rays by the footprints of the voxels, as in vam-dose; by Fourier "
+      "slices, to 1e-3 of the largest dose and several times as fast for large slices; or by the faster of both, "
+      "by an estimate from sizes and numbers. Figures of merit are those of the doses so computed; vam-dose and "
+      "vam-score judge by footprints.");
   app.flag("--no-blur", options.no_blur, "Do not compensate for point spread and diffusion.");
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
              "Time during which the dose diffuses.");

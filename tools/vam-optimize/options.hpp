@@ -57,6 +57,7 @@ struct Options {
   int yield_printers = 200;
   std::string negative = "clip";
   std::string absorption_model = "exact";
+  std::string line_integrals = "footprints";
   bool no_blur = false;
   std::optional<double> diffusion_time_s;
   std::optional<int> bits;  // the projector's grey levels

@@ -162,6 +162,11 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
   if (options.in_vial() && options.absorption_model == "disc") {
     throw Error{Fault::usage, "--absorption-model disc: applies to parallel beams; use --geometry parallel"};
   }
+  if (options.line_integrals != "footprints" && (options.in_vial() || !options.certify.empty())) {
+    throw Error{Fault::usage, "--line-integrals " + options.line_integrals +
+                                  ": applies to parallel beams, and not to --certify, which proves by footprints; use "
+                                  "--geometry parallel without --certify"};
+  }
   if (options.demands.grey && !options.certify.empty()) {
     throw Error{Fault::usage, "--certify: does not apply to --grey-target, which distinguishes no part and void"};
   }

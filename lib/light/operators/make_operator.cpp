@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/make_operator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/per_slice.hpp"
 #include "base/text.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
 #include "light/operators/private/parallel_operator.hpp"
 #include "light/operators/private/shadowed_operator.hpp"
 #include "light/operators/private/vial_operator.hpp"
+#include "tomo/radon_choice.hpp"
 
 namespace vam::light {
 
@@ -39,6 +42,9 @@ std::unique_ptr<Operator> operator_of(const VialSetup& setup, std::span<const Sl
 
 std::unique_ptr<Operator> operator_of(const ParallelBeam& beam, std::span<const Slab> inserts) {
   const double mu = beam.mu_per_px;
+  if (beam.integrals != LineIntegrals::footprints && (mu > 0 || !inserts.empty())) {
+    throw Error{Fault::usage, "Fourier slices do not apply to light that is absorbed or blocked; use footprints"};
+  }
   if (!inserts.empty()) {
     if (mu > 0 && beam.correction == Correction::disc) {
       throw Error{Fault::usage,
@@ -46,7 +52,7 @@ std::unique_ptr<Operator> operator_of(const ParallelBeam& beam, std::span<const 
     }
     return std::make_unique<ShadowedOperator>(beam.turn, mu, beam.resin_radius_px, inserts);
   }
-  if (mu == 0) return std::make_unique<ParallelOperator>(beam.turn);
+  if (mu == 0) return std::make_unique<ParallelOperator>(beam.turn, beam.integrals);
   return std::make_unique<AttenuatedOperator>(beam.turn, mu, beam.resin_radius_px, beam.correction);
 }
 
@@ -60,6 +66,15 @@ Beam beam_of(const model::Printer& printer, const optics::AxisAlignment& alignme
   }
   return ParallelBeam{parallel_turn(info, grid), printer.resin.absorption_per_mm * grid.voxel_mm,
                       model::resin_radius_mm(printer.vial) / grid.voxel_mm};
+}
+
+LineIntegrals fourier_for(int slices) { return slices == 1 ? LineIntegrals::fourier_of_one : LineIntegrals::fourier; }
+
+LineIntegrals quicker_for(int slices, const tomo::ParallelGeometry& turn) {
+  const std::size_t slabs = std::clamp((slices + lanes - 1) / lanes, 1, slabs_per_pass);
+  const auto kind = slices == 1 ? tomo::FourierRadon::Slices::one : tomo::FourierRadon::Slices::all;
+  const tomo::RadonCost cost = tomo::radon_cost(turn.with_alpha(0), slabs, kind);
+  return cost.fourier < cost.footprints ? fourier_for(slices) : LineIntegrals::footprints;
 }
 
 std::unique_ptr<Operator> make_operator(const Beam& beam, std::span<const Slab> inserts) {

@@ -17,12 +17,17 @@ namespace vam::light {
 /// good where little is absorbed. A and A* are exact in both cases.
 enum class Correction { exact, disc };
 
+/// How A and A* of clear parallel light are summed: by footprints, or to 1e-3 of the largest value by Fourier slices
+/// [physics §1], which may be for passes of a single slice only. They are exact transposes in all cases.
+enum class LineIntegrals { footprints, fourier, fourier_of_one };
+
 /// Parallel light that enters at the resin's wall.
 struct ParallelBeam {
   tomo::ParallelGeometry turn;  // 360 degrees, its end excluded
   double mu_per_px = 0;         // absorption
   double resin_radius_px = 0;
   Correction correction = Correction::exact;
+  LineIntegrals integrals = LineIntegrals::footprints;
 };
 
 /// A virtual projector's light, or the chief rays of a real one.
@@ -33,8 +38,14 @@ using Beam = std::variant<ParallelBeam, VialSetup>;
 [[nodiscard]] Beam beam_of(const model::Printer& printer, const optics::AxisAlignment& alignment,
                            const model::StackInfo& info, const model::Grid& grid);
 
+/// Fourier slices for passes of a part with so many slices.
+[[nodiscard]] LineIntegrals fourier_for(int slices);
+/// The quicker way, by a model of what both cost.
+[[nodiscard]] LineIntegrals quicker_for(int slices, const tomo::ParallelGeometry& turn);
+
 /// A and A* of that light, around opaque inserts if there are any: a slab of coverage for every slab of the pass.
-/// Throws Fault::usage for the disc correction around inserts, Fault::data where light does not get through.
+/// Throws Fault::usage for the disc correction around inserts, and for Fourier slices around them or in an absorber,
+/// Fault::data where light does not get through.
 [[nodiscard]] std::unique_ptr<Operator> make_operator(const Beam& beam, std::span<const Slab> inserts = {});
 
 }  // namespace vam::light

@@ -24,18 +24,23 @@ double row_angle(const tomo::ParallelGeometry& turn) {
 
 }  // namespace
 
-ParallelOperator::ParallelOperator(const tomo::ParallelGeometry& turn)
+ParallelOperator::ParallelOperator(const tomo::ParallelGeometry& turn, LineIntegrals integrals)
     : turn_(turn),
       rows_(first_half(turn)),
       row_angle_rad_(row_angle(turn)),
-      inverse_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad_) {}
+      inverse_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad_) {
+  using Slices = tomo::FourierRadon::Slices;
+  if (integrals == LineIntegrals::footprints) return;
+  const Slices slices = integrals == LineIntegrals::fourier_of_one ? Slices::one : Slices::all;
+  fourier_ = std::make_unique<tomo::FourierRadon>(rows_, slices);
+}
 
 void ParallelOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
-  tomo::forward(rows_, objects, sinograms);
+  fourier_ ? fourier_->forward(objects, sinograms) : tomo::forward(rows_, objects, sinograms);
 }
 
 void ParallelOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
-  tomo::adjoint(rows_, sinograms, objects);
+  fourier_ ? fourier_->adjoint(sinograms, objects) : tomo::adjoint(rows_, sinograms, objects);
 }
 
 std::unique_ptr<Operator> ParallelOperator::for_one_slice() const {

@@ -47,6 +47,19 @@ TEST_CASE("the disc correction does not apply around an insert, unless nothing i
   CHECK(is<ShadowedOperator>(make_operator(clear, {&insert, 1})));
 }
 
+TEST_CASE("Fourier slices are for light that is neither absorbed nor blocked") {
+  const Slab insert(32, 32);
+  ParallelBeam beam{parts::turn(32, 20)};
+  beam.integrals = LineIntegrals::fourier;
+  CHECK(is<ParallelOperator>(make_operator(beam)));
+  CHECK(fault_of([&] { (void)make_operator(beam, {&insert, 1}); }) == Fault::usage);
+  beam.mu_per_px = 0.01;
+  CHECK(fault_of([&] { (void)make_operator(beam); }) == Fault::usage);
+  CHECK(quicker_for(64, parts::turn(32, 20)) == LineIntegrals::footprints);
+  CHECK(quicker_for(64, parts::turn(512, 360)) == LineIntegrals::fourier);
+  CHECK(quicker_for(1, parts::turn(512, 360)) == LineIntegrals::fourier_of_one);
+}
+
 TEST_CASE("the light of a virtual sinogram is that of its columns, in voxels of the grid") {
   model::Printer printer;
   printer.resin.absorption_per_mm = 0.04;

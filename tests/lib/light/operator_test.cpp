@@ -18,6 +18,14 @@ TEST_CASE("A and A* are adjoint, with half the rows and with all") {
   CHECK(parts::adjoint_error(ParallelOperator(parts::turn(65, 91))) < 1e-5);
 }
 
+TEST_CASE("A and A* are adjoint by Fourier slices, too, and about those of the footprints") {
+  for (const auto turn : {parts::turn(64, 90), parts::turn(65, 91)}) {
+    const ParallelOperator light(turn, LineIntegrals::fourier);
+    CHECK(parts::adjoint_error(light) < 1e-5);
+    parts::check_disc_comes_back(ParallelOperator(parts::turn(128, 360), LineIntegrals::fourier), 0.005, 0.01);
+  }
+}
+
 TEST_CASE("the preconditioner is symmetric and positive") {
   parts::check_preconditioner(ParallelOperator(parts::turn(64, 90)));
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A and A* of parallel light through clear resin: the matched pair of lib/tomo.
+// A and A* of parallel light through clear resin: the matched pairs of lib/tomo.
 #pragma once
 
+#include "light/operators/make_operator.hpp"
 #include "light/operators/operator.hpp"
 #include "light/operators/private/preconditioner.hpp"
+#include "tomo/fourier_radon.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
@@ -14,7 +16,7 @@ namespace vam::light {
 class ParallelOperator final : public Operator {
  public:
   /// `turn` covers 360 degrees, its end excluded. Throws Fault::usage when sizes are not positive.
-  explicit ParallelOperator(const tomo::ParallelGeometry& turn);
+  explicit ParallelOperator(const tomo::ParallelGeometry& turn, LineIntegrals integrals = LineIntegrals::footprints);
 
   [[nodiscard]] Shape object() const override { return {rows_.nx, rows_.ny}; }
   [[nodiscard]] Shape sinogram() const override { return {rows_.columns, rows_.angles}; }
@@ -34,6 +36,7 @@ class ParallelOperator final : public Operator {
   tomo::ParallelGeometry rows_;  // the rows that are unknowns: half a turn when halved
   double row_angle_rad_;         // the angle a row stands for
   Preconditioner inverse_;
+  std::unique_ptr<tomo::FourierRadon> fourier_;  // none: footprints
 };
 
 }  // namespace vam::light
