@@ -174,6 +174,20 @@ std::optional<Rival> rival_of(const Task& task, const std::vector<Start>& starts
   return rival.match > 0 ? std::optional(rival) : std::nullopt;
 }
 
+// Rotations that may lay the print, where it is, onto another place of the reference: those of its own principal frame,
+// of the reference's, and those of a cube.
+std::vector<Eigen::Matrix3d> other_rotations(const Task& task, const Motion& pose) {
+  std::vector<Vector3d> placed;
+  for (const Vector3d& p : task.some) placed.push_back(pose(p));
+  std::vector<Eigen::Matrix3d> all;
+  for (const auto& points : {placed, task.reference_points}) {
+    for (const Motion& motion : starting_poses(points, points, false))
+      all.emplace_back(motion.rotation * pose.rotation);
+  }
+  for (const Eigen::Matrix3d& turn : cube_rotations()) all.emplace_back(turn * pose.rotation);
+  return all;
+}
+
 Alignment align_part(const Task& task, const Motion& whole) {
   constexpr double reach = 0.05;  // of the size
   const double reach_mm = reach * task.size();
@@ -182,11 +196,22 @@ Alignment align_part(const Task& task, const Motion& whole) {
   const auto icp = [&](const auto& points, const AlignOptions& how, int most, Motion& start) {
     return run_icp(points, task.reference, how, most, task.size(), start, reach_mm).rms_mm;
   };
-  std::vector<Start> starts{{0, whole}};
-  for (const Motion& start : overlapping_poses(task.few, task.box, task.reference, 400)) starts.push_back({0, start});
-  keep_best(starts, 200, [&](Motion& start) { return icp(task.few, rigid, 6, start); });
-  keep_distinct(task, starts, 80);
-  keep_best(starts, 80, [&](Motion& start) { return icp(task.few, rigid, 20, start); });
+  const OverlapSearch search(task.box, task.reference);
+  const auto found_from = [&](const std::vector<Motion>& poses) {
+    std::vector<Start> starts;
+    for (const Motion& start : poses) starts.push_back({0, start});
+    keep_best(starts, 200, [&](Motion& start) { return icp(task.few, rigid, 6, start); });
+    keep_distinct(task, starts, 80);
+    keep_best(starts, 80, [&](Motion& start) { return icp(task.few, rigid, 20, start); });
+    return starts;
+  };
+  std::vector<Motion> poses = search.poses(task.few, even_rotations(), 1, 400);
+  poses.push_back(whole);
+  std::vector<Start> starts = found_from(poses);
+  // Again from the best: whether another place is found as good must not depend on how the print was turned.
+  const auto others = found_from(search.poses(task.few, other_rotations(task, starts.front().pose), 3, 200));
+  starts.insert(starts.end(), others.begin(), others.end());
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });
   keep_distinct(task, starts, 24);
   keep_best(starts, 24,
             [&](Motion& start) { return icp(task.some, task.options, task.options.max_iterations, start); });

@@ -54,8 +54,8 @@ struct Alignment {
 /// Centroids and principal axes of both surfaces give the starts: all 24 proper ways to lay the axes onto each other,
 /// and turns about the axes that symmetry leaves undetermined; a short ICP ranks them, the best go on to the end.
 /// Where these leave more than a seventh of the reference uncovered, the print is taken for a part: poses all over the
-/// reference are tried, far points do not pull [BT74], and the best pose has a rival if another one, which no symmetry
-/// of the reference explains, matches nine tenths as many points.
+/// reference are tried, and turns of the best one, far points do not pull [BT74], and the best pose has a rival if
+/// another one, which no symmetry of the reference explains, matches nine tenths as many points.
 [[nodiscard]] Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh,
                               const Surface& reference, const AlignOptions& options);
 

@@ -30,20 +30,6 @@ PrincipalAxes principal_frame(const std::vector<Vector3d>& points) {
   return frame;
 }
 
-// The 24 rotations that map a cube onto itself.
-std::vector<Matrix3d> cube_rotations() {
-  std::vector<Matrix3d> rotations;
-  std::array<int, 3> order{0, 1, 2};
-  do {
-    for (int signs = 0; signs < 8; ++signs) {
-      Matrix3d m = Matrix3d::Zero();
-      for (int r = 0; r < 3; ++r) m(r, order[r]) = (signs >> r & 1) != 0 ? -1 : 1;
-      if (m.determinant() > 0) rotations.push_back(m);
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  return rotations;
-}
-
 // Turns about `axis` by steps that a short ICP can bridge.
 void add_turns(const Vector3d& axis, std::vector<Matrix3d>& turns) {
   constexpr int steps = 18;  // a quarter turn is in the 24 already: 5 degrees between starts
@@ -81,6 +67,19 @@ std::vector<Matrix3d> undetermined_turns(const Vector3d& spread) {
 }
 
 }  // namespace
+
+std::vector<Matrix3d> cube_rotations() {
+  std::vector<Matrix3d> rotations;
+  std::array<int, 3> order{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Matrix3d m = Matrix3d::Zero();
+      for (int r = 0; r < 3; ++r) m(r, order[r]) = (signs >> r & 1) != 0 ? -1 : 1;
+      if (m.determinant() > 0) rotations.push_back(m);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return rotations;
+}
 
 Vector3d mean_of(const std::vector<Vector3d>& points) {
   Vector3d sum = Vector3d::Zero();

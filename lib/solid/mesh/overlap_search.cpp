@@ -19,8 +19,60 @@ using Eigen::Vector3d;
 constexpr int cells_along = 40;  // of the largest side
 constexpr double beyond = 0.1;   // of the size, by which points may leave the box
 
+struct Candidate {
+  float distance;
+  Motion pose;
+};
+
+// The points of a print that are tried, turned, and the shifts that keep all of it in the box.
+struct TurnedPrint {
+  std::vector<Vector3d> some;
+  Vector3d first;  // shift
+  int steps[3] = {0, 0, 0};
+};
+
+TurnedPrint turned(const std::vector<Vector3d>& print, const Matrix3d& rotation, const Bounds& box, double pitch) {
+  constexpr int tried = 48;
+  TurnedPrint out;
+  Vector3d low = Vector3d::Constant(1e300);
+  Vector3d high = -low;
+  const std::size_t every = std::max<std::size_t>(1, print.size() / tried);
+  for (std::size_t i = 0; i < print.size(); ++i) {
+    const Vector3d p = rotation * print[i];
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+    if (i % every == 0) out.some.push_back(p);
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double slack = box.high[a] - box.low[a] - (high[a] - low[a]);
+    if (slack < -beyond * box.largest_side()) return {};
+    out.steps[a] = 1 + std::max(0, ceil_int(slack / pitch));
+    out.first[a] = box.low[a] - low[a] + 0.5 * (slack - (out.steps[a] - 1) * pitch);
+  }
+  return out;
+}
+
+struct Shift {
+  float distance;
+  Vector3d mm;
+};
+
+// The best of these, no two of them within two steps of the grid.
+std::vector<Shift> best_apart(std::vector<Shift> shifts, double pitch, std::size_t count) {
+  std::vector<Shift> best;
+  while (best.size() < count && !shifts.empty()) {
+    best.push_back(*std::min_element(shifts.begin(), shifts.end(),
+                                     [](const Shift& a, const Shift& b) { return a.distance < b.distance; }));
+    if (best.size() == count) break;
+    std::erase_if(shifts, [&](const Shift& one) { return (one.mm - best.back().mm).norm() < 2 * pitch; });
+  }
+  return best;
+}
+
+}  // namespace
+
 // Distance to the design on a grid, cut off, as lookups must be quick.
-class DistanceGrid {
+class OverlapSearch::DistanceGrid {
  public:
   DistanceGrid(const Bounds& box, const Surface& design) : cell_(box.largest_side() / cells_along), most_(2 * cell_) {
     for (int a = 0; a < 3; ++a) {
@@ -62,8 +114,7 @@ class DistanceGrid {
   std::vector<float> values_;
 };
 
-// Rotations spread evenly [ALEXA22], about 20 degrees apart, and the 64 by quarter turns about the axes.
-std::vector<Matrix3d> rotations() {
+std::vector<Matrix3d> even_rotations() {
   std::vector<Matrix3d> all;
   constexpr int count = 2400;
   const double phi = std::numbers::sqrt2;
@@ -77,81 +128,44 @@ std::vector<Matrix3d> rotations() {
     all.push_back(Eigen::Quaterniond(inner * std::sin(a), inner * std::cos(a), outer * std::sin(b), outer * std::cos(b))
                       .toRotationMatrix());
   }
-  for (int i = 0; i < 64; ++i) {
-    const auto quarters = [](int turns, const Vector3d& axis) {
-      return Eigen::AngleAxisd(turns * std::numbers::pi / 2, axis).toRotationMatrix();
-    };
-    all.push_back(quarters(i % 4, Vector3d::UnitX()) * quarters(i / 4 % 4, Vector3d::UnitY()) *
-                  quarters(i / 16, Vector3d::UnitZ()));
-  }
+  for (const Matrix3d& turn : cube_rotations()) all.push_back(turn);
   return all;
 }
 
-struct Candidate {
-  float distance = 1e30F;
-  Motion pose;
-};
+OverlapSearch::OverlapSearch(const Bounds& box, const Surface& design)
+    : box_(box), distance_(std::make_unique<DistanceGrid>(box, design)) {}
 
-// The best shift of the turned points within the box.
-Candidate best_shift(const std::vector<Vector3d>& print, const Matrix3d& rotation, const Bounds& box,
-                     const DistanceGrid& distance) {
-  constexpr int tried = 48;
-  Vector3d low = Vector3d::Constant(1e300);
-  Vector3d high = -low;
-  std::vector<Vector3d> some;
-  const std::size_t every = std::max<std::size_t>(1, print.size() / tried);
-  for (std::size_t i = 0; i < print.size(); ++i) {
-    const Vector3d p = rotation * print[i];
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-    if (i % every == 0) some.push_back(p);
-  }
-  const double margin = beyond * box.largest_side();
-  const double pitch = 2 * distance.cell();
-  Vector3d first;
-  int steps[3];
-  for (int a = 0; a < 3; ++a) {
-    const double slack = box.high[a] - box.low[a] - (high[a] - low[a]);
-    if (slack < -margin) return {};
-    steps[a] = 1 + std::max(0, ceil_int(slack / pitch));
-    first[a] = box.low[a] - low[a] + 0.5 * (slack - (steps[a] - 1) * pitch);
-  }
-  Candidate best;
-  best.pose.rotation = rotation;
-  for (int n = 0; n < steps[0] * steps[1] * steps[2]; ++n) {
-    const int row = n / steps[0];
-    const int layer = row / steps[1];
-    const Vector3d shift = first + pitch * Vector3d(n % steps[0], row % steps[1], layer);
-    float sum = 0;
-    for (const Vector3d& p : some) sum += distance(p + shift);
-    const float mean = sum / static_cast<float>(some.size());
-    if (mean >= best.distance) continue;
-    best.distance = mean;
-    best.pose.shift = shift;
-  }
-  return best;
-}
+OverlapSearch::~OverlapSearch() = default;
 
-}  // namespace
-
-std::vector<Motion> overlapping_poses(const std::vector<Vector3d>& print, const Bounds& box, const Surface& design,
-                                      std::size_t count) {
-  const DistanceGrid distance(box, design);
-  const std::vector<Matrix3d> turns = rotations();
-  std::vector<Candidate> found(turns.size());
-  Progress progress("searching the overlap", count_of(turns));
-  parallel_for(count_of(turns), [&](int i) {
-    found[i] = best_shift(print, turns[i], box, distance);
+std::vector<Motion> OverlapSearch::poses(const std::vector<Vector3d>& print, const std::vector<Matrix3d>& rotations,
+                                         std::size_t shifts, std::size_t count) const {
+  const double pitch = 2 * distance_->cell();
+  std::vector<std::vector<Candidate>> of_turn(rotations.size());
+  Progress progress("searching the overlap", count_of(rotations));
+  parallel_for(count_of(rotations), [&](int i) {
+    const TurnedPrint tried = turned(print, rotations[i], box_, pitch);
+    std::vector<Shift> all;
+    for (int n = 0; n < tried.steps[0] * tried.steps[1] * tried.steps[2]; ++n) {
+      const int row = n / tried.steps[0];
+      const int layer = row / tried.steps[1];
+      const Vector3d shift = tried.first + pitch * Vector3d(n % tried.steps[0], row % tried.steps[1], layer);
+      float sum = 0;
+      for (const Vector3d& p : tried.some) sum += (*distance_)(p + shift);
+      all.push_back({sum / static_cast<float>(tried.some.size()), shift});
+    }
+    for (const Shift& shift : best_apart(std::move(all), pitch, shifts)) {
+      of_turn[i].push_back({shift.distance, {1, rotations[i], shift.mm}});
+    }
     progress.tick();
   });
+  std::vector<Candidate> found;
+  for (const auto& some : of_turn) found.insert(found.end(), some.begin(), some.end());
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
-  std::vector<Motion> poses;
-  for (const Candidate& candidate : found) {
-    if (poses.size() == count || candidate.distance > 1e29F) break;
-    poses.push_back(candidate.pose);
-  }
-  return poses;
+  found.resize(std::min(found.size(), count));
+  std::vector<Motion> motions;
+  for (const Candidate& candidate : found) motions.push_back(candidate.pose);
+  return motions;
 }
 
 }  // namespace vam::solid

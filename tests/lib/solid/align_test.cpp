@@ -287,3 +287,39 @@ TEST_CASE("half a bar lies anywhere along it: ambiguous; half a cube in any corn
   const auto corner = solid::align(moved(slab, turn({1, 2, 3}, 77, {5, 5, 5})), cube, solid::Surface(cube), options);
   CHECK(!corner.rival);
 }
+
+namespace {
+
+// A plate of 12 x 6 mm with two equal bores, up to this height, as voxels show it.
+TriangleSoup bored_plate(double top_mm) {
+  const model::Grid grid = model::centred_grid(64, 34, 14, 0.2, -1.3);
+  model::Volume volume{grid, std::vector<float>(grid.size())};
+  for (std::size_t i = 0; i < volume.values.size(); ++i) {
+    const auto n = static_cast<int>(i);
+    const double x = grid.x_mm(n % grid.nx);
+    const double y = grid.y_mm(n / grid.nx % grid.ny);
+    const double z = grid.z_mm(n / grid.nx / grid.ny);
+    const double inside_mm =
+        std::min({6 - std::abs(x), 3 - std::abs(y), z + 1, top_mm - z, std::hypot(std::abs(x) - 4, y) - 1});
+    volume.values[i] = static_cast<float>(std::clamp(0.5 + inside_mm / grid.voxel_mm, 0.0, 1.0));
+  }
+  return solid::isosurface(volume, 0.5);
+}
+
+}  // namespace
+
+TEST_CASE("half a plate that fits either way up is refused however it was turned") {
+  TriangleSoup plate = bored_plate(1);
+  test::add_box({4.1, 0.8, 0.9}, {5.9, 2.6, 2.8}, plate);  // says which side is up
+  const TriangleSoup lower = bored_plate(0.05);
+  const solid::Surface surface(plate);
+  std::uint64_t seed = 15;
+  const auto next = [&] { return unit_interval(seed = scrambled(seed)) - 0.5; };
+  for (int draw = 0; draw < trials_or(4); ++draw) {
+    CAPTURE(draw);
+    const Vector3 axis{next(), next(), next()};
+    const auto found = solid::align(moved(lower, turn(axis, 360 * next(), {1, 2, 3})), plate, surface, {});
+    REQUIRE(found.rival);
+    CHECK(found.rival->match > 0.95 * found.rival->best_match);
+  }
+}

@@ -16,6 +16,9 @@ struct Motion {
 
 [[nodiscard]] Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points);
 
+/// The 24 rotations that map a cube onto itself.
+[[nodiscard]] std::vector<Eigen::Matrix3d> cube_rotations();
+
 /// Poses that take the principal axes of the one to those of the other, in all ways that their second moments cannot
 /// tell apart; with_scale: their spread, too.
 [[nodiscard]] std::vector<Motion> starting_poses(const std::vector<Eigen::Vector3d>& print,
