@@ -45,8 +45,8 @@ class OstReconstructor {
   [[nodiscard]] const model::Grid& grid() const;
 
   /// What the views of a turn say of run-out and axis, from where this rig has them. Not determined where the resin
-  /// absorbs (a line is not the same from its other end) and without refraction; without effect, and so not seen, in a
-  /// bath of the resin's index.
+  /// absorbs more than is given (a line is not the same from its other end) and without refraction; without effect, and
+  /// so not seen, in a bath of the resin's index.
   [[nodiscard]] RunOut find_run_out(std::span<const CameraView> views) const;
 
   /// One volume from the views of one turn, in any order, with their own angles: scattering density in view units per

@@ -49,7 +49,7 @@ std::vector<ColumnMotion> OstReconstructor::State::motion(std::span<const double
 RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   const State& s = *state_;
   RunOut found;
-  if (s.absorption_per_mm > 0 || !s.options.refraction) return found;
+  if (!s.options.refraction) return found;
   const std::vector<double> angles_deg = angles_of(views);
   const Turns turns(angles_deg);
   const RowOfHeight map(s.eye);
@@ -78,11 +78,15 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   found.determined = fit.converged;
   found.mm = {s.options.run_out_mm[0] + fit.value[1] * unit_mm, s.options.run_out_mm[1] + fit.value[2] * unit_mm};
   // Both are seen by the same lines; what these say of one alone is little for a standard deviation.
-  const double sigma_mm = unit_mm * std::hypot(fit.sigma[1], fit.sigma[2]) / std::numbers::sqrt2;
+  // Absorption is fitted to the first order, which leaves up to 0.015 mm at 0.1 per mm.
+  constexpr double left_mm2 = 0.1;
+  const double sigma_mm = std::hypot(unit_mm * std::hypot(fit.sigma[1], fit.sigma[2]) / std::numbers::sqrt2,
+                                     left_mm2 * s.absorption_per_mm);
   found.sigma_mm = {sigma_mm, sigma_mm};
   found.column = s.axis.column + fit.value[0];
   found.column_sigma = fit.sigma[0];
-  if (fit.converged) {
+  const bool is_given = s.absorption_per_mm > 0;
+  if (fit.converged && !is_given) {
     found.absorption_per_mm = fit.value[pair_motions] / s.grid.voxel_mm;
     found.absorption_sigma_per_mm = fit.sigma[pair_motions] / s.grid.voxel_mm;
   }

@@ -276,3 +276,27 @@ TEST_CASE("absorption that is not given is no run-out, and is seen") {
     CHECK(!clear.absorbs());
   }
 }
+
+TEST_CASE("where the absorption is given the run-out is found beside it, and none where there is none") {
+  for (const double absorption_per_mm : {0.02, 0.05, 0.1}) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      CAPTURE(absorption_per_mm);
+      CAPTURE(seed);
+      std::mt19937 random(seed);
+      oracle::ViewBench bench = coarse_bench();
+      bench.absorption_per_mm = absorption_per_mm;
+      const auto part = random_part(random);
+      const auto found_at = [&](double x_mm, double y_mm) {
+        bench.run_out_mm = {x_mm, y_mm};
+        return found_in(bench, seen(bench, part, 0.01, seed, 90), {bench.axis_column, 0});
+      };
+      const RunOut none = found_at(0, 0);
+      const RunOut some = found_at(0.16, -0.12);
+      MESSAGE("without it ", none.size_mm(), " +- ", none.size_sigma_mm(), " mm, with it ", some.mm[0], " ", some.mm[1],
+              " +- ", some.size_sigma_mm(), " mm");
+      CHECK(!none.seen());
+      CHECK(some.seen());
+      CHECK(std::hypot(some.mm[0] - 0.16, some.mm[1] + 0.12) < 0.04);
+    }
+  }
+}
