@@ -56,7 +56,7 @@ class Draw {
       : cell_mm_(std::numbers::sqrt2 * errors.cell_mm),
         rms_mm_(rms_mm),
         seed_(scrambled(static_cast<std::uint64_t>(trial) << 40U)) {
-    common_mm_ = errors.common_mm * normal_number(seed_ + 2);
+    common_mm_ = errors.common_mm * normal_number(seed_ + 2) + errors.resolution_mm * normal_number(seed_ + 6);
     scale_ = errors.scale * normal_number(seed_ + 4);
   }
   /// At a place of the print.
@@ -263,6 +263,7 @@ Json to_json(const SurfaceErrors& errors) {
           {"surface_mm", std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, errors.vertex_mm.size())))},
           {"cell_mm", errors.cell_mm},
           {"isovalue_mm", errors.common_mm},
+          {"resolution_mm", errors.resolution_mm},
           {"scale_percent", 100 * errors.scale},
           {"coverage_factor", coverage},
           {"trials", trials}};

@@ -226,16 +226,18 @@ TEST_CASE("uncertainties are those of repeated prints") {
   }
 }
 
-TEST_CASE("an uncertain isovalue moves the mean, an uncertain scale the size") {
+TEST_CASE("an uncertain isovalue and the resolution move the mean, an uncertain scale the size") {
   const auto design = test::sphere({0, 0, 0}, 5, 60);
   const Inspection found = inspect(design, design, solid::Surface(design), 20000, {});
-  const auto stated = [&](double common_mm, double scale) {
-    const SurfaceErrors errors{"volume", std::vector<float>(design.points.size(), 0.0F), 0.2, common_mm, scale};
+  const auto stated = [&](double common_mm, double scale, double resolution_mm = 0) {
+    SurfaceErrors errors{"volume", std::vector<float>(design.points.size(), 0.0F), 0.2, common_mm, scale};
+    errors.resolution_mm = resolution_mm;
     return expanded_uncertainty(found, design, errors)["print_to_design"]["mean_mm"].get<double>();
   };
   CHECK(stated(0, 0) < 1e-4);  // exact but for float
   // Two standard deviations, drawn 20 times: +-16 %.
   CHECK(stated(0.02, 0) == doctest::Approx(0.04).epsilon(0.4));
+  CHECK(stated(0, 0, 0.02) == doctest::Approx(0.04).epsilon(0.4));
   CHECK(stated(0, 0.01) == doctest::Approx(2 * 0.01 * 5).epsilon(0.4));
 }
 
