@@ -78,6 +78,21 @@ for words in 'Print and design' 'section across z' '5.2 mm (design 5 mm)' '3.06 
   'top.flatness_mm' 'The last bin holds all beyond'; do
   ok "it has: $words" grep -q -- "$words" inspection.html
 done
+# A step at half height: the section would follow its face.
+{
+  echo 'OFF 16 24 0'
+  for box in '-5 5 -4 4 -1 0' '-2 2 -2 2 0 1'; do
+    echo "$box" | awk '{ for (n = 0; n < 8; n++) print $(1 + n % 2), $(3 + int(n / 2) % 2), $(5 + int(n / 4)) }'
+  done
+  for first in 0 8; do
+    for face in 021 123 456 576 014 154 263 367 042 246 135 375; do
+      echo "$face" | sed 's/./& /g' | awk -v n=$first '{ print 3, n + $1, n + $2, n + $3 }'
+    done
+  done
+} >step.off
+ok 'a page of a part with a step' vam-report step.off -o step.html
+ok 'its section lies beside the step' grep -q 'section across z at 0.06 mm' step.html
+ok 'the others in the middle' grep -q 'section across x at 0 mm' step.html
 sed 's/"guard_band": false/"guard_band": true/' inspection.json >damaged.json
 fails 65 'damaged.json' vam-report deviation.ply damaged.json -o x.html
 

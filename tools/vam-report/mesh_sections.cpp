@@ -56,6 +56,33 @@ Outline outline_of(const model::TriangleSoup& mesh, const Cut& cut) {
   return found;
 }
 
+/// Whether a face lies in the plane, or within so much of it, where the outline would be that of its ragged edge.
+bool lies_in_a_face(const model::TriangleSoup& mesh, const Cut& cut, double near_mm) {
+  constexpr double flat = 0.95;  // cosine
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
+    const auto& [a, b, c] = triangle;
+    const Vector3 normal = cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]);
+    return std::abs(normal[cut.across]) > flat * length(normal) &&
+           std::all_of(triangle.begin(), triangle.end(),
+                       [&](int corner) { return std::abs(mesh.points[corner][cut.across] - cut.at_mm) < near_mm; });
+  });
+}
+
+/// Through the middle, or beside it where faces lie there.
+Cut cut_across(std::size_t axis, const solid::Bounds& box, const std::vector<ShownMesh>& meshes) {
+  constexpr double near = 0.01;
+  const double size = box.high[axis] - box.low[axis];
+  const Cut middle{axis, 0.5 * (box.low[axis] + box.high[axis])};
+  for (const double aside : {0.0, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1}) {
+    const Cut cut{axis, middle.at_mm + aside * size};
+    const bool clear = std::none_of(meshes.begin(), meshes.end(), [&](const ShownMesh& shown) {
+      return lies_in_a_face(shown.mesh, cut, near * size);
+    });
+    if (clear) return cut;
+  }
+  return middle;
+}
+
 constexpr double drawn_px = 360;
 constexpr double margin_px = 60;
 
@@ -141,7 +168,7 @@ std::string mesh_sections(const std::vector<ShownMesh>& meshes) {
   const solid::Bounds box = solid::bounding_box(meshes[0].mesh);
   std::string made;
   for (std::size_t axis = 3; axis-- > 0;) {
-    const Cut cut{axis, 0.5 * (box.low[axis] + box.high[axis])};
+    const Cut cut = cut_across(axis, box, meshes);
     std::vector<Outline> outlines;
     for (const ShownMesh& mesh : meshes) outlines.push_back(outline_of(mesh.mesh, cut));
     if (outlines[0].segments.empty()) continue;
