@@ -214,19 +214,17 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
   return best;
 }
 
-std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& along, double least, double most,
-                                           const std::function<bool(int triangle)>& counts) const {
-  const Vector3 end = from + most * along;
-  Vector3 low{};
-  Vector3 high{};
-  for (std::size_t d = 0; d < 3; ++d) std::tie(low[d], high[d]) = std::minmax(from[d], end[d]);
-  std::optional<Hit> first;
+namespace {
+
+/// visit(i) of the triangles in leaves that overlap a box, until one returns true, which is returned.
+template <class Visit>
+bool any_in_box(const TriangleTree& tree, const Vector3& low, const Vector3& high, const Visit& visit) {
   std::array<int, 64> stack;  // the median split keeps the depth below 32
   std::size_t waiting = 0;
   stack[waiting++] = 0;
   while (waiting > 0) {
     const int index = stack[--waiting];
-    const TriangleNode& node = nodes[index];
+    const TriangleNode& node = tree.nodes[index];
     if (!overlap(node, low, high)) continue;
     if (node.right != 0) {
       stack[waiting++] = node.right;
@@ -234,35 +232,37 @@ std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& a
       continue;
     }
     for (int i = node.begin; i < node.end; ++i) {
-      const auto distance = distance_to(triangles[i], from, along);
-      if (distance && *distance >= least && *distance <= most && (!first || *distance < first->distance) &&
-          (!counts || counts(i)))
-        first = {*distance, i};
+      if (visit(i)) return true;
     }
   }
+  return false;
+}
+
+}  // namespace
+
+std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& along, double least, double most,
+                                           const std::function<bool(int triangle)>& counts) const {
+  const Vector3 end = from + most * along;
+  Vector3 low{};
+  Vector3 high{};
+  for (std::size_t d = 0; d < 3; ++d) std::tie(low[d], high[d]) = std::minmax(from[d], end[d]);
+  std::optional<Hit> first;
+  any_in_box(*this, low, high, [&](int i) {
+    const auto distance = distance_to(triangles[i], from, along);
+    if (distance && *distance >= least && *distance <= most && (!first || *distance < first->distance) &&
+        (!counts || counts(i)))
+      first = {*distance, i};
+    return false;
+  });
   return first;
 }
 
 bool TriangleTree::meets_cube(const Vector3& centre, double half_side) const {
   const Vector3 half{half_side, half_side, half_side};
-  std::array<int, 64> stack;  // the median split keeps the depth below 32
-  std::size_t waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const int index = stack[--waiting];
-    const TriangleNode& node = nodes[index];
-    if (!overlap(node, centre - half, centre + half)) continue;
-    if (node.right != 0) {
-      stack[waiting++] = node.right;
-      stack[waiting++] = index + 1;
-      continue;
-    }
-    for (int i = node.begin; i < node.end; ++i) {
-      const auto& [a, b, c] = triangles[i];
-      if (meets({a - centre, b - centre, c - centre}, half_side)) return true;
-    }
-  }
-  return false;
+  return any_in_box(*this, centre - half, centre + half, [&](int i) {
+    const auto& [a, b, c] = triangles[i];
+    return meets({a - centre, b - centre, c - centre}, half_side);
+  });
 }
 
 std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh, std::vector<int>* places) {

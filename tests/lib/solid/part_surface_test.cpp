@@ -64,22 +64,13 @@ Mesh bored(double wide) {
   return mesh;
 }
 
-/// A tooth every `pitch` along x, of that height, on a block.
-Mesh toothed(int teeth, double pitch, double height) {
+/// A prism along y of that length; `inside` sees all corners of its outline in x and z.
+Mesh prism(const std::vector<std::array<double, 2>>& outline, double length, const std::array<double, 2>& inside) {
   Mesh mesh;
-  const double length = teeth * pitch;
-  const double wide = 20;
-  std::vector<std::array<double, 2>> outline{{0, -10}, {length, -10}};
-  for (int n = teeth; n-- > 0;) {
-    outline.push_back({(n + 1) * pitch, 0});
-    outline.push_back({(n + 0.5) * pitch, height});
-  }
-  outline.push_back({0, 0});
   const int corners = static_cast<int>(outline.size());
-  for (const double y : {0.0, wide})
+  for (const double y : {0.0, length})
     for (const auto& [x, z] : outline) mesh.points.push_back({x, y, z});
-  mesh.points.push_back({0.5 * length, 0, -5});
-  mesh.points.push_back({0.5 * length, wide, -5});
+  for (const double y : {0.0, length}) mesh.points.push_back({inside[0], y, inside[1]});
   for (int a = 0; a < corners; ++a) {
     const int b = (a + 1) % corners;
     mesh.triangles.push_back({a, b, 2 * corners});
@@ -88,6 +79,18 @@ Mesh toothed(int teeth, double pitch, double height) {
     mesh.triangles.push_back({b, a + corners, b + corners});
   }
   return mesh;
+}
+
+/// A tooth every `pitch` along x, of that height, on a block.
+Mesh toothed(int teeth, double pitch, double height) {
+  const double length = teeth * pitch;
+  std::vector<std::array<double, 2>> outline{{0, -10}, {length, -10}};
+  for (int n = teeth; n-- > 0;) {
+    outline.push_back({(n + 1) * pitch, 0});
+    outline.push_back({(n + 0.5) * pitch, height});
+  }
+  outline.push_back({0, 0});
+  return prism(outline, 20, {0.5 * length, -5});
 }
 
 /// A roof of that angle, 20 high.
@@ -238,22 +241,8 @@ TEST_CASE("a nib along an edge is no wall, however parallel its faces; a fin is"
   const auto ridge = [](double high) {  // a roof of 60 degrees, cut off where it is 0.1 wide, with a nib on top
     const double foot = 6;
     const double top = (foot - 0.05) * std::sqrt(3.0);
-    const std::vector<std::array<double, 2>> outline{{-foot, 0},         {foot, 0},           {0.05, top},
-                                                     {0.05, top + high}, {-0.05, top + high}, {-0.05, top}};
-    const int corners = static_cast<int>(outline.size());
-    Mesh mesh;
-    for (const double y : {0.0, 16.0})
-      for (const auto& [x, z] : outline) mesh.points.push_back({x, y, z});
-    mesh.points.push_back({0, 0, 4});
-    mesh.points.push_back({0, 16, 4});
-    for (int a = 0; a < corners; ++a) {
-      const int b = (a + 1) % corners;
-      mesh.triangles.push_back({a, b, 2 * corners});
-      mesh.triangles.push_back({b + corners, a + corners, 2 * corners + 1});
-      mesh.triangles.push_back({b, a, a + corners});
-      mesh.triangles.push_back({b, a + corners, b + corners});
-    }
-    return seen(turned(mesh));
+    return seen(turned(prism(
+        {{-foot, 0}, {foot, 0}, {0.05, top}, {0.05, top + high}, {-0.05, top + high}, {-0.05, top}}, 16, {0, 4})));
   };
   CHECK(!ridge(0.2).leaves_doubt());
   CHECK(ridge(3).has_thin_walls());
