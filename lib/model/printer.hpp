@@ -30,8 +30,8 @@ struct Projector {
   double max_led_current_percent = 40;  // of the light engine; more is refused
   std::string relay;                    // dead-man relay on the lamp's power; empty: none
 
-  /// The rotation axis is in the image.
-  [[nodiscard]] bool shows_axis() const { return axis_column >= 0 && axis_column <= columns - 1; }
+  /// The rotation axis is in the image, whose first pixel is around 0.
+  [[nodiscard]] bool shows_axis() const { return axis_column >= -0.5 && axis_column <= columns - 0.5; }
 };
 
 struct Vial {

@@ -200,9 +200,10 @@ void Session::say_axis() const {
     note("run-out of the vial " + format_number(run_out_.size_mm(), 3) + " +- " +
          format_number(run_out_.size_sigma_mm(), 2) + " mm, removed");
   } else if (!run_out_.determined && !options_.keep_run_out && !options_.no_refraction && !run_out_.absorbs()) {
-    warn(
-        "the run-out of the vial is not determined by these views and none is removed; clean window and resin, or "
-        "give --keep-run-out where there is none");
+    const std::string line =
+        "the run-out of the vial is not determined by these views and none is removed; clean window and resin, or give "
+        "--keep-run-out where there is none";
+    options_.live ? note(line) : warn(line);
   }
   if (run_out_.absorbs()) {
     warn("the views look as if the resin absorbs the scattered light by " +
