@@ -88,16 +88,22 @@ double within_percent(std::span<const float> distances_mm, double tolerance_mm) 
 
 std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSample> design,
                                              std::span<const float> distances_mm) {
-  constexpr std::size_t unknowns = 6;  // growth and shift along each axis
+  constexpr std::size_t unknowns = 9;  // growth and shift along each axis, turn about each
+  constexpr std::size_t turns = 6;     // the first of these
   constexpr int rounds = 15;           // of reweighted least squares, to the least sum of absolute misses
   constexpr double least_mm = 1e-5;    // what a miss is divided by at least
+  constexpr double least_grip = 1e-6;  // of all weights, that holds a turn in which a surface slides on itself
   Vector3 middle{};
   for (const auto& s : design) middle = middle + (1.0 / static_cast<double>(design.size())) * s.point;
   const auto row_of = [&](std::size_t i) {
     const Vector3& n = design[i].normal;
     const Vector3 arm = design[i].point - middle;
-    return std::array<double, unknowns>{n[0] * arm[0], n[1] * arm[1], n[2] * arm[2], n[0], n[1], n[2]};
+    const Vector3 turn = cross(arm, n);
+    return std::array<double, unknowns>{n[0] * arm[0], n[1] * arm[1], n[2] * arm[2], n[0],   n[1],
+                                        n[2],          turn[0],       turn[1],       turn[2]};
   };
+  double reach_mm = 1e-12;
+  for (const auto& s : design) reach_mm = std::max(reach_mm, length(s.point - middle));
   std::vector<double> part(unknowns);
   std::vector<double> weight(design.size(), 1.0);
   for (int round = 0; round < rounds; ++round) {
@@ -107,6 +113,11 @@ std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSampl
       const double root = std::sqrt(weight[i]);
       for (const double r : row_of(i)) rows.push_back(root * r);
       values.push_back(root * static_cast<double>(distances_mm[i]));
+    }
+    const double held = reach_mm * std::sqrt(least_grip * std::accumulate(weight.begin(), weight.end(), 0.0));
+    for (std::size_t turn = turns; turn < unknowns; ++turn) {
+      for (std::size_t column = 0; column < unknowns; ++column) rows.push_back(column == turn ? held : 0.0);
+      values.push_back(0);
     }
     part = stats::linear_fit(rows, unknowns, values);
     for (std::size_t i = 0; i < design.size(); ++i) {

@@ -37,8 +37,9 @@ struct SurfaceDeviation {
 [[nodiscard]] double within_percent(std::span<const float> distances_mm, double tolerance_mm);
 
 /// How much shorter a print is along x, y and z of its design, in per cent, its growth all around included: what
-/// callipers find. From distances along the normals at points of the design, by the least sum of absolute
-/// misses, which crumbs and missing pieces do not pull [physics §8].
+/// callipers find. A shift and a small turn, which the alignment has left, are fitted with it. From distances along the
+/// normals at points of the design, by the least sum of absolute misses, which crumbs and missing pieces do not pull
+/// [physics §8].
 [[nodiscard]] std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSample> design,
                                                            std::span<const float> distances_mm);
 
