@@ -28,7 +28,9 @@ cli::Manual manual() {
        "tried, and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps "
        "it. A print that covers less than 6/7 of the design is taken for a part of it: poses all over the design are "
        "tried, fracture faces are given no weight, and if two poses that no symmetry relates fit equally well, the "
-       "status is 65. With --fit-scale a uniform scale is also fitted and reported as shrinkage.",
+       "status is 65. With --fit-scale a uniform scale is also fitted and reported as shrinkage; all other figures, "
+       "the "
+       "shrinkage along the axes (shrinkage_xyz_percent) too, are then of the scaled print.",
        "A summary is printed on standard error if that is a terminal; --report writes the figures as JSON, -o the "
        "print with distances and blue-white-red colours. With --require the exit status is 1 unless all conditions "
        "hold.",

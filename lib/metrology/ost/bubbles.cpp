@@ -33,10 +33,15 @@ double typical_difference(const std::vector<Image>& sinograms) {
   return differences.empty() ? 0.0 : stats::median(differences);
 }
 
-// What a ray must be brighter by than the other end of its line: above the noise and a share of the contrast.
-float bubble_contrast(const std::vector<Image>& sinograms) {
+float brightest(const std::vector<Image>& sinograms) {
   float most = 0;
   for (const Image& s : sinograms) most = std::max(most, *std::max_element(s.values.begin(), s.values.end()));
+  return most;
+}
+
+// What a ray must be brighter by than the other end of its line: above the noise and a share of the contrast.
+float bubble_contrast(const std::vector<Image>& sinograms) {
+  const float most = brightest(sinograms);
   const double noise = typical_difference(sinograms) * sigmas_per_median / std::sqrt(2.0);
   return static_cast<float>(6 * noise + 0.03 * most);
 }
@@ -111,6 +116,7 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, std::ve
   const int width = sinograms.front().width;
   const int angles = sinograms.front().height;
   const auto heights = count_of(sinograms);
+  if (brightest(sinograms) <= 0) return 0;  // beside the print
   const float least = bubble_contrast(sinograms);
   restore_dark_rays(sinograms, rows, least);
   std::vector<RayMask> marked(angles);

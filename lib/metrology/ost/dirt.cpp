@@ -101,13 +101,14 @@ Dirt even_background(const Image& mean_view) {
 
 double remove_specks(std::vector<Image>& sinograms) {
   const Image mean = mean_over_angles(sinograms);
+  const double most = *std::max_element(mean.values.begin(), mean.values.end());
+  if (most <= 0) return 0;  // beside the print, where rounding leaves the background a little above the light
   const Image departure = departures(mean);
   std::vector<float> some;
   for (std::size_t i = 0; i < departure.size(); i += 7) {
     if (departure.values[i] > 0) some.push_back(departure.values[i]);
   }
   const double noise = some.empty() ? 0.0 : stats::median(some) * sigmas_per_median;
-  const double most = *std::max_element(mean.values.begin(), mean.values.end());
   const auto least = static_cast<float>(8 * noise + 0.02 * most);
   RayMask marked(mean.size());
   for (int k = 0; k < mean.height; ++k) {
