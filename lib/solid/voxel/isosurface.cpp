@@ -59,10 +59,10 @@ openvdb::FloatGrid::Ptr below_level(const model::Grid& grid, const ReadSlices& r
 /// A row of 2 n - 1 values from one of n: the values, and the means of neighbours.
 void interpolate_row(const float* row, int n, float* out) {
   for (int x = 0; x + 1 < n; ++x) {
-    out[2 * x] = row[x];
-    out[2 * x + 1] = 0.5F * (row[x] + row[x + 1]);
+    *out++ = row[x];
+    *out++ = 0.5F * (row[x] + row[x + 1]);
   }
-  out[2 * (n - 1)] = row[n - 1];
+  *out = row[n - 1];
 }
 
 void set_to_mean(const float* a, const float* b, std::size_t count, float* out) {
@@ -101,7 +101,7 @@ class Halved {
     if (held.k == k) return held.values;
     read_(k, 1, read_slice_.data());
     for (int y = 0; y < coarse_.ny; ++y) {
-      float* row = held.values.data() + product(2 * y, grid_.nx);
+      float* row = held.values.data() + 2 * product(y, grid_.nx);
       interpolate_row(read_slice_.data() + product(y, coarse_.nx), coarse_.nx, row);
       if (y > 0) set_to_mean(row - product(2, grid_.nx), row, static_cast<std::size_t>(grid_.nx), row - grid_.nx);
     }
