@@ -99,10 +99,11 @@ Dirt even_background(const Image& mean_view) {
   return found;
 }
 
-double remove_specks(std::vector<Image>& sinograms) {
+std::vector<char> speck_rays(const std::vector<Image>& sinograms) {
   const Image mean = mean_over_angles(sinograms);
   const double most = *std::max_element(mean.values.begin(), mean.values.end());
-  if (most <= 0) return 0;  // beside the print, where rounding leaves the background a little above the light
+  RayMask marked(mean.size());
+  if (most <= 0) return marked;  // beside the print, where rounding leaves the background a little above the light
   const Image departure = departures(mean);
   std::vector<float> some;
   for (std::size_t i = 0; i < departure.size(); i += 7) {
@@ -110,26 +111,29 @@ double remove_specks(std::vector<Image>& sinograms) {
   }
   const double noise = some.empty() ? 0.0 : stats::median(some) * sigmas_per_median;
   const auto least = static_cast<float>(8 * noise + 0.02 * most);
-  RayMask marked(mean.size());
   for (int k = 0; k < mean.height; ++k) {
     for (int t = 0; t < mean.width; ++t) {
       const std::size_t i = mean.index(t, k);
       marked[i] = departure.values[i] > least && stays(sinograms[k], t, 0.5F * least) ? 1 : 0;
     }
   }
-  marked = grown(marked, mean.width, mean.height, 2);
+  return grown(marked, mean.width, mean.height, 2);
+}
+
+double remove_specks(std::vector<Image>& sinograms) {
+  const RayMask marked = speck_rays(sinograms);
   const auto count = std::count(marked.begin(), marked.end(), char{1});
   if (count == 0) return 0;
-  parallel_for(mean.height, [&](int k) {
+  parallel_for(count_of(sinograms), [&](int k) {
     Image& s = sinograms[k];
-    for (int t = 0; t < mean.width; ++t) {
-      if (marked[mean.index(t, k)] == 0) continue;
-      const int mirror = mean.width - 1 - t;
-      if (marked[mean.index(mirror, k)] != 0) continue;
+    const char* row = marked.data() + product(k, s.width);
+    for (int t = 0; t < s.width; ++t) {
+      const int mirror = s.width - 1 - t;
+      if (row[t] == 0 || row[mirror] != 0) continue;
       for (int a = 0; a < s.height; ++a) s(t, a) = s(mirror, opposite(s, a));
     }
   });
-  return static_cast<double>(count) / static_cast<double>(mean.size());
+  return static_cast<double>(count) / static_cast<double>(marked.size());
 }
 
 Json to_json(const Dirt& dirt) {

@@ -25,8 +25,10 @@ struct Dirt {
 [[nodiscard]] Dirt even_background(const Image& mean_view);
 
 /// Sinograms of one stretch of heights, columns x an even number of angles over a turn, axis in the middle. A pixel of
-/// their mean over the angles that departs from its row and has no mirror image about the axis is a speck; with two
-/// pixels around it, it is replaced by the line seen from the other end. Returns the share of the rays.
+/// their mean over the angles that departs from its row and has no mirror image about the axis is a speck: it and two
+/// pixels around it are 1, [height][column].
+[[nodiscard]] std::vector<char> speck_rays(const std::vector<Image>& sinograms);
+/// Replaces them by the line seen from the other end. Returns the share of the rays.
 double remove_specks(std::vector<Image>& sinograms);
 
 [[nodiscard]] Json to_json(const Dirt& dirt);

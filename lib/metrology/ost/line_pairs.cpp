@@ -11,6 +11,8 @@
 #include "base/parallel.hpp"
 #include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
+#include "metrology/ost/dirt.hpp"
+#include "metrology/ost/private/ray_mask.hpp"
 
 namespace vam::metrology {
 
@@ -98,6 +100,9 @@ Image absorbed(const Image& s) {
 struct Lines {
   std::vector<Image> now;
   std::array<std::vector<Image>, unknowns> by;  // one unit of each unknown
+  RayMask hidden;                               // by specks at either end, [height][column]
+
+  [[nodiscard]] bool is_seen(int k, int t) const { return hidden[product(k, now.front().width) + t] == 0; }
 };
 
 struct Sums {
@@ -115,13 +120,15 @@ int other_height(int k, int count) {
 
 // Adds the lines of one height.
 void add_height(const Lines& lines, int k, double bound, Sums& sums) {
-  const auto& [now, by] = lines;
+  const auto& now = lines.now;
+  const auto& by = lines.by;
   const int other = other_height(k, count_of(now));
   const Image& s = now[k];
   const int half = s.width / 2;
   for (int a = 0; a < s.height; ++a) {
     const int angle_range = a * angle_ranges / s.height;
     for (int t = 2; t < half; ++t) {
+      if (!lines.is_seen(k, t) || !lines.is_seen(other, t)) continue;
       Vector own{};
       Vector row{};
       for (int i = 0; i < unknowns; ++i) {
@@ -223,6 +230,7 @@ std::vector<double> edge_differences(const Lines& lines) {
     const Image& s = lines.now[k];
     for (int a = 0; a < s.height; ++a) {
       for (int t = 2; t < s.width / 2; ++t) {
+        if (!lines.is_seen(k, t)) continue;
         double sight = 0;
         for (int i = 0; i < pair_motions; ++i) sight += std::pow(difference(lines.by[i], k, t, a), 2);
         sights.push_back(sight);
@@ -276,6 +284,17 @@ void restore(Lines& lines, double by_absorption, bool even_light) {
   });
 }
 
+// Lines of which an end is behind a speck, or so near that the blur brings some of it there.
+RayMask hidden_lines(const std::vector<Image>& sinograms, double blur_px) {
+  const int width = sinograms.front().width;
+  const RayMask specks = grown(speck_rays(sinograms), width, count_of(sinograms), ceil_int(2 * blur_px));
+  RayMask hidden = specks;
+  for (std::size_t row = 0; row < hidden.size(); row += static_cast<std::size_t>(width)) {
+    for (int t = 0; t < width; ++t) hidden[row + t] = specks[row + t] | specks[row + width - 1 - t];
+  }
+  return hidden;
+}
+
 std::vector<ColumnMotion> motion_of(const Vector& p, const PairBasis& basis) {
   std::vector<ColumnMotion> motion(basis.motion[0].size());
   for (int i = 0; i < pair_motions; ++i) {
@@ -293,10 +312,11 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
                        const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of) {
   std::vector<Image> blurred = level;
   blur_columns(blurred);
+  const RayMask hidden = hidden_lines(sinograms_of(level), blur_of(level));
   const auto lines_after = [&](const Vector& value) {
     std::vector<Image> moved = blurred;
     undo_motion(moved, motion_of(value, basis), basis.axis_column);
-    Lines lines{sinograms_of(moved), {}};
+    Lines lines{sinograms_of(moved), {}, hidden};
     for (int i = 0; i < pair_motions; ++i) {
       lines.by[i] = sinograms_of(slopes(moved, basis.motion[i], basis.axis_column));
     }

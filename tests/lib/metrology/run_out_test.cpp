@@ -300,3 +300,37 @@ TEST_CASE("where the absorption is given the run-out is found beside it, and non
     }
   }
 }
+
+TEST_CASE("specks in the window of a bath do not hide the run-out, nor are they one") {
+  int seen_ones = 0;  // the bath leaves little to be seen: of one part it may be within what chance does
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    oracle::ViewBench bench = coarse_bench();
+    bench.bath_index = 1.40;
+    bench.window_mm = 20;
+    std::mt19937 random(seed);
+    const auto part = random_part(random);
+    const auto found_at = [&](double x_mm) {
+      bench.run_out_mm = {x_mm, 0};
+      auto pixels = oracle::bench_views(bench, part, {}, 120);
+      oracle::soil(bench, {.noise = 0.02, .specks = 10}, pixels);
+      std::vector<CameraView> views;
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        Image image(bench.columns, bench.rows);
+        image.values = pixels[i];
+        views.push_back({std::move(image), 3.0 * static_cast<double>(i)});
+      }
+      return found_in(bench, views, {bench.axis_column, 0});
+    };
+    const RunOut none = found_at(0);
+    const RunOut some = found_at(0.2);
+    MESSAGE("without it ", none.size_mm(), " +- ", none.size_sigma_mm(), " mm, with it ", some.mm[0], " ", some.mm[1],
+            " +- ", some.size_sigma_mm(), " mm");
+    CHECK(none.determined);
+    CHECK(!none.seen());
+    CHECK(some.determined);
+    seen_ones += some.seen() ? 1 : 0;
+    CHECK(std::hypot(some.mm[0] - 0.2, some.mm[1]) < 0.1);
+  }
+  CHECK(seen_ones >= 3);
+}
