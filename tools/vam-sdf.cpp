@@ -39,8 +39,9 @@ cli::Manual manual() {
        "which the surface is disturbed, the pose follows, and a quarter of the points is measured. It contains the "
        "noise of the surface, from --uncertainty or a mesh of vam-ost --uncertainty, otherwise from the differences "
        "between neighbouring vertices; the pose, which depends on it; the choice of points; --isovalue-uncertainty; "
-       "--scale-uncertainty; and, of prints measured by vam-ost, the resolution of the volume: 0.04 of its voxels, the "
-       "same all over the print. It does not contain what is common to the whole print and not stated by these "
+       "--scale-uncertainty; and, of volumes and meshes of vam-ost --uncertainty, their resolution: 0.04 voxels, the "
+       "same all over the print, which covers diameters from 12 voxels on. It does not contain what is common to the "
+       "whole print and not stated by these "
        "options: "
        "refractive indices, absorption, run-out that remains, errors of the design.",
        "--region measures faces, bores and walls. Planes and cylinders are fitted by least squares; flatness and "

@@ -131,8 +131,9 @@ metrology::SurfaceErrors errors_of(const Options& options, const PrintSurface& p
     errors = metrology::roughness(print.mesh, design, largest_dimension_mm);
   } else {
     errors = {print.bodies ? "volume" : "mesh", print.uncertainty_mm, metrology::mean_edge_mm(print.mesh)};
-    errors.resolution_mm = metrology::resolved_cells * errors.cell_mm;
   }
+  const bool is_mesh = !print.bodies && print.uncertainty_mm.empty();  // its edges say nothing of voxels
+  if (!is_mesh) errors.resolution_mm = metrology::resolved_cells * errors.cell_mm;
   errors.common_mm = print.mm_per_isovalue * options.isovalue_uncertainty;
   errors.scale = 0.01 * options.scale_uncertainty_percent;
   return errors;

@@ -20,8 +20,7 @@ struct SurfaceErrors {
   double resolution_mm = 0;  // of the whole surface at once: what voxels, columns and angles leave
 };
 
-/// Of a reconstructed surface's cells, as a standard uncertainty: bores and bosses of 3 to 10 mm in voxels of 0.05 and
-/// 0.1 mm came out up to 0.08 cells too small in radius, with noise or without.
+/// Of the cells of a volume's surface, as a standard uncertainty, measured on cylinders [physics §8].
 inline constexpr double resolved_cells = 0.04;
 
 /// From the mesh alone: how the distances of neighbouring vertices differ, 1.4826 times the median magnitude over
