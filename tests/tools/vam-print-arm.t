@@ -243,6 +243,11 @@ fails 65 'edited/events.jsonl: is gone, but SHA256SUMS lists it; restore it' vam
 mv kept edited/events.jsonl
 fails 65 'home=here, whose zero ended with the print' print --resume again --set 'stage.device=grbl:/dev/ttyACM0?home=here' --run none
 is 'another device is not a different setting' "$(print --resume again --plan --set 'stage.device=sim:' --set resin.name=new 2>&1 | grep -c 'other settings')" 0
+cp -r whole unset && rm unset/printer.toml unset/SHA256SUMS
+fails 66 'unset/printer.toml: is gone; restore it, or give the settings of the print by --printer' vam-dose frames.exr --shown unset -o none.vdb
+ok 'the settings beside a log are those of the run' sh -c "vam-dose frames.exr --shown whole -o a.vdb --report a.json &&
+  vam-dose frames.exr --shown whole/flips.jsonl -o b.vdb --report b.json"
+is 'with the same turns' "$(json b.json shown_turns)" "$(json a.json shown_turns)"
 fails 65 'whole: was printed with other settings: stage.speed_deg_s 90, now 60; omit --printer and --set' vam-dose frames.exr --shown whole --set stage.speed_deg_s=60 -o none.vdb
 fails 65 'whole: was printed with other settings: projector.max_intensity_mw_cm2 3.8, now 10; omit' vam-dose frames.exr --shown whole --set projector.max_intensity_mw_cm2=10 -o none.vdb
 ok 'the settings of a run are its own' env VAM_PRINTER=nowhere vam-dose frames.exr --shown whole -o own.vdb

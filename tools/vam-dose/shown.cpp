@@ -47,10 +47,21 @@ void require_unchanged(const std::string& run) {
   io::require_run_logs(fs::is_directory(run) ? run : folder);
 }
 
-// The settings that a run froze; empty: it is a log alone.
+// The settings that a run froze; empty: it is a log alone, or they are gone.
 std::string settings_of(const std::string& run) {
-  const fs::path file = fs::path(run) / "printer.toml";
-  return fs::is_regular_file(file) ? file.string() : "";
+  const fs::path folder = log_of(run).parent_path();
+  const bool is_run = fs::is_directory(run) || fs::is_regular_file(folder / "events.jsonl");
+  const fs::path file = (fs::is_directory(run) ? fs::path(run) : folder) / "printer.toml";
+  return is_run && fs::is_regular_file(file) ? file.string() : "";
+}
+
+std::string require_settings(const std::string& run) {
+  const std::string file = settings_of(run);
+  if (file.empty() && fs::is_directory(run)) {
+    throw Error{Fault::no_input, (fs::path(run) / "printer.toml").string() +
+                                     ": is gone; restore it, or give the settings of the print by --printer"};
+  }
+  return file;
 }
 
 // The full intensity of a run over that of the printer in use, in whose turns all is counted: those of the first run; a
@@ -77,7 +88,7 @@ double intensity_of(const std::string& run, bool first, const model::Printer& no
 
 cli::PrinterOptions printer_of(const Options& options) {
   cli::PrinterOptions printer = options.printer;
-  if (printer.file.empty() && !options.shown.empty()) printer.file = settings_of(options.shown.front());
+  if (printer.file.empty() && !options.shown.empty()) printer.file = require_settings(options.shown.front());
   return printer;
 }
 
