@@ -99,16 +99,13 @@ std::vector<std::size_t> RunSets::forget(const std::function<void(std::size_t se
 
 void PieceCounter::add(const std::vector<VoxelRun>& slice, const Joins& joins) {
   open_.add(slice, joins);
-  open_.forget([this](std::size_t set) {
-    complete_ += open_.voxels(set) >= least_ ? 1 : 0;
-    ++all_complete_;
-  });
+  open_.forget([this](std::size_t set) { complete_ += open_.voxels(set) >= least_ ? 1 : 0; });
 }
 
-int PieceCounter::count(std::int64_t least, int complete) const {
-  int pieces = complete;
+int PieceCounter::count() const {
+  int pieces = complete_;
   for (std::size_t run = 0; run < open_.runs(); ++run) {
-    if (open_.set_of(run) == run && open_.voxels(run) >= least) ++pieces;
+    if (open_.set_of(run) == run && open_.voxels(run) >= least_) ++pieces;
   }
   return pieces;
 }

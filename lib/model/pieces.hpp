@@ -62,6 +62,8 @@ class RunSets {
   /// sets that do not reach it. Of each former run the number of the run that stands for its set, or `gone`.
   static constexpr std::size_t gone = ~std::size_t{0};
   std::vector<std::size_t> forget(const std::function<void(std::size_t set)>& complete);
+  /// Two runs are of one set.
+  void join(std::size_t a, std::size_t b);
 
  private:
   /// Of the last slice and, where `below` is not set, itself, else the one before.
@@ -70,7 +72,6 @@ class RunSets {
     std::size_t first, second;
     bool below;
   };
-  void join(std::size_t a, std::size_t b);
   void join_faces(const Lists& lists, int rows_apart);
   void join_edges(const Lists& lists, int rows_apart, const Joins& joins);
 
@@ -88,17 +89,12 @@ class PieceCounter {
   explicit PieceCounter(std::int64_t least_voxels) : least_(least_voxels) {}
   /// The next slice, as of runs_of().
   void add(const std::vector<VoxelRun>& slice, const Joins& joins);
-  [[nodiscard]] int count() const { return count(least_, complete_); }
-  /// Smaller ones, too.
-  [[nodiscard]] int count_all() const { return count(1, all_complete_); }
+  [[nodiscard]] int count() const;
 
  private:
-  [[nodiscard]] int count(std::int64_t least, int complete) const;
-
   std::int64_t least_;
   RunSets open_;      // that reach the last slice
   int complete_ = 0;  // the others
-  int all_complete_ = 0;
 };
 
 /// Counts pieces of a field at a level > 0: its voxels that reach it, joined across an edge where the bilinear
@@ -110,7 +106,6 @@ class FieldPieces {
   /// The next slice, row-major.
   void add(std::vector<float> slice);
   [[nodiscard]] int count() const { return counter_.count(); }
-  [[nodiscard]] int count_all() const { return counter_.count_all(); }
 
  private:
   [[nodiscard]] bool joins(const VoxelPair& pair, const std::vector<float>& slice) const;

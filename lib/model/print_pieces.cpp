@@ -33,8 +33,10 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
       part_(PrintPieces::least_voxels),
       part_at_half_(width, height, half_surface, PrintPieces::least_voxels),
       print_(width, height, threshold, PrintPieces::least_voxels),
-      print_above_(width, height, (1 + PrintPieces::rough) * threshold, PrintPieces::least_voxels),
-      print_below_(width, height, (1 - PrintPieces::rough) * threshold, PrintPieces::least_voxels) {}
+      of_part_(width, height, half_surface),
+      of_print_(width, height, threshold),
+      of_more_(width, height, (1 + PrintPieces::rough) * threshold),
+      of_less_(width, height, (1 - PrintPieces::rough) * threshold) {}
 
 void PrintPieceCounter::add(int count, const float* coverage, const float* dose) {
   const std::size_t size = product(width_, height_);
@@ -59,14 +61,14 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
     broken_.add(slice.part);
     shut_.add(slice.gap);
   }
-  part_at_half_.add(count, coverage);
-  const std::array<FieldHoles*, 3> prints{&print_, &print_above_, &print_below_};
-  for (FieldHoles* print : prints) print->add(count, dose);
-  const auto add_pieces = [&](FieldHoles& field, const float* values) {
-    for (int k = 0; k < count; ++k) field.add_pieces({values + product(k, size), values + product(k + 1, size)});
+  of_part_.add(count, coverage);
+  const std::array<TunnelCounter*, 4> tunnels{&of_part_, &of_print_, &of_more_, &of_less_};
+  for (TunnelCounter* counter : {&of_print_, &of_more_, &of_less_}) counter->add(count, dose);
+  const auto add_pieces = [&](FieldPieces& field, const float* values) {
+    for (int k = 0; k < count; ++k) field.add({values + product(k, size), values + product(k + 1, size)});
   };
-  constexpr int counters = 5;
-  parallel_for(counters, [&](int counter) {
+  constexpr int others = 3;
+  parallel_for(others + count_of(tunnels), [&](int counter) {
     if (counter == 0) {
       for (const Slice& slice : slices) {
         part_.add(runs_of(width_, height_, [&](std::size_t i) { return (slice[i] & printed::trace) != 0; }),
@@ -74,8 +76,10 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
       }
     } else if (counter == 1) {
       add_pieces(part_at_half_, coverage);
+    } else if (counter == 2) {
+      add_pieces(print_, dose);
     } else {
-      add_pieces(*prints[counter - 2], dose);
+      tunnels[counter - others]->connect();
     }
   });
   std::vector<Slice> last;
@@ -91,9 +95,9 @@ PrintPieces PrintPieceCounter::found() const {
     broken.add(top.part);
     shut.add(top.gap);
   }
-  const std::int64_t likewise = std::max(print_above_.holes(), print_below_.holes());
-  const std::int64_t holes = std::min(print_.holes(), likewise) - part_at_half_.holes();
-  return {part_.count(), part_at_half_.pieces(), print_.pieces(), broken.voxels(), shut.voxels(), holes};
+  const std::int64_t likewise = std::max(of_more_.tunnels(), of_less_.tunnels());
+  const std::int64_t holes = std::min(of_print_.tunnels(), likewise) - of_part_.tunnels();
+  return {part_.count(), part_at_half_.count(), print_.count(), broken.voxels(), shut.voxels(), holes};
 }
 
 }  // namespace vam::model

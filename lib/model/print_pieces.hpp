@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/holes.hpp"
 #include "model/pieces.hpp"
 #include "model/torn.hpp"
+#include "model/tunnels.hpp"
 
 namespace vam::model {
 
@@ -21,7 +21,7 @@ struct PrintPieces {
   int print = 0;            // of the dose at the threshold
   std::int64_t broken = 0;  // voxels of torn sets of the part [TornSets]
   std::int64_t shut = 0;    // and of gaps
-  std::int64_t holes = 0;   // of the print, at a threshold of 2 % more or less, too, beyond those of the part
+  std::int64_t holes = 0;   // tunnels of the print, at a threshold of 2 % more or less, too, beyond those of the part
   int solids = 0;           // of the part's own surface; 0: not known
   int specks = 0;           // of these, so small that they may not count
 
@@ -53,9 +53,10 @@ class PrintPieceCounter {
   int width_, height_;
   double threshold_;
   PieceCounter part_;
-  FieldHoles part_at_half_, print_, print_above_, print_below_;
-  std::vector<Slice> last_;  // up to two
-  TornSets broken_, shut_;   // in all but the last slice
+  FieldPieces part_at_half_, print_;
+  TunnelCounter of_part_, of_print_, of_more_, of_less_;  // at the threshold, and 2 % more and less
+  std::vector<Slice> last_;                               // up to two
+  TornSets broken_, shut_;                                // in all but the last slice
 };
 
 }  // namespace vam::model

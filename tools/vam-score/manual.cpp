@@ -39,10 +39,9 @@ std::vector<std::string> description() {
       "(broken_voxels) where the part that cures around them is in more than one piece, as at a rod that is cut, or "
       "where that is so for three or more of these voxels by themselves, or none around them cures, as in a hole of a "
       "wall; sets of voxels less than a quarter part that cure in the same way (shut_voxels), by the void that stays "
-      "liquid. Holes of the print beyond those of the part (holes) are counted by the Euler characteristics of the "
-      "dose "
-      "at the threshold and of the coverage at a half: tunnels through walls and between bridges over gaps, less "
-      "cavities.",
+      "liquid. Holes of the print beyond those of the part (holes) are tunnels, through walls and between bridges over "
+      "gaps, counted by Euler characteristics of the dose and of the coverage at a half; those that a threshold of 2 % "
+      "more or less does not have are roughness.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",
       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "

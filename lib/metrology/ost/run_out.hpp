@@ -18,8 +18,8 @@ struct RunOut {
   RunOutVector sigma_mm{};
   double column = 0;  // of the stage's axis, found together with it
   double column_sigma = 0;
-  double absorption_per_mm =
-      0;  // of the scattered light, found together with it; where it is not given and seen, no run-out is
+  /// Of the scattered light where none is given, found together with it; where it is seen, no run-out is.
+  double absorption_per_mm = 0;
   double absorption_sigma_per_mm = 0;
 
   [[nodiscard]] double size_mm() const;

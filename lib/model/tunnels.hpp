@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many tunnels lead through the solid of a field: holes through walls, and the openings between bridges over gaps.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/pieces.hpp"
+
+namespace vam::model {
+
+/// Of where a field, linear in x, y and z between the centres of voxels, reaches a level > 0; slice by slice, from the
+/// lowest up. The field is looked at every half voxel, where the solid is the union of cubes: its tunnels are pieces +
+/// cavities - Euler characteristic, cavities being the pieces of the rest, joined by faces, that are closed in. Beyond
+/// the volume the field is 0. Memory: three slices, and the runs of two.
+class TunnelCounter {
+ public:
+  TunnelCounter(int width, int height, double level) : width_(width), height_(height), level_(level) {}
+  /// The next slices, row-major, one after the other, on all threads.
+  void add(int count, const float* slices);
+  /// Takes in what was added; other threads may do so for other fields.
+  void connect();
+  /// Of the slices that were taken in.
+  [[nodiscard]] std::int64_t tunnels() const;
+
+ private:
+  /// A corner of a cell between two slices, in the volume with a margin of one voxel.
+  struct Corner {
+    int x, y;
+    bool above;
+  };
+  /// Corners that are connected through the cell, not along its edges.
+  struct Join {
+    Corner from, to;
+    bool solid;
+  };
+  /// A slice, and the cells between the one below and it.
+  struct Layer {
+    std::vector<std::uint8_t> solid;  // with the margin
+    std::vector<Join> joins;
+    std::int64_t euler = 0;
+  };
+  /// Pieces, of solid or of the rest.
+  struct Pieces {
+    RunSets sets;
+    std::int64_t complete = 0;
+    void add(const std::vector<VoxelRun>& runs, const std::vector<Join>& joins, bool solid);
+    [[nodiscard]] std::int64_t count() const;
+  };
+
+  [[nodiscard]] Layer layer(const float* below, const float* above) const;
+  static void add_cell(const std::array<float, 8>& values, double level, int x, int y, Layer& layer);
+  void connect(const Layer& layer);
+
+  int width_, height_;
+  double level_;
+  std::vector<float> last_;  // empty: there is none
+  std::vector<Layer> added_;
+  Pieces solid_, rest_;
+  std::int64_t euler_ = 0;
+};
+
+}  // namespace vam::model
