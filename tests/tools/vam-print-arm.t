@@ -202,6 +202,8 @@ refuses ":$line: time 1e.308 s is not between 0 and 1e.09 s since the machine st
 refuses ":$line: angle -1000 deg is not between 0 and 720 deg, where images are shown$changed" "sed '${line}s/\"angle_deg\":[-+0-9.e]*/\"angle_deg\":-1000/'"
 refuses ":[0-9]+: time goes back by [0-9.]+ s from that of the flip before$changed" "sed '$((line - 20))h;${line}G'"
 refuses ': has [0-9]+ bytes whose SHA-256 begins [0-9a-f]{8}, but events.jsonl states [0-9a-f]{8}; it was changed; restore it$' "sed '${line}s/\"utc\":\"2/\"utc\":\"3/'"
+rm -r spoilt; cp -r again spoilt; sed -i '/"event":"armed"/s/"turns":[0-9]*/"turns":30/' spoilt/events.jsonl
+fails 65 '^vam-print: spoilt/events.jsonl: states 30 turns, but flips.jsonl [0-9]+; it was changed; restore it$' print --resume spoilt --run none
 rm -r spoilt; cp -r again spoilt; rm spoilt/flips.jsonl
 fails 65 "^vam-print: spoilt/flips.jsonl: $cut_short" print --resume spoilt --run none
 : >spoilt/flips.jsonl; sed -i '/"event":"sealed"/d' spoilt/events.jsonl  # as of a former version
