@@ -292,6 +292,14 @@ ok "and the reason is stated" grep -q '^verdict .*may not print: .* walls or gap
 vam-slice --shape ladder --voxel 0.3 -o rungs.vdb 2>.log/rungs
 vam-optimize --preview --angles 60 --report rungs.json rungs.vdb >rungs.txt
 is "nor are walls too thin for the target's own voxels" "$(value rungs.json prints) $(grep -c 'may not print: .* too thin for the target.s voxels' rungs.txt)" 'unsure 1'
+# An oblique wall of two voxels, whose full run tells whether it is pierced.
+awk 'BEGIN { print "OFF\n8 12 0"; c = cos(0.6); s = sin(0.6)
+  for (i = 0; i < 8; i++) { x = i % 2 ? 3 : -3; y = int(i / 2) % 2 ? 0.21 : -0.21; z = i > 3 ? 2 : -2; print c * x - s * y, s * x + c * y, z + 0.3 * x }
+  print "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5" }' >wall.off
+vam-slice wall.off --voxel 0.2 -o wall.vdb
+vam-optimize --preview --angles 60 --report wall.json wall.vdb >wall.txt
+is "an oblique wall of two voxels may have holes" "$(value wall.json prints) $(grep -c '^verdict .*may have holes' wall.txt)" 'unsure 1'
+is "and the plan is not sure either" "$(vam-plan wall.off --set projector.pixel_mm=0.2 | grep -c '^will it print  *perhaps: ')" 1
 vam-slice --shape box:x=2,y=2,z=8 -o tall.vdb
 vam-optimize --preview --report tall.json tall.vdb >tall.txt
 holds "of a thin part, too, where the resin around it is large" "$(value tall.json voxel_mm) >= 0.2"

@@ -135,6 +135,10 @@ std::vector<std::string> lost(const model::Unresolved& target) {
   if (target.shuts_gaps()) doubts.emplace_back("gaps too narrow for the target's voxels will be shut");
   const std::string thin = target.thin_places();
   if (!thin.empty()) doubts.push_back(thin + " of the target are not judged");
+  if (target.surface && target.surface->may_be_pierced()) {
+    doubts.emplace_back(
+        "walls or gaps of about two voxels of the target may have holes or bridges, which is judged without --preview");
+  }
   if (!target.surface && target.is_much()) {
     doubts.push_back(format_number(100 * target.share(), 3) +
                      " % of the part are walls or gaps too thin for the target's voxels");

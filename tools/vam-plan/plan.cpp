@@ -157,7 +157,8 @@ bool has_walls_below_a_voxel(const model::Unresolved& unresolved, const solid::W
 }
 
 bool doubts(const model::Unresolved& unresolved) {
-  return unresolved.loses_walls() || unresolved.shuts_gaps() || unresolved.leaves_doubt();
+  return unresolved.loses_walls() || unresolved.shuts_gaps() || unresolved.leaves_doubt() ||
+         (unresolved.surface && unresolved.surface->may_be_pierced());
 }
 
 solid::Walls::Place place_of(const model::ThinPlaces& walls, const Plan& plan) {
@@ -199,7 +200,7 @@ void add_walls(Plan& plan, const solid::Part& part) {
   if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
   if (!unresolved.surface) return;
   const model::ThinPlaces& thin = unresolved.surface->places.walls;
-  if (!thin.are_below(model::narrow_voxels, plan.grid.voxel_mm)) return;
+  if (!thin.are_below(model::lost_voxels, plan.grid.voxel_mm)) return;
   const solid::Walls::Place place = place_of(thin, plan);
   if (!plan.thinnest_place || place.voxels < plan.thinnest_place->voxels) plan.thinnest_place = place;
 }

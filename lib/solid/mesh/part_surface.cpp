@@ -222,7 +222,7 @@ model::ThinPlaces relief(const Crossings& all, double voxel_mm) {
     std::vector<Crossing> edges;
     [[nodiscard]] bool has_relief() const { return 10 * ridges >= samples && 10 * grooves >= samples; }
   };
-  constexpr double much = 30;  // faces of a voxel
+  constexpr double much = 120;  // faces of a voxel: less lies along an edge, as at the foot of an oblique wall
   const Blocks blocks_of(side_of_block(all.each, voxel_mm));
   std::map<Blocks::Place, Block> blocks;
   for (std::size_t i = 0; i < all.samples.size(); ++i) {
