@@ -223,6 +223,7 @@ Json Score::figures() const {
   add_to(json, verdict());
   if (const auto radius_mm = judged_radius_mm()) json["judged_radius_mm"] = *radius_mm;
   json["trim"] = options_.trim;
+  if (print_threshold() > 0) json["print_threshold"] = print_threshold();
   if (options_.threshold) json["critical_dose"] = *options_.threshold;
   if (options_.exposure && !options_.threshold) json["critical_dose_per_turn"] = print_threshold();
   json["relative"] = !options_.absolute;

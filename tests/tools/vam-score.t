@@ -69,6 +69,7 @@ vam-score --grid target foot.vdb --target stand.vdb --report foot.json >table
 json foot.json verdict >said
 ok "a wall without foot is no print as designed" grep -q '^will not print as designed: process window +1 .*; the print is in 2 pieces, the part in 1; walls are cut or missing: 40 voxels that the part fills by half or more do not cure; ' said
 is "with its pieces" "$(for key in part_pieces print_pieces broken_voxels; do json foot.json $key; done | tr '\n' ' ')" "1 2 40 "
+holds "at the threshold that is reported" "$(json foot.json print_threshold) > 0"
 vam-score --grid target foot.vdb --target stand.vdb --require 'pw>0,broken_voxels<=0' >table 2>why
 is "can be required to be whole" "$? $(cat why)" "1 vam-score: broken_voxels = 40, but broken_voxels<=0 is required"
 vam-score --grid target foot.vdb --target stand.vdb --require 'prints>=1' >table 2>why

@@ -41,7 +41,8 @@ std::vector<std::string> description() {
       "wall; sets of voxels less than a quarter part that cure in the same way (shut_voxels), by the void that stays "
       "liquid. Holes of the print beyond those of the part (holes) are tunnels, through walls and between bridges over "
       "gaps, counted by Euler characteristics of the dose and of the coverage at a half; those that a threshold of 2 % "
-      "more or less does not have are roughness.",
+      "more or less does not have are roughness. The threshold of all these is that of --print "
+      "(print_threshold in the report, in the dose's unit), not the best threshold of the table.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",
       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "
