@@ -48,7 +48,8 @@ cli::Manual manual() {
        "of the optimisation; all reports; and for each file the commands that produced it, with their seals.",
        "An inspection: with the print of vam-sdf (-o), the mesh of the design and the report of vam-sdf, the page has "
        "its verdict, every figure with its expanded uncertainty, the print in three dimensions in the colours of its "
-       "deviation, sections through its middle with the dimensions of print and design, and the histogram of the "
+       "deviation, sections through its middle with the dimensions of the print, their expanded uncertainties, and "
+       "those of the design, and the histogram of the "
        "deviation, the outermost bins of which hold what is beyond.",
        "The first target and the first dose are scored as by vam-score, with the settings of the printer file. With "
        "--grey-target the target is a dose for every voxel: the page has the verdict and the figures of vam-score "

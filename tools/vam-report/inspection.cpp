@@ -48,6 +48,12 @@ void add_rows(std::string& rows, const std::string& prefix, const Json& figures,
   }
 }
 
+DimensionErrors errors_of(const Json& budget) {
+  return {budget.at("surface_mm"),
+          std::hypot(budget.at("isovalue_mm").get<double>(), budget.at("resolution_mm").get<double>()),
+          budget.at("scale_percent").get<double>() / 100};
+}
+
 InspectionViews views_of(const Json& report, const std::string& name) {
   InspectionViews views;
   views.verdict = verdict_of(report);
@@ -71,6 +77,7 @@ InspectionViews views_of(const Json& report, const std::string& name) {
     throw Error{Fault::data, name + ": its histogram is damaged"};
   }
   views.limit_mm = histogram.edges.back();
+  views.errors = errors_of(report.at("uncertainty_budget"));
   const double rms_mm = report.at("print_to_design").at("rms_mm");
   views.histogram = plot::page_figure(
       "Deviation by area", plot::page_plot(plot::deviation_histogram(histogram, rms_mm), "histogram of the deviation"),
@@ -81,6 +88,13 @@ InspectionViews views_of(const Json& report, const std::string& name) {
 }
 
 }  // namespace
+
+double DimensionErrors::expanded_mm(double size_mm) const {
+  constexpr double coverage = 2;
+  constexpr double beyond = 2.5;  // evenly between none and so much
+  const double ends_mm = 2 * beyond * surface_mm / std::sqrt(3.0);
+  return coverage * std::hypot(ends_mm, 2 * common_mm, scale * size_mm);
+}
 
 std::optional<InspectionViews> inspection_views(const std::vector<std::string>& reports) {
   for (const std::string& path : reports) {

@@ -108,14 +108,19 @@ std::string line(double x0, double y0, double x1, double y1) {
          "\" y2=\"" + format_number(y1, 6) + "\" stroke=\"#444\"/>";
 }
 
-std::string words(const std::vector<Outline>& outlines, std::size_t axis) {
-  std::string text = format_number(outlines[0].size(axis), 5) + " mm";
+using Errors = std::optional<DimensionErrors>;
+
+std::string words(const std::vector<Outline>& outlines, std::size_t axis, const Errors& errors) {
+  const double size_mm = outlines[0].size(axis);
+  std::string text = format_number(size_mm, 5);
+  if (errors) text += " \u00b1 " + format_number(errors->expanded_mm(size_mm), 2);
+  text += " mm";
   if (outlines.size() > 1) text += " (design " + format_number(outlines[1].size(axis), 5) + " mm)";
   return text;
 }
 
 // The extent of the first outline, below it and on its left.
-std::string dimensions(const std::vector<Outline>& outlines, const Sheet& sheet) {
+std::string dimensions(const std::vector<Outline>& outlines, const Sheet& sheet, const Errors& errors) {
   const double left = margin_px + (outlines[0].low[0] - sheet.low[0]) * sheet.scale;
   const double right = margin_px + (outlines[0].high[0] - sheet.low[0]) * sheet.scale;
   const double top = 0.5 * margin_px + (sheet.high[1] - outlines[0].high[1]) * sheet.scale;
@@ -130,14 +135,14 @@ std::string dimensions(const std::vector<Outline>& outlines, const Sheet& sheet)
   const double middle = 0.5 * (top + bottom);
   return line(left, below, right, below) + line(left, below - tick, left, below + tick) +
          line(right, below - tick, right, below + tick) +
-         text(0.5 * (left + right), below + 16, "", words(outlines, 0)) + line(beside, top, beside, bottom) +
+         text(0.5 * (left + right), below + 16, "", words(outlines, 0, errors)) + line(beside, top, beside, bottom) +
          line(beside - tick, top, beside + tick, top) + line(beside - tick, bottom, beside + tick, bottom) +
          text(beside - 8, middle,
               " transform=\"rotate(-90 " + format_number(beside - 8, 6) + " " + format_number(middle, 6) + ")\"",
-              words(outlines, 1));
+              words(outlines, 1, errors));
 }
 
-std::string drawing(const std::vector<Outline>& outlines) {
+std::string drawing(const std::vector<Outline>& outlines, const Errors& errors) {
   Sheet sheet{outlines[0].low, outlines[0].high, 1};
   for (const Outline& outline : outlines) {
     for (std::size_t k = 0; k < 2 && !outline.segments.empty(); ++k) {
@@ -157,12 +162,18 @@ std::string drawing(const std::vector<Outline>& outlines) {
                     n == 0 ? "stroke=\"#0072b2\" stroke-width=\"1.5\""
                            : "stroke=\"#999\" stroke-width=\"1.5\" stroke-dasharray=\"4 3\"");
   }
-  return made + dimensions(outlines, sheet) + "</svg>";
+  return made + dimensions(outlines, sheet, errors) + "</svg>";
+}
+
+std::string caption(const std::vector<ShownMesh>& meshes, std::size_t outlines, const Errors& errors) {
+  const std::string lines =
+      outlines > 1 ? "Solid: " + meshes[0].name + "; dashed: " + meshes[1].name + "." : "Dimensions of the section.";
+  return lines + (errors ? " Dimensions have expanded uncertainties, k = 2." : "");
 }
 
 }  // namespace
 
-std::string mesh_sections(const std::vector<ShownMesh>& meshes) {
+std::string mesh_sections(const std::vector<ShownMesh>& meshes, const std::optional<DimensionErrors>& errors) {
   if (meshes.empty()) return "";
   constexpr std::array<const char*, 3> names{"x", "y", "z"};
   const solid::Bounds box = solid::bounding_box(meshes[0].mesh);
@@ -176,9 +187,8 @@ std::string mesh_sections(const std::vector<ShownMesh>& meshes) {
     if (outlines.size() > 1 && outlines[1].segments.empty()) outlines.pop_back();
     const std::string where =
         std::string("section across ") + names[axis] + " at " + format_number(cut.at_mm, 4) + " mm";
-    made += plot::page_figure(meshes[0].name + ", " + where, drawing(outlines),
-                              outlines.size() > 1 ? "Solid: " + meshes[0].name + "; dashed: " + meshes[1].name + "."
-                                                  : "Dimensions of the section.");
+    made += plot::page_figure(meshes[0].name + ", " + where, drawing(outlines, errors),
+                              caption(meshes, outlines.size(), errors));
   }
   return made;
 }

@@ -8,6 +8,7 @@
 
 #include "base/pixels.hpp"
 #include "model/mesh.hpp"
+#include "vam-report/inspection.hpp"
 
 namespace vam::report_tool {
 
@@ -24,6 +25,8 @@ struct ShownMesh {
 [[nodiscard]] std::string meshes_view(const std::vector<ShownMesh>& meshes, std::optional<double> limit_mm);
 
 /// HTML: sections through the middle of the first mesh, across x, y and z, all meshes in one, with their dimensions.
-[[nodiscard]] std::string mesh_sections(const std::vector<ShownMesh>& meshes);
+/// `errors`: of the first mesh, if they are known.
+[[nodiscard]] std::string mesh_sections(const std::vector<ShownMesh>& meshes,
+                                        const std::optional<DimensionErrors>& errors);
 
 }  // namespace vam::report_tool
