@@ -91,7 +91,8 @@ std::vector<std::string> notes() {
       "Faces are found by short rays along the "
       "normals "
       "from points on the surface, one for each face of a voxel, 200000 at most; a wall counts from two such faces on, "
-      "ridges from 30. Faces that would meet within six voxels or four times their distance, as at the edge of a wedge "
+      "ridges from 120, and notches across an edge of a plate, such as half bores, only where they have two parallel "
+      "faces. Faces that would meet within six voxels or four times their distance, as at the edge of a wedge "
       "or where a ball stands on a "
       "plate, are no walls and gaps, unless they are of surfaces that do not touch.",
       "Speed: a million triangles on 512 x 512 x 512 voxels take 2 s on two cores. Memory: the mesh, 16 slices, and "
