@@ -2,6 +2,8 @@
 #include "io/settings/sealed_text.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -17,17 +19,45 @@ constexpr const char* json_key = "seal";
 const std::string text_head = "# sealed ";
 constexpr std::size_t seal_size = 37;  // that of seal_text()
 
-Digest digest_of_json(Json object) {
-  object.erase(json_key);
-  // As it reads back: a number that is none is null there.
-  const std::string text = Json::parse(object.dump(-1, ' ', false, Json::error_handler_t::replace)).dump();
+using Sorted = nlohmann::json;  // its keys are in alphabetical order
+
+// 3.0 is the 3 that other programs write for it.
+void make_whole(Sorted& value) {
+  constexpr double most = 9007199254740992;  // 2^53: beyond, not every whole number is a double
+  for (Sorted& part : value) {
+    if (part.is_structured()) make_whole(part);
+    if (!part.is_number_float()) continue;
+    if (const auto number = part.get<double>(); std::abs(number) <= most && number == std::trunc(number))
+      part = static_cast<std::int64_t>(number);
+  }
+}
+
+template <class Any>
+Digest digest_of_text(const Any& value) {
+  const std::string text = value.dump();
   return digest_of(text.data(), text.size());
 }
 
-void require_equal(const std::string& seal, const Digest& read, const std::string& name, const std::string& where) {
+/// The digests of an object without its seal.
+struct Digests {
+  Digest now;     // of keys and values, whatever their order and layout
+  Digest former;  // of them in the order of the text, as former versions sealed it
+};
+
+Digests digests_of(Json object) {
+  object.erase(json_key);
+  // As it reads back: a number that is none is null there.
+  const std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Sorted sorted = Sorted::parse(text);
+  make_whole(sorted);
+  return {digest_of_text(sorted), digest_of_text(Json::parse(text))};
+}
+
+void require_equal(const std::string& seal, const Digests& digests, const std::string& name, const std::string& where) {
   Digest sealed;
+  const Digest& read = digests.now;
   const bool whole = parse_seal(seal, sealed);
-  if (whole && sealed == read) return;
+  if (whole && (sealed == read || sealed == digests.former)) return;
   throw Error{Fault::data, name + ": changed after it was written (" +
                                (whole ? "sealed " + shortened(sealed) + ", read " : "seal unreadable, hash ") +
                                shortened(read) + "); create it again, or remove " + where +
@@ -54,7 +84,7 @@ std::optional<std::size_t> seal_line(const std::string& text) {
 }  // namespace
 
 void seal_json(Json& object) {
-  const Digest digest = digest_of_json(object);
+  const Digest digest = digests_of(object).now;
   object[json_key] = seal_text(digest);
 }
 
@@ -67,7 +97,7 @@ bool require_seal(const Json& object, const std::string& name) {
   }
   if (seal == object.end()) return false;
   const bool readable = seal.key() == json_key && seal->is_string();
-  require_equal(readable ? seal->get<std::string>() : "", digest_of_json(object), name, "its key " + seal.key());
+  require_equal(readable ? seal->get<std::string>() : "", digests_of(object), name, "its key " + seal.key());
   return true;
 }
 
@@ -82,7 +112,8 @@ bool require_text_seal(const std::string& text, const std::string& name) {
   std::string seal = text.substr(*line);
   const bool whole = seal.starts_with(text_head) && seal.back() == '\n';
   if (whole) seal = seal.substr(text_head.size(), seal.size() - text_head.size() - 1);
-  require_equal(whole ? seal : "", digest_of(text.data(), *line), name, "its last line '" + text_head + "...'");
+  const Digest digest = digest_of(text.data(), *line);
+  require_equal(whole ? seal : "", {digest, digest}, name, "its last line '" + text_head + "...'");
   return true;
 }
 

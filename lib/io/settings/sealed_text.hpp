@@ -8,7 +8,7 @@
 
 namespace vam::io {
 
-/// Adds the key `seal`: of all the others, whatever the layout of the file.
+/// Adds the key `seal`: of all the others, whatever their order and the layout of the file.
 void seal_json(Json& object);
 /// Throws Fault::data where an object has a seal that is not its own. `name` begins the message. True when it has one.
 bool require_seal(const Json& object, const std::string& name);

@@ -5,7 +5,9 @@
 
 #include <string>
 
+#include "base/json.hpp"
 #include "fault_of.hpp"
+#include "io/stream/seal.hpp"
 
 using namespace vam;
 using namespace vam::io;
@@ -50,4 +52,31 @@ TEST_CASE("comments that mention seals are none") {
     CHECK_FALSE(is_sealed(text));
     CHECK(is_sealed(sealed_text(text + "\n")));
   }
+}
+
+TEST_CASE("the seal of a record is that of its keys and values, in any order and layout") {
+  Json record{{"scan", "edges"},
+              {"n", 3.0},
+              {"values", {{"radius", {{"value", 12.5}, {"sigma", 1e-5}}}, {"axis", {1.0, 2.5}}}}};
+  seal_json(record);
+  CHECK(require_seal(record, "r.json"));
+  const std::string seal = record["seal"].dump();
+  const auto holds = [&](const std::string& text) { return require_seal(Json::parse(text), "r.json"); };
+  const std::string sorted = R"({"n": 3, "scan": "edges", "seal": )" + seal +
+                             R"(, "values": {"axis": [1, 2.50], "radius": {"sigma": 0.00001, "value": 12.5}}})";
+  CHECK(holds(sorted));
+  std::string other = sorted;
+  other.replace(other.find("12.5"), 4, "12.6");
+  CHECK(fault_of([&] { (void)holds(other); }) == Fault::data);
+  other = sorted;
+  other.replace(other.find("1, 2.50"), 7, "2.50, 1");
+  CHECK(fault_of([&] { (void)holds(other); }) == Fault::data);
+}
+
+TEST_CASE("a record that was sealed in the order of its keys holds in that order") {
+  const std::string keys = R"("b":1.0,"a":"x")";
+  const std::string text = "{" + keys + "}";
+  const std::string seal = R"(,"seal":")" + seal_text(digest_of(text.data(), text.size())) + "\"}";
+  CHECK(require_seal(Json::parse("{" + keys + seal), "r.json"));
+  CHECK(fault_of([&] { (void)require_seal(Json::parse(R"({"a":"x","b":1.0)" + seal), "r.json"); }) == Fault::data);
 }
