@@ -58,6 +58,15 @@ Declaration asked_about(Declaration tool, const std::vector<std::string>& words)
   return tool;
 }
 
+// A smaller stack ends the process by a signal in the midst of its work; threads have one of the same size.
+void require_stack() {
+  constexpr rlim_t least_bytes = 256 * 1024;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= least_bytes) return;
+  throw Error{Fault::memory, "needs a stack of " + std::to_string(least_bytes / 1024) + " KiB, and the limit is " +
+                                 std::to_string(limit.rlim_cur / 1024) + " KiB; raise it (ulimit -s)"};
+}
+
 /// "vam-slice: 0.52 s, 0.21 GiB of memory"
 std::string use_of_machine(double seconds) {
   rusage used{};
@@ -223,6 +232,7 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
   Fault fault = Fault::bug;
   try {
     if (!print_about(argc, argv)) {
+      require_stack();
       parse(argc, argv);
       body();
       if (talk().verbose)

@@ -53,6 +53,12 @@ if ! sanitized; then
     esac
   done
   is 'a start in 8 to 120 MiB of addresses is done or refused in one line' $odd 0
+  for kib in 64 96 255; do
+    is "a stack of $kib KiB is refused" "$(sh -c "ulimit -s $kib; exec vam-slice --shape cylinder --voxel 0.5 -o x.vdb" 2>&1; echo $?)" \
+      "vam-slice: needs a stack of 256 KiB, and the limit is $kib KiB; raise it (ulimit -s)
+71"
+  done
+  ok 'one of 256 KiB does' sh -c 'ulimit -s 256; vam-slice --shape gyroid --voxel 0.5 | vam-sinogram | vam-view --image-size 100 -o x.png'
   # The libraries that draw end the process where memory or a thread is refused.
   for mib in 160 200 220 230 240 260; do
     sh -c "ulimit -v $((mib * 1024)); exec vam-view part.vdb -o bounded.png" 2>bounded; status=$?
