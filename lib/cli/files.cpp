@@ -63,6 +63,11 @@ bool is_same_file(const std::string& input, const std::string& output) {
   return S_ISREG(in.st_mode) && in.st_dev == out.st_dev && in.st_ino == out.st_ino;
 }
 
+// Each name of it is read from where the one before ended, or takes what another waits for.
+bool is_standard_input(const std::string& path) {
+  return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0" || path == "/proc/self/fd/0";
+}
+
 // The contents of a file that may change between two runs of a job.
 std::string hash_of(const std::string& path) {
   if (!fs::is_regular_file(path)) return "";
@@ -101,7 +106,7 @@ void App::require_own_inputs() const {
     if (nested->state_->parser->parsed()) return nested->require_own_inputs();
   }
   const auto paths = inputs();
-  const auto streams = std::count(paths.begin(), paths.end(), "-");
+  const auto streams = std::count_if(paths.begin(), paths.end(), is_standard_input);
   if (streams > 1) {
     throw Error{Fault::usage, std::to_string(streams) +
                                   " inputs are standard input, which can be read once; name files for the others"};

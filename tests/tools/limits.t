@@ -154,6 +154,7 @@ EOF
   rm -rf few* printer.toml
 fi
 fails 64 '2 inputs are standard input' vam-score - --target -
+fails 64 '2 inputs are standard input' vam-score - --target /dev/stdin
 fails 64 '2 inputs are standard input' vam-view - --target - -o x.png
 fails 64 '2 inputs are standard input' vam-optimize - --weights - -o x.exr
 fails 64 '2 inputs are standard input' vam-ost - --flat -

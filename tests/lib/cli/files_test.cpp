@@ -26,6 +26,10 @@ TEST_CASE("inputs: one standard input, none of them an output, their contents pa
   };
   CHECK(said({"--weights", "-"}) ==
         "vam-demo: 2 inputs are standard input, which can be read once; name files for the others\n");
+  for (const char* name : {"/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"}) {
+    CHECK(said({"--weights", name}).starts_with("vam-demo: 2 inputs are standard input"));
+    CHECK(said({file, "--weights", name}).empty());
+  }
   CHECK(said({"--weights", "-", "--shape", "cube"}).empty());
   CHECK(said({file, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
   CHECK(said({"--weights", file, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
