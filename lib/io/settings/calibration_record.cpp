@@ -81,6 +81,13 @@ std::string beside(const CalibrationRecord& record, const char* file) {
   return path;
 }
 
+// No standard deviation is wider than the range of the values themselves, as the printer file has it.
+double most_sigma(const std::string& unit) {
+  if (unit == "px") return 65536;
+  if (unit == "deg") return 360;
+  return unit == "ms" ? 1e4 : 1e6;
+}
+
 // Scans state their units; a record that was written by hand may have others.
 double in_unit(const CalibrationRecord& record, const char* name, const char* unit) {
   const double value = record.value(name);
@@ -91,7 +98,11 @@ double in_unit(const CalibrationRecord& record, const char* name, const char* un
   if (entry.contains("unit") && entry["unit"] != unit) {
     refuse("is in " + entry["unit"].dump().substr(0, 80) + ", not in " + unit);
   }
-  if (const double sigma = number_at(entry, "sigma"); sigma < 0) refuse("has a sigma of " + format_number(sigma));
+  const double sigma = number_at(entry, "sigma");
+  if (!(sigma >= 0 && sigma <= most_sigma(unit))) {
+    refuse("has a sigma of " + format_number(sigma) + " " + unit + ", not between 0 and " +
+           format_number(most_sigma(unit)));
+  }
   return value;
 }
 

@@ -171,7 +171,8 @@ TEST_CASE("a record by hand is held to units, status and single keys") {
   CHECK(refused("", "").empty());
   CHECK(has(refused("\"px\"", "\"mm\""), "axis_column is in \"mm\", not in px; run vam-calibrate"));
   CHECK(has(refused("\"mm\"", "\"in\""), "radius is in \"in\", not in mm"));
-  CHECK(has(refused("\"sigma\":0.01", "\"sigma\":-1"), "axis_column has a sigma of -1"));
+  CHECK(has(refused("\"sigma\":0.01", "\"sigma\":-1"), "axis_column has a sigma of -1 px, not between 0 and 65536"));
+  CHECK(has(refused("\"sigma\":0.01", "\"sigma\":1e300"), "axis_column has a sigma of 1e+300 px"));
   CHECK(has(refused("\"value\":12.0", "\"value\":1e-9"), "vial.radius_mm: 1e-09 is no radius of a vial"));
   CHECK(has(refused("\"pass\"", "\"PASS\""), "has the status 'PASS', not pass, warn or fail"));
   CHECK(has(refused("\"status\"", "\"state\""), "has the status ''"));
