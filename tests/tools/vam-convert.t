@@ -80,6 +80,7 @@ vam-convert grey.npy --voxel 0.5 --stretch-z 1 -o grey.vdb 2>err
 is 'grey levels taken as coverage are told' "$(cat err)" 'vam-convert: warning: grey.npy: its values reach 59, where a full voxel is 1; if they are grey levels, give --full-scale 255'
 printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 3 3 3\nencoding: raw\ndata file: a.raw\n' >detached.nrrd
 fails 65 'detached.nrrd: has its values in another file' vam-convert detached.nrrd --voxel 1 -o x.vdb
+fails 64 'voxel: 1e-5 is out of range; give 0.0001 to 1000' vam-convert ramp.npy --voxel 1e-5 --stretch-z 1 -o x.vdb
 fails 64 'stretch-z' vam-convert ramp.npy --voxel 0.5 --stretch-z 0 -o x.vdb
 
 # What is refused.

@@ -15,7 +15,7 @@ constexpr cli::Range on_image{-65536, 131072};  // also beside it
 
 void declare_volume(cli::App& app, Options& options) {
   app.group("Volumes");
-  app.option("--voxel", "MM", options.voxel_mm, {1e-5, 1000}, "The array is a volume with cubic voxels of this edge.")
+  app.option("--voxel", "MM", options.voxel_mm, {1e-4, 1000}, "The array is a volume with cubic voxels of this edge.")
       .form();
   app.option("--grid", "NAME", options.grid, "Name of the grid, of a volume that is read or made.");
   app.default_is("the only one; target");
