@@ -68,7 +68,10 @@ FlipLog::FlipLog(const std::string& path)
     : file_(log_of(path)),
       lines_(file_),
       rules_(has_stated_hash(path) ? FlipRules::Order::free : FlipRules::Order::required) {
-  if (!has_regular_file(file_)) throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(ENOENT)};
+  if (!has_regular_file(file_)) {
+    require_stated_flips(path);
+    throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(ENOENT)};
+  }
   if (!has_stated_hash(path)) proof_.emplace(file_);
 }
 
@@ -80,11 +83,11 @@ void FlipLog::read() {
     hash_.add(text.data(), text.size());
     bytes_ += text.size();
     take(parse_distinct(text, place()));
-    if (proof_) proof_->check(bytes_, hash_);
+    if (proof_ && proof_->check(bytes_, hash_)) sealed_ = count_of(flips_);
   }
   if (!proof_) return;
   const bool is_lit = !flips_.empty() && flips_.back().frame >= 0;
-  proof_->require_all(bytes_, {is_lit, lit() > 0, flips_.empty() ? 0 : flips_.back().t_s});
+  proof_->require_all(bytes_, {is_lit, lit() > 0, flips_.empty() ? 0 : flips_.back().t_s, seals_since_s_});
 }
 
 std::string FlipLog::place() const { return file_ + ":" + std::to_string(line_); }
@@ -95,6 +98,7 @@ void FlipLog::take(const Json& event) {
     if (event.at("event") == "sinogram" || event.at("event") == "frames") {
       sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale")});
       sinogram_ = count_of(sinograms_) - 1;
+      if (!seals_since_s_ && event.value("seals", false)) seals_since_s_ = event.at("t_monotonic_s").get<double>();
     }
     if (event.at("event") != "flip") return rules_.note(event, place());
     flips_.push_back({rules_.take(event, place()), false, sinogram_});
@@ -147,6 +151,13 @@ void FlipLog::go_on(double image_s, std::vector<ShownImage>& shown) const {
 
 long FlipLog::lit() const {
   return std::count_if(flips_.begin(), flips_.end(), [](const RunFlip& flip) { return flip.frame >= 0; });
+}
+
+std::string FlipLog::seals_text() const {
+  if (!sealed_) return "";
+  const int all = count_of(flips_);
+  return "sealed up to flip " + std::to_string(*sealed_) + " of " + std::to_string(all) +
+         (*sealed_ < all ? "; unsealed after it: " + std::to_string(all - *sealed_) : "");
 }
 
 std::string FlipLog::sha256() const { return Sha256(hash_).digest(); }

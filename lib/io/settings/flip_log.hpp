@@ -50,6 +50,8 @@ class FlipLog {
   [[nodiscard]] long blanks() const { return blanks_; }
   /// Flips to images with light.
   [[nodiscard]] long lit() const;
+  /// Of a run folder without a summary, up to which flip the log was held to its seals, in words; empty: to none.
+  [[nodiscard]] std::string seals_text() const;
   /// SHA-256 of the lines so far, their ends included.
   [[nodiscard]] std::string sha256() const;
 
@@ -75,7 +77,9 @@ class FlipLog {
   int line_ = 0;
   std::vector<RunFlip> flips_;
   std::vector<ShownSinogram> sinograms_;
-  int sinogram_ = -1;  // that is shown
+  int sinogram_ = -1;          // that is shown
+  std::optional<int> sealed_;  // flips up to the last seal
+  std::optional<double> seals_since_s_;
   std::optional<double> end_s_;
   long missed_ = 0;
   long blanks_ = 0;

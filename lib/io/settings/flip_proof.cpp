@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/flip_proof.hpp"
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -15,9 +18,35 @@ namespace {
 // What a stage still turns when the projector's tool has ended: vam-print ends it within a second, or it ends by
 // itself; and a power failure loses up to a second of flips.
 constexpr double most_alone_s = 2;
+// The first seal is written within a second, if the disk is not busy.
+constexpr double most_unsealed_s = 5;
+constexpr double most_turns = 1e6;  // as stage.turns
+constexpr double most_deg = 360 * most_turns;
+constexpr double most_s = 1e9;  // since the machine started
+constexpr double most_bytes = 1e15;
+constexpr const char* changed = "; the log was changed; restore it";
 
 std::string beside(const std::string& log, const char* name) {
   return (std::filesystem::path(log).parent_path() / name).string();
+}
+
+// A whole line: one that is cut has no end, and is not read.
+Json entry_of(const std::string& text, const std::string& place) {
+  Json entry = parse_distinct(text, place);
+  if (!entry.is_object()) throw Error{Fault::data, place + ": is no entry of a log (JSON)" + changed};
+  return entry;
+}
+
+double number_of(const Json& entry, const char* key, double low, double high, const std::string& place) {
+  const double number = number_at(entry, key, std::numeric_limits<double>::quiet_NaN());
+  if (number >= low && number <= high) return number;
+  const std::string is = !entry.contains(key) ? "missing" : std::isnan(number) ? "no number" : format_number(number);
+  throw Error{Fault::data, place + ": " + key + " is " + is + ", not between " + format_number(low) + " and " +
+                               format_number(high) + changed};
+}
+
+bool is_hash(const std::string& text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 }  // namespace
@@ -36,27 +65,40 @@ void FlipProof::read() {
 
 void FlipProof::read_events() {
   for (std::string text; events_->next(text);) {
-    const Json event = parse_distinct(text, beside(log_, "events.jsonl"));
-    if (!event.is_object()) continue;
-    if (text_at(event, "event") == "armed") from_deg_ = number_at(event, "from_deg");
-    if (text_at(event, "event") != "sealed" || text_at(event, "log") != "flips.jsonl") continue;
-    const double bytes = number_at(event, "bytes", -1);
-    if (!(bytes >= 0 && bytes < 1e15)) continue;
-    seals_.push_back({static_cast<std::uint64_t>(bytes), text_at(event, "sha256"), text_at(event, "utc")});
+    const std::string place = beside(log_, "events.jsonl") + ":" + std::to_string(++event_);
+    const Json event = entry_of(text, place);
+    if (text_at(event, "event") == "armed") take_armed(event, place);
+    if (text_at(event, "event") == "sealed" && text_at(event, "log") == "flips.jsonl") take_seal(event, place);
   }
+}
+
+void FlipProof::take_armed(const Json& event, const std::string& place) {
+  const double turns = number_of(event, "turns", 1, most_turns, place);
+  from_deg_ = number_of(event, "from_deg", 0, 360 * turns, place);
+}
+
+void FlipProof::take_seal(const Json& event, const std::string& place) {
+  const double bytes = number_of(event, "bytes", static_cast<double>(sealed_), most_bytes, place);
+  Seal seal{static_cast<std::uint64_t>(bytes), text_at(event, "sha256"), text_at(event, "utc")};
+  if (!is_hash(seal.sha256)) throw Error{Fault::data, place + ": sha256 is not 64 hexadecimal digits" + changed};
+  sealed_ = seal.bytes;
+  has_seals_ = true;
+  if (seal.bytes > reached_) seals_.push_back(std::move(seal));  // else these lines were read before
 }
 
 void FlipProof::read_angles() {
   for (std::string text; angles_->next(text);) {
-    const Json line = parse_json(text);  // counts for nothing but its time
-    if (!line.is_object() || !line.contains("angle_deg")) continue;
-    last_s_ = number_at(line, "t_monotonic_s");
-    last_deg_ = number_at(line, "angle_deg");
+    const std::string place = beside(log_, "angles.jsonl") + ":" + std::to_string(++angle_);
+    const Json line = entry_of(text, place);
+    last_s_ = number_of(line, "t_monotonic_s", 0, most_s, place);
+    last_deg_ = number_of(line, "angle_deg", -most_deg, most_deg, place);
     if (!began_s_ && last_deg_ >= from_deg_.value_or(0)) began_s_ = last_s_;
   }
 }
 
-void FlipProof::check(std::uint64_t bytes, const Sha256& hash) {
+bool FlipProof::check(std::uint64_t bytes, const Sha256& hash) {
+  reached_ = bytes;
+  bool is_sealed = false;
   while (problem_.empty() && !seals_.empty() && seals_.front().bytes <= bytes) {
     const Seal& seal = seals_.front();
     const std::string is = Sha256(hash).digest();
@@ -67,8 +109,14 @@ void FlipProof::check(std::uint64_t bytes, const Sha256& hash) {
       problem_ = "has " + std::to_string(bytes) + " bytes whose SHA-256 begins " + is.substr(0, 8) +
                  ", but events.jsonl states " + seal.sha256.substr(0, 8) + "; it was changed; restore it";
     }
+    is_sealed = problem_.empty();
     seals_.pop_front();
   }
+  return is_sealed;
+}
+
+std::string FlipProof::last_angle() const {
+  return "angles.jsonl, in which the stage turned on to " + format_number(last_deg_, 6) + " deg";
 }
 
 void FlipProof::require_all(std::uint64_t bytes, const FlipsEnd& end) const {
@@ -80,18 +128,31 @@ void FlipProof::require_all(std::uint64_t bytes, const FlipsEnd& end) const {
     require("has " + std::to_string(bytes) + " bytes of whole lines, but events.jsonl states " +
             std::to_string(seals_.back().bytes) + " at " + seals_.back().utc + "; it was cut; restore it");
   }
+  if (events_ && !has_seals_ && end.seals_since_s && end.t_s - *end.seals_since_s > most_unsealed_s) {
+    throw Error{Fault::data,
+                beside(log_, "events.jsonl") + ": has no seal of flips.jsonl, which was sealed every second for " +
+                    format_number(end.t_s - *end.seals_since_s, 3) + " s; it was cut or changed; restore it"};
+  }
   if (end.was_lit && !end.lit) return;  // the stage turns on in the dark
   const std::optional<double> until_s = end.was_lit ? std::optional(end.t_s) : began_s_;
   if (!until_s || !(last_s_ - *until_s > most_alone_s)) return;
-  require((end.was_lit ? "ends " : "has no light, ") + format_number(last_s_ - *until_s, 3) +
-          " s before angles.jsonl, in which the stage turned on to " + format_number(last_deg_, 6) +
-          " deg; it was cut; restore it");
+  require((end.was_lit ? "ends " : "has no light, ") + format_number(last_s_ - *until_s, 3) + " s before " +
+          last_angle() + "; it was cut; restore it");
+}
+
+void FlipProof::require_none() const {
+  const auto gone = [this](const std::string& proof) {
+    throw Error{Fault::data, log_ + ": is gone, but " + proof + "; restore it"};
+  };
+  if (has_seals_) gone("events.jsonl states " + std::to_string(sealed_) + " bytes of it");
+  if (began_s_ && last_s_ - *began_s_ > most_alone_s)
+    gone("the stage turned for " + format_number(last_s_ - *began_s_, 3) + " s with light, by " + last_angle());
 }
 
 void require_no_flips(const std::string& log) {
   FlipProof proof(log);
   proof.read();
-  proof.require_all(0, {});
+  proof.require_none();
 }
 
 }  // namespace vam::io

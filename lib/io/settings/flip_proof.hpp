@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "base/json_fwd.hpp"
 #include "base/sha256.hpp"
 #include "io/stream/log_lines.hpp"
 
@@ -14,9 +15,10 @@ namespace vam::io {
 
 /// The end of a log of flips.
 struct FlipsEnd {
-  bool lit = false;      // the last flip has light
-  bool was_lit = false;  // there was light
-  double t_s = 0;        // of the last flip
+  bool lit = false;                          // the last flip has light
+  bool was_lit = false;                      // there was light
+  double t_s = 0;                            // of the last flip
+  std::optional<double> seals_since_s = {};  // when the log stated that it is sealed
 };
 
 /// Nothing is proved of a log by another name than flips.jsonl, or alone in its folder. Of one in a run folder,
@@ -25,13 +27,16 @@ struct FlipsEnd {
 class FlipProof {
  public:
   explicit FlipProof(const std::string& log);
-  /// Takes in what was added to both. Before the log itself is read, which may go on.
+  /// Takes in what was added to both. Before the log itself is read, which may go on. Throws Fault::data for whole
+  /// lines that no print leaves in them.
   void read();
-  /// After each line of the log.
-  void check(std::uint64_t bytes, const Sha256& hash);
-  /// After the last one so far. Throws Fault::data where lines are not those that were sealed, there were more, or the
-  /// stage turned on for longer than a tool takes to end, without a flip.
+  /// After each line of the log: is it the last of those that were sealed?
+  bool check(std::uint64_t bytes, const Sha256& hash);
+  /// After the last one so far. Throws Fault::data where lines are not those that were sealed, there were more, all
+  /// seals are gone, or the stage turned on for longer than a tool takes to end, without a flip.
   void require_all(std::uint64_t bytes, const FlipsEnd& end) const;
+  /// Of a log that is gone: throws Fault::data where there were flips.
+  void require_none() const;
 
  private:
   struct Seal {
@@ -39,13 +44,19 @@ class FlipProof {
     std::string sha256, utc;
   };
   void read_events();
+  void take_armed(const Json& event, const std::string& place);
+  void take_seal(const Json& event, const std::string& place);
   void read_angles();
+  [[nodiscard]] std::string last_angle() const;
 
   std::string log_;
-  std::string folder_;  // empty: it proves nothing
   std::optional<LogLines> events_, angles_;
-  std::deque<Seal> seals_;  // not reached yet
-  std::string problem_;     // told at the end: what a line states is a better one
+  int event_ = 0, angle_ = 0;  // lines of both that were read
+  std::deque<Seal> seals_;     // not reached yet
+  std::uint64_t sealed_ = 0;   // bytes by the last seal that was read
+  bool has_seals_ = false;
+  std::uint64_t reached_ = 0;  // of the log
+  std::string problem_;        // told at the end: what a line states is a better one
   std::optional<double> from_deg_;
   std::optional<double> began_s_;  // when the stage was at from_deg
   double last_s_ = 0;              // of the stage

@@ -63,7 +63,9 @@ TEST_CASE("a log is held to what was sealed of it while it was written; what cam
   CHECK(
       has(run.read(all.substr(flip(10, -1, -3).size())), "no line that ends at byte " + std::to_string(first.size())));
   std::filesystem::remove(run.path / "flips.jsonl");
-  CHECK(has(error_of([&] { vam::io::require_stated_flips(run.path.string()); }, Fault::data), "has 0 bytes"));
+  CHECK(has(error_of([&] { vam::io::require_stated_flips(run.path.string()); }, Fault::data),
+            "flips.jsonl: is gone, but events.jsonl states " + sealed + " bytes of it; restore it"));
+  CHECK(has(error_of([&] { (void)vam::io::read_shown(run.path.string()); }, Fault::data), "is gone"));
   // A log alone, and one by another name, are taken on trust.
   (void)vam::io::read_shown(run.write("copy.jsonl", first));
 }
@@ -80,4 +82,49 @@ TEST_CASE("a stage that turned on long after the last image proves that flips ar
   run.holds(lit + flip(12.1, -1, 0));  // dark
   (void)run.write("angles.jsonl", angle(5, -400) + angle(9, -10));
   run.holds("");  // killed in the run-up
+}
+
+TEST_CASE("up to which flip a log is sealed is known; what was read before it was sealed is taken on trust") {
+  const Run run;
+  const std::string first = flip(10, -1, -3) + flip(11, 0, 2);
+  (void)run.write("flips.jsonl", first + flip(12, 1, 92));
+  (void)run.write("events.jsonl", armed);
+  vam::io::FlipLog log(run.path.string());
+  log.read();
+  CHECK(log.seals_text().empty());
+  (void)run.write("events.jsonl", armed + seal(first));
+  log.read();
+  CHECK(log.seals_text().empty());
+  vam::io::FlipLog again(run.path.string());
+  again.read();
+  CHECK(again.seals_text() == "sealed up to flip 2 of 3; unsealed after it: 1");
+}
+
+TEST_CASE("a log that states that it is sealed has seals after some seconds") {
+  const Run run;
+  (void)run.write("events.jsonl", armed);
+  const std::string head = R"({"t_monotonic_s":9,"event":"sinogram","full_scale":1,"seals":true})"
+                           "\n";
+  run.holds(head + flip(10, -1, -3) + flip(13.9, 0, 2));
+  CHECK(has(run.read(head + flip(10, -1, -3) + flip(14.1, 0, 2)), "events.jsonl: has no seal of flips.jsonl"));
+}
+
+TEST_CASE("whole lines of the other logs that no print leaves are refused with their number") {
+  const Run run;
+  const std::string lit = flip(10, -1, -3) + flip(11, 0, 2);
+  const auto refused = [&](const char* log, const std::string& lines) {
+    (void)run.write("events.jsonl", armed);
+    (void)run.write("angles.jsonl", "");
+    (void)run.write(log, lines);
+    return run.read(lit);
+  };
+  CHECK(has(refused("events.jsonl", armed + "x\n"), "events.jsonl:2: is no entry of a log (JSON)"));
+  CHECK(has(refused("events.jsonl", armed + std::string(40, '\0') + "\n"), "events.jsonl:2: is no entry"));
+  CHECK(has(refused("events.jsonl", "{\"event\":\"armed\",\"turns\":1e18,\"from_deg\":0}\n"), ":1: turns is 1e+18"));
+  CHECK(
+      has(refused("events.jsonl", "{\"event\":\"armed\",\"turns\":3,\"from_deg\":\"0\"}\n"), "from_deg is no number"));
+  CHECK(has(refused("events.jsonl", armed + seal(lit) + seal("")), ":3: bytes is 0, not between"));
+  CHECK(has(refused("angles.jsonl", angle(9, -90) + "[]\n"), "angles.jsonl:2: is no entry"));
+  CHECK(
+      has(refused("angles.jsonl", angle(9, -90) + "{\"t_monotonic_s\":9}\n"), "angles.jsonl:2: angle_deg is missing"));
 }
