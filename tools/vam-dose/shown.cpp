@@ -39,26 +39,32 @@ void require_distinct(const std::vector<std::string>& runs) {
   }
 }
 
+std::string folder_of(const std::string& run) {
+  return fs::is_directory(run) ? run : log_of(run).parent_path().string();
+}
+
+// A run folder, or the log of one.
+bool is_of_run(const std::string& run) {
+  const fs::path folder = folder_of(run);
+  return fs::is_directory(run) || io::has_regular_file((folder / "events.jsonl").string()) ||
+         (io::has_run_sums(folder.string()) && io::read_run_sums(folder.string()).contains("events.jsonl"));
+}
+
 // What was edited since the print ended states another exposure than was delivered; a log alone may lie anywhere.
 void require_unchanged(const std::string& run) {
-  const std::string folder = log_of(run).parent_path().string();
-  if (!fs::is_directory(run) && !(io::has_run_sums(folder) && io::read_run_sums(folder).contains("events.jsonl")))
-    return;
-  io::require_run_logs(fs::is_directory(run) ? run : folder);
+  if (is_of_run(run)) io::require_run_logs(folder_of(run));
 }
 
 // The settings that a run froze; empty: it is a log alone, or they are gone.
 std::string settings_of(const std::string& run) {
-  const fs::path folder = log_of(run).parent_path();
-  const bool is_run = fs::is_directory(run) || fs::is_regular_file(folder / "events.jsonl");
-  const fs::path file = (fs::is_directory(run) ? fs::path(run) : folder) / "printer.toml";
-  return is_run && fs::is_regular_file(file) ? file.string() : "";
+  const std::string file = (fs::path(folder_of(run)) / "printer.toml").string();
+  return is_of_run(run) && fs::is_regular_file(file) ? file : "";
 }
 
 std::string require_settings(const std::string& run) {
   const std::string file = settings_of(run);
-  if (file.empty() && fs::is_directory(run)) {
-    throw Error{Fault::no_input, (fs::path(run) / "printer.toml").string() +
+  if (file.empty() && is_of_run(run)) {
+    throw Error{Fault::no_input, (fs::path(folder_of(run)) / "printer.toml").string() +
                                      ": is gone; restore it, or give the settings of the print by --printer"};
   }
   return file;

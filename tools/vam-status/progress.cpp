@@ -98,6 +98,7 @@ void RunFolder::read() {
   read_events();
   read_angle();
   read_flips();
+  if (!settled_ && !progress_.outcome) io::require_run_settings(path_);
   look_for_end();
   read_records();
   each_line(file("ost.jsonl"), true, [&](const Json& line) {

@@ -11,6 +11,7 @@
 #include "base/system_error.hpp"
 #include "base/text.hpp"
 #include "io/settings/flip_log.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
@@ -120,6 +121,14 @@ std::string sinogram_problem(const std::string& folder, bool by_name) {
   return "";
 }
 
+// vam-print seals the settings before it is armed; a printer file of a user's own is in no run.
+void require_sealed_settings(const std::string& folder) {
+  const std::string path = path_in(folder, "printer.toml");
+  if (!has_regular_file(path_in(folder, "events.jsonl")) || !has_regular_file(path)) return;
+  if (require_text_seal(read_all(path, Content::text, std::uint64_t{1} << 20), path)) return;
+  throw Error{Fault::data, path + ": has no seal, with which a print writes it; it was cut or changed; restore it"};
+}
+
 }  // namespace
 
 bool has_run_sums(const std::string& folder) { return has_regular_file(path_in(folder, list_name)); }
@@ -148,7 +157,7 @@ void require_run_logs(const std::string& folder) {
     if (!has_regular_file(path_in(folder, name))) continue;
     if (const std::string problem = link_problem(folder, name); !problem.empty()) throw Error{Fault::data, problem};
   }
-  if (!has_run_sums(folder)) return;
+  if (!has_run_sums(folder)) return require_sealed_settings(folder);
   const RunSums sums = read_run_sums(folder);
   for (const char* name : counted) {
     const bool needed = std::string(name) == "events.jsonl" || has_regular_file(path_in(folder, name));
@@ -163,6 +172,14 @@ void require_run_logs(const std::string& folder) {
     if (!is_log || (name.has_parent_path() && name.filename() != "manifest.jsonl")) continue;
     if (const std::string problem = sum_problem(folder, file); !problem.empty()) throw Error{Fault::data, problem};
   }
+}
+
+void require_run_settings(const std::string& folder) {
+  const std::string path = path_in(folder, "printer.toml");
+  if (has_regular_file(path) || !has_regular_file(path_in(folder, "events.jsonl"))) return;
+  throw Error{Fault::data, path +
+                               ": is gone, without which the print can be neither resumed nor its dose computed; "
+                               "restore it"};
 }
 
 std::string sum_problem(const std::string& folder, const RunSums::value_type& file) {

@@ -19,8 +19,13 @@ using RunSums = std::map<std::string, std::string>;
 
 /// The logs, records and settings of a print that has ended are what they were at its end. Throws Fault::data where one
 /// of the list was changed, is gone or a link, or the list has no hash of those by which light is counted; without a
-/// list, as of a print that was killed, only these must not be links. Throws as read_run_sums() does.
+/// list, as of a print that was killed, only these must not be links, and the settings must be sealed. Throws as
+/// read_run_sums() does.
 void require_run_logs(const std::string& folder);
+
+/// Of a print that has not ended: throws Fault::data where the settings are gone that vam-print writes before its
+/// events.
+void require_run_settings(const std::string& folder);
 
 /// What is wrong with a file of the list, as a line; empty: nothing.
 [[nodiscard]] std::string sum_problem(const std::string& folder, const RunSums::value_type& file);
