@@ -39,8 +39,9 @@ cli::Manual manual() {
        "are lost or that are not in the list are named, as are links (all but resumed.json, which a resumption adds, "
        "and "
        "sinogram.exr, a link that is verified against the hash in events.jsonl); flips.jsonl is verified against "
-       "summary.json, too, also where it is given alone; before the print has ended, or if it was killed, against "
-       "events.jsonl and angles.jsonl. Of a folder of "
+       "summary.json, too, also where it is given alone; before the print has ended, or if it was killed, its lines "
+       "against the seals in events.jsonl, up to the last of which they are verified, as is said, its end against "
+       "angles.jsonl, and printer.toml against its own. Of a folder of "
        "vam-capture every line of the manifest is verified against the one above, and every image "
        "against its line; images that are lost, exchanged or without a line are named; its manifest.jsonl stands for "
        "the folder.",

@@ -204,8 +204,40 @@ refuses ":[0-9]+: time goes back by [0-9.]+ s from that of the flip before$chang
 refuses ': has [0-9]+ bytes whose SHA-256 begins [0-9a-f]{8}, but events.jsonl states [0-9a-f]{8}; it was changed; restore it$' "sed '${line}s/\"utc\":\"2/\"utc\":\"3/'"
 rm -r spoilt; cp -r again spoilt; sed -i '/"event":"armed"/s/"turns":[0-9]*/"turns":30/' spoilt/events.jsonl
 fails 65 '^vam-print: spoilt/events.jsonl: states 30 turns, but flips.jsonl [0-9]+; it was changed; restore it$' print --resume spoilt --run none
-rm -r spoilt; cp -r again spoilt; rm spoilt/flips.jsonl
-fails 65 "^vam-print: spoilt/flips.jsonl: $cut_short" print --resume spoilt --run none
+# As of an untouched one is said what its seals hold, so of what was lost or changed that it was.
+ok 'a killed print is verified up to its last seal' vam-check again
+of='sealed up to flip [0-9]+ of [0-9]+(; unsealed after it: [0-9]+)?'
+is 'which says up to where' "$(grep -Ec "^again: run folder of a print that goes on or was killed: flips.jsonl $of, sealed\$" .log/out)" 1
+is 'by its log alone, too' "$(vam-check again/flips.jsonl | grep -Ec "^again/flips.jsonl: flips of a print without a summary: $of, sealed\$")" 1
+is 'and by its progress' "$(vam-status again 2>&1 >/dev/null | grep -Ec "is gone; of its logs only flips.jsonl is verified, $of\$")" 1
+spoilt() {  # spoilt REGEX COMMAND: a killed print after COMMAND in its folder
+  rm -rf spoilt; cp -r again spoilt; (cd spoilt && eval "$2")
+  fails 65 "^vam-print: spoilt/$1" print --resume spoilt --run none
+  fails 65 "^vam-dose: spoilt/$1" vam-dose frames.exr --shown spoilt -o none.vdb
+  fails 65 "^vam-status: spoilt/$1" vam-status spoilt
+  fails 65 "^vam-check: spoilt/$1" vam-check spoilt
+}
+spoilt 'flips.jsonl: is gone, but events.jsonl states [0-9]+ bytes of it; restore it$' 'rm flips.jsonl'
+fails 65 '^vam-check: spoilt/flips.jsonl: is gone, but' vam-check spoilt/flips.jsonl
+spoilt 'printer.toml: has no seal, with which a print writes it; it was cut or changed; restore it$' 'sed -i "/^# sealed/d" printer.toml'
+fails 65 '^vam-dose: .*/spoilt/printer.toml: has no seal' vam-dose frames.exr --shown spoilt/flips.jsonl -o none.vdb
+spoilt 'events.jsonl: has no seal of flips.jsonl, which was sealed every second for [0-9.]+ s; it was cut or changed' 'sed -i "/sealed/d" events.jsonl'
+for log in events angles; do
+  spoilt "$log.jsonl:2: is no entry of a log .JSON.; the log was changed; restore it\$" "sed -i '2s/^/x/' $log.jsonl"
+  spoilt "$log.jsonl:2: is no entry of a log" "sed -i '2s/.*/7/' $log.jsonl"
+done
+spoilt 'events.jsonl:1: from_deg is 1e.300, not between 0 and' 'sed -i "1s/\"from_deg\":[0-9.]*/\"from_deg\":1e300/" events.jsonl'
+spoilt 'events.jsonl:1: turns is -2, not between 1 and' 'sed -i "1s/\"turns\":/&-/" events.jsonl'
+spoilt 'events.jsonl:[0-9]+: bytes is 1e.308, not between [0-9]+ and' 'sed -i "\$s/\"bytes\":[0-9]*/\"bytes\":1e308/" events.jsonl'
+spoilt 'events.jsonl:[0-9]+: sha256 is not 64' 'sed -i "\$s/\"sha256\":\"[0-9a-f]*/\"sha256\":\"/" events.jsonl'
+spoilt 'angles.jsonl:3: angle_deg is missing, not between' 'sed -i "3s/angle_deg/angel_deg/" angles.jsonl'
+spoilt 'angles.jsonl:3: t_monotonic_s is 1e.300, not between' 'sed -i "3s/\"t_monotonic_s\":[0-9.]*/\"t_monotonic_s\":1e300/" angles.jsonl'
+rm -r spoilt; cp -r again spoilt; rm spoilt/printer.toml
+for tool in vam-check vam-status 'print --run none --resume'; do
+  fails 65 'spoilt/printer.toml: is gone, without which the print can be neither resumed nor its dose computed' $tool spoilt
+done
+fails 66 'spoilt/printer.toml: is gone; restore it, or give' vam-dose frames.exr --shown spoilt/flips.jsonl -o none.vdb
+rm -r spoilt; cp -r again spoilt
 : >spoilt/flips.jsonl; sed -i '/"event":"sealed"/d' spoilt/events.jsonl  # as of a former version
 fails 65 '^vam-print: spoilt/flips.jsonl: has no light, [0-9.]+ s before angles.jsonl, in which the stage turned on to [0-9.]+ deg; it was cut; restore it$' print --resume spoilt --run none
 is 'what is refused leaves no mark' "$(ls spoilt/resumed.json none 2>/dev/null)" ''

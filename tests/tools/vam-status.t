@@ -37,7 +37,7 @@ is 'without a terminal no line is printed and no page written' "$? $(cat out err
 cp -r run half
 rm half/SHA256SUMS half/summary.json  # which a print writes at its end
 sed -i '/"event":"end"/d;/"event":"sealed"/d' half/events.jsonl
-head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl >half/flips.jsonl
+head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl | sed 's/,"seals":true//' >half/flips.jsonl  # as of a former version
 last=$(tail -n 1 half/flips.jsonl | grep -o '"angle_deg":[-0-9.e]*' | cut -d: -f2)
 printf '{"t_monotonic_s":1,"angle_deg":%s,"sigma_deg":0}\n{"t_mono' "$last" >half/angles.jsonl
 touch half/events.jsonl
@@ -136,7 +136,7 @@ done
 spoil; rm part/SHA256SUMS
 vam-status part >said 2>err
 is 'a print without the list is said to be unverified' "$? $(cat err)" \
-  '0 vam-status: warning: part: has no SHA256SUMS, which a print writes when it has ended: it was killed, or the list is gone; its logs are not verified'
+  '0 vam-status: warning: part: has no SHA256SUMS, which a print writes when it has ended: it was killed, or the list is gone; of its logs only flips.jsonl is verified'
 is 'once' "$(timeout 20 vam-status part --watch 2>&1 >x | grep -c 'has no SHA')" 1
 for change in '$d' '3s/^./x/' '/events/d' '/flips/d' '1s/^/ /' '1p' '1s|\./|../|' '1s|\./|/|'; do
   spoil; sed -i "$change" part/SHA256SUMS
@@ -171,7 +171,7 @@ for change in 's/"angle_deg":1\(..[.]\)/"angle_deg":2\1/' 's/"t_monotonic_s":./&
   done
   (cd part && find . -type f -exec sha256sum {} + >../sums && mv ../sums SHA256SUMS)
   fails 65 'part/flips.jsonl: has lines whose SHA-256' vam-check part
-  sed -i /flips_sha256/d part/summary.json; sed -i '/"event":"sealed"/d' part/events.jsonl; rm part/SHA256SUMS
+  sed -i /flips_sha256/d part/summary.json; sed -i '/"event":"sealed"/d' part/events.jsonl; sed -i 's/,"seals":true//' part/flips.jsonl; rm part/SHA256SUMS
   case $changes in
     1) fails 65 'part/flips.jsonl:[0-9]*: the angle goes back from 29[0-9.]* to 20[0-9.]* deg' vam-status part; continue ;;
     3) fails 65 'part/flips.jsonl:[0-9]*: (time goes back by|frame|flips are missing)' vam-status part; continue ;;
@@ -210,8 +210,14 @@ is 'no settings yet' "$(line_of)" 'preparing  turn 0.00 of unknown | dose delive
 mkdir own; printf '[stage]\nspeed_deg_s = 90\n' >own/printer.toml
 fails 65 'own: has no events.jsonl' vam-status own
 without events
+fails 65 'part/events.jsonl: has no seal of flips.jsonl, which was sealed every second for [0-9.]* s; it was cut or changed; restore it' vam-status part
+sed -i 's/,"seals":true//' part/flips.jsonl
 is 'events are lost: the number of turns and the dose are unknown' "$(line_of | sed 's/[0-9]* of [0-9]* vert/N of N vert/')" \
   'printing  turn 3.00 of unknown | dose delivered unknown  missed N of N vertical blanks'
+without; rm part/printer.toml; sed -i '/"event":"end"/d' part/events.jsonl
+for tool in vam-status 'timeout 20 vam-status --watch' vam-check; do
+  fails 65 'part/printer.toml: is gone, without which the print can be neither resumed nor its dose computed; restore it' $tool part
+done
 without; rm part/printer.toml
 is 'the settings are lost, and with them the speed' "$(line_of | sed 's/  missed.*//')" 'ended: done  turn 3.00 of 3 | dose delivered unknown'
 without angles
@@ -227,6 +233,7 @@ for log in events flips angles stage; do
   for tenths in 1 3 5 7 9; do
     without; head -c $(($(stat -c %s run/$log.jsonl) * tenths / 10)) run/$log.jsonl >part/$log.jsonl
     wanted=' turn [0-9.]* of '; [ $log != flips ] || wanted='part/flips.jsonl: .*; it was cut; restore it$'
+    [ $log != events ] || wanted="$wanted\\|part/events.jsonl: has no seal of flips.jsonl"
     [ "$(vam-status part 2>&1 | grep -c "$wanted")" = 1 ] || bad=$((bad + 1))
   done
 done

@@ -192,9 +192,12 @@ void RunFolder::look_for_end() {
   progress_.abandoned = !progress_.outcome && !is_alive && (is_over || progress_.silent_s > silence_s);
   if (is_alive || warned_ || !(progress_.outcome || progress_.abandoned) || io::has_run_sums(path_)) return;
   warned_ = true;
-  warn(path_ +
-       ": has no SHA256SUMS, which a print writes when it has ended: it was killed, or the list is gone; its "
-       "logs are not verified");
+  const auto stated = io::stated_flips(path_);
+  const bool is_held = stated ? !stated->sha256.empty() : flips_ && !flips_->seals_text().empty();
+  warn(path_ + ": has no SHA256SUMS, which a print writes when it has ended: it was killed, or the list is gone; " +
+       (!is_held ? "its logs are not verified"
+        : stated ? "of its logs only flips.jsonl is verified"
+                 : "of its logs only flips.jsonl is verified, " + flips_->seals_text()));
 }
 
 void RunFolder::read_records() {

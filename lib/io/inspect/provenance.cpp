@@ -61,6 +61,26 @@ std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType ty
   return {{what, source->is_sealed(), source->seal(), source->info().history, source->has_checksums()}};
 }
 
+// Of a run without a summary, how much of its flips was held to seals, in words; empty: nothing.
+std::string seals_of(const std::string& run) {
+  FlipLog log(run);
+  log.read();
+  return log.seals_text();
+}
+
+// A print that goes on, or was killed: its settings and, up to the last seal, its flips are what they were.
+std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
+  require_run_settings(path);
+  require_run_logs(path);
+  require_stated_flips(path);
+  const std::string log = (std::filesystem::path(path) / "flips.jsonl").string();
+  if (const std::string seals = has_regular_file(log) ? seals_of(path) : ""; !seals.empty())
+    return {{"run folder of a print that goes on or was killed: flips.jsonl " + seals, true, "", {}}};
+  throw Error{Fault::data, path +
+                               ": has no SHA256SUMS, which a print writes when it has ended: it goes on, was "
+                               "killed, or the list is gone; nothing of it can be verified"};
+}
+
 // A print that has ended left a list of hashes, and one of its flips in the summary, which former versions did not.
 std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
   const auto stated = stated_flips(path);
@@ -70,12 +90,12 @@ std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
     if (damage.empty() && !fast) require_stated_flips(path);
     return {{"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, false, damage}};
   }
+  if (!stated) return inspect_unended(path);
   if (!fast) require_stated_flips(path);
-  if (stated && stated->sha256.empty()) return {{"run folder without SHA256SUMS", false, "", {}}};
+  if (stated->sha256.empty()) return {{"run folder without SHA256SUMS", false, "", {}}};
   throw Error{Fault::data, path +
-                               ": has no SHA256SUMS, which a print writes when it has ended: it goes on, was "
-                               "killed, or the list is gone; " +
-                               (stated ? "only flips.jsonl" : "nothing") + " of it can be verified"};
+                               ": has no SHA256SUMS, which a print writes when it has ended; only flips.jsonl of it "
+                               "can be verified; restore the list"};
 }
 
 std::vector<ProvenanceEntry> inspect_capture(const std::string& path, bool fast) {
@@ -106,8 +126,8 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   }
   const std::filesystem::path file(path);
   if (!fast && file.filename() == "flips.jsonl" && has_regular_file((file.parent_path() / "events.jsonl").string())) {
-    require_stated_flips(path);
-    return {{"flips of a print without a summary", false, "", {}}};
+    const std::string seals = seals_of(path);
+    return {{"flips of a print without a summary" + (seals.empty() ? "" : ": " + seals), !seals.empty(), "", {}}};
   }
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
@@ -136,6 +156,7 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
 }  // namespace
 
 std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast) {
+  if (std::filesystem::path(path).filename() == "flips.jsonl" && !has_regular_file(path)) require_stated_flips(path);
   const auto type = known_file_type(path);
   if (!type) {
     for (const char* ending : {".exr", ".vdb", ".mkv"}) {
