@@ -4,11 +4,14 @@
 #include <cctype>
 #include <charconv>
 #include <filesystem>
+#include <memory>
 #include <numeric>
+#include <span>
 
 #include "base/error.hpp"
 #include "base/system_error.hpp"
 #include "io/image/image_file.hpp"
+#include "io/image/private/image_batch.hpp"
 
 namespace vam::io {
 
@@ -99,8 +102,37 @@ ImageFolder::ImageFolder(const std::string& folder, bool gaps, FolderOf of) {
   }
 }
 
+// Decoded ahead, by batches that double while images are read one after the other.
+struct ImageFolder::Ahead {
+  std::unique_ptr<ImageBatch> batch;
+  int next = -1;  // image of the batch
+  int left = 0;   // of it
+  int size = 1;
+
+  GreyImage read(std::span<const std::string> paths, int index) {
+    const bool follows = index == next;
+    next = index + 1;
+    try {
+      if (!follows || left == 0) {
+        size = follows ? 2 * size : 1;
+        const std::size_t rest = paths.size() - index;
+        batch = std::make_unique<ImageBatch>(paths.subspan(index, std::min<std::size_t>(rest, size)));
+        left = size = batch->count();
+      }
+      --left;
+      return batch->next();
+    } catch (const Error&) {
+      batch.reset();
+      left = 0;
+      size = 1;
+      return read_image(paths[index]);  // says which file it is, or reads it by bounds of its own
+    }
+  }
+};
+
 GreyImage ImageFolder::read(int index) {
-  GreyImage image = read_image(path(index));
+  if (!ahead_) ahead_ = std::make_shared<Ahead>();
+  GreyImage image = ahead_->read(paths_, index);
   if (width_ == 0) {
     width_ = image.width;
     height_ = image.height;

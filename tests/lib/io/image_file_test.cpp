@@ -239,6 +239,30 @@ TEST_CASE("a folder is read in numerical order; gaps and differing sizes are err
   CHECK(has(error_of([&] { ImageFolder{(folder / "empty")}; }, vam::Fault::data), "no PNG or TIFF"));
 }
 
+TEST_CASE("a damaged image in a folder is named, and those beside it are read") {
+  const scratch::Folder folder;
+  const auto name = [&](int i) { return folder / (std::to_string(i) + ".png"); };
+  for (int i = 0; i < 90; ++i) {
+    GreyImage image(4, 3, 8);
+    image(0, 0) = static_cast<std::uint16_t>(i);
+    write_png(name(i), image);
+  }
+  const std::string whole = scratch::slurp(name(40));
+  scratch::spill(name(40), whole.substr(0, whole.size() - 20));
+  scratch::spill(name(60), "no image");
+  std::filesystem::remove(name(70));
+  std::filesystem::create_directory(name(70));
+  ImageFolder images(folder.path.string());
+  for (int i = 0; i < 90; ++i) {
+    if (i == 40 || i == 60 || i == 70) {
+      CHECK(has(error_of([&] { (void)images.read(i); }, i == 70 ? vam::Fault::no_input : vam::Fault::data), name(i)));
+    } else {
+      CHECK(images.read(i)(0, 0) == i);
+    }
+  }
+  for (const int i : {89, 3, 4, 5, 6, 2}) CHECK(images.read(i)(0, 0) == i);
+}
+
 TEST_CASE("a PNG that announces more pixels than its bytes can hold is refused before they are") {
   const scratch::Folder folder;
   write_png(folder / "a.png", GreyImage(1, 1, 8));
