@@ -11,9 +11,9 @@
 
 namespace vam::metrology {
 
-std::vector<Image> level_views(std::span<const CameraView> views, const AxisPose& axis, const LevelRows& rows) {
+std::vector<Image> level_views(std::span<const CameraView> views, const LevelRows& rows) {
   std::vector<Image> level(views.size());
-  parallel_for(count_of(views), [&](int i) { level[i] = rows.of(views[i].image, axis); });
+  parallel_for(count_of(views), [&](int i) { level[i] = rows.of(views[i].image); });
   return level;
 }
 

@@ -148,7 +148,7 @@ Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, std:
   const auto heights_mm =
       some_of(print_heights(mean_view(views), map, eye, grid, std::numeric_limits<std::size_t>::max()));
   if (heights_mm.empty()) return {};
-  auto level = level_views(views, axis, LevelRows(map, eye.camera.columns, eye.rows, heights_mm));
+  auto level = level_views(views, LevelRows(map, eye.camera.columns, eye.rows, heights_mm, axis));
   make_steady(level, background, {});
   std::vector<double> directions_rad;
   for (const double angle : angles_deg) directions_rad.push_back(direction * angle * rad_per_deg + azimuth_rad);

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/cubic.hpp"
 #include "base/index.hpp"
-#include "metrology/ost/private/cubic.hpp"
+#include "base/parallel.hpp"
 #include "optics/skew_ray.hpp"
 #include "optics/writable_radius.hpp"
 
@@ -14,6 +15,23 @@ namespace vam::metrology {
 namespace {
 
 double tallest_mm(const Eye& eye) { return std::max(std::abs(eye.z_mm(0)), std::abs(eye.z_mm(eye.rows - 1))); }
+
+// The pixels of a row or column that make the value between them, all in the image of four at least; beyond it its
+// last.
+struct FourTaps {
+  int first;
+  std::array<float, 4> weights;
+};
+
+FourTaps four_taps(double at, int size) {
+  const double whole = std::floor(at);
+  const auto weights = cubic_weights(static_cast<float>(at - whole));
+  FourTaps taps{std::clamp(static_cast<int>(whole) - 1, 0, size - 4), {}};
+  for (int j = 0; j < 4; ++j) {
+    taps.weights[std::clamp(static_cast<int>(whole) + j - 1, 0, size - 1) - taps.first] += weights[j];
+  }
+  return taps;
+}
 
 }  // namespace
 
@@ -56,43 +74,36 @@ double climb_rate_per_mm(const Eye& eye, double x_v_mm) {
   return ray.hits ? ray.climb / ray.height_mm : 0.0;
 }
 
-LevelRows::LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm)
-    : columns_(columns), heights_(count_of(heights_mm)) {
-  for (const double height : heights_mm) {
-    for (int x = 0; x < columns; ++x) {
-      const double row = std::clamp(map.row(x, height), 0.0, rows - 1.0);
-      const double whole = std::floor(row);
-      const auto weights = cubic_weights(static_cast<float>(row - whole));
-      HeightTaps taps{static_cast<float>(row), std::clamp(static_cast<int>(whole) - 1, 0, std::max(0, rows - 4)), {}};
-      for (int j = 0; j < 4; ++j) {
-        const int at = std::clamp(static_cast<int>(whole) + j - 1, 0, rows - 1) - taps.first;
-        taps.weights[at] += weights[j];
-      }
-      taps_.push_back(taps);
-    }
-  }
-}
-
-Image LevelRows::of(const Image& image, const AxisPose& axis) const {
-  Image out(columns_, heights_);
-  const double middle = 0.5 * (image.height - 1);
+LevelRows::LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm,
+                     const AxisPose& axis)
+    : columns_(columns), heights_(count_of(heights_mm)), taps_(product(columns, heights_)) {
+  const double middle = 0.5 * (rows - 1);
   const double c = std::cos(axis.tilt_rad);
   const double s = std::sin(axis.tilt_rad);
-  const auto pitch = static_cast<std::ptrdiff_t>(image.width);
-  for (int k = 0; k < heights_; ++k) {
-    float* to = out.row(k);
-    const HeightTaps* taps = taps_.data() + std::ptrdiff_t{k} * columns_;
-    for (int x = 0; x < columns_; ++x, ++taps) {
-      if (axis.tilt_rad == 0) {
-        const float* from = image.row(taps->first) + x;
-        const auto& w = taps->weights;
-        to[x] = w[0] * from[0] + w[1] * from[pitch] + w[2] * from[2 * pitch] + w[3] * from[3 * pitch];
-        continue;
-      }
+  parallel_for(heights_, [&](int k) {
+    for (int x = 0; x < columns; ++x) {
       const double across = x - axis.column;
-      const double along = static_cast<double>(taps->row) - middle;
-      to[x] = cubic_at(image, axis.column + c * across + s * along, middle - s * across + c * along);
+      const auto row = static_cast<float>(std::clamp(map.row(x, heights_mm[k]), 0.0, rows - 1.0));
+      const double along = static_cast<double>(row) - middle;
+      const FourTaps right = four_taps(axis.column + c * across + s * along, columns);
+      const FourTaps down = four_taps(middle - s * across + c * along, rows);
+      taps_[product(k, columns) + x] = {product(down.first, columns) + right.first, right.weights, down.weights};
     }
+  });
+}
+
+Image LevelRows::of(const Image& image) const {
+  Image out(columns_, heights_);
+  for (std::size_t i = 0; i < taps_.size(); ++i) {
+    const PixelTaps& taps = taps_[i];
+    const float* from = image.values.data() + taps.first;
+    std::array<float, 4> rows{};
+    for (int y = 0; y < 4; ++y, from += columns_) {
+      for (int x = 0; x < 4; ++x) rows[x] += taps.down[y] * from[x];
+    }
+    float sum = 0;
+    for (int x = 0; x < 4; ++x) sum += taps.right[x] * rows[x];
+    out.values[i] = sum;
   }
   return out;
 }

@@ -54,10 +54,10 @@ void scale(std::vector<Slab>& slabs, float factor) {
 OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_mm, int columns, int rows,
                                    const AxisPose& axis, const OstOptions& options)
     : state_(std::make_unique<State>()) {
-  constexpr int fewest_rows = 4;  // of the interpolation between rows
-  if (rows < fewest_rows) {
-    throw Error{Fault::data, "views: have " + std::to_string(rows) + " rows after binning; at least " +
-                                 std::to_string(fewest_rows) + " are needed"};
+  constexpr int fewest = 4;  // of the interpolation between pixels
+  if (columns < fewest || rows < fewest) {
+    throw Error{Fault::data, "views: have " + std::to_string(columns) + " x " + std::to_string(rows) +
+                                 " pixels after binning; at least 4 x 4 are needed"};
   }
   State& s = *state_;
   s.options = options;
@@ -193,8 +193,8 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
     const int count = std::min(slices_a_pass, s.grid.nz - first);
     const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
-    const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
-    auto level = level_views(views, s.axis, rows);
+    const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm, s.axis);
+    auto level = level_views(views, rows);
     make_steady(level, dirt.background, light.intensity);
     undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
     auto seen = camera_sinograms(level, turns);

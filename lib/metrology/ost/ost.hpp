@@ -37,7 +37,7 @@ struct OstOptions {
 class OstReconstructor {
  public:
   /// `pixel_mm` is the pitch of the binned frames at the axis. Throws Fault::data where camera, vial and frames cannot
-  /// belong together, and for fewer than four rows.
+  /// belong together, and for fewer than four rows or columns.
   OstReconstructor(const model::Printer& printer, double pixel_mm, int columns, int rows, const AxisPose& axis,
                    const OstOptions& options);
   ~OstReconstructor();

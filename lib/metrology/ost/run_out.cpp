@@ -57,8 +57,8 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   constexpr std::size_t most_heights = 32;
   const auto heights_mm = print_heights(mean, map, s.eye, s.grid, most_heights);
   if (heights_mm.empty()) return found;
-  const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
-  auto level = level_views(views, s.axis, rows);
+  const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm, s.axis);
+  auto level = level_views(views, rows);
   const double background = even_background(mean).background;
   const Flicker light = s.flicker(views, angles_deg, background);
   make_steady(level, background, light.intensity);

@@ -49,23 +49,22 @@ class RowOfHeight {
 /// Share of its height that a ray of offset x_v gains per mm along the light; 0 where rays stay level.
 [[nodiscard]] double climb_rate_per_mm(const Eye& eye, double x_v_mm);
 
-/// The rows of a camera image that see these heights, lowest first.
+/// What a camera image of `columns` x `rows`, four at least, shows at these heights, lowest first, turned about the
+/// axis by its tilt: cubic between pixels [KEYS81]; what is beyond the image is as its last pixels.
 class LevelRows {
  public:
-  LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm);
-  /// The image at those heights, turned about the axis by its tilt: cubic between pixels [KEYS81]; rows beyond the
-  /// image repeat its last.
-  [[nodiscard]] Image of(const Image& image, const AxisPose& axis) const;
+  LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm, const AxisPose& axis);
+  [[nodiscard]] Image of(const Image& image) const;
 
  private:
-  struct HeightTaps {
-    float row;
-    int first;  // of four rows, all in the image
-    std::array<float, 4> weights;
+  struct PixelTaps {
+    std::size_t first;  // of 4 x 4 pixels, all in the image
+    std::array<float, 4> right;
+    std::array<float, 4> down;
   };
   int columns_;
   int heights_;
-  std::vector<HeightTaps> taps_;  // [height][column]
+  std::vector<PixelTaps> taps_;  // [height][column]
 };
 
 }  // namespace vam::metrology
