@@ -42,13 +42,15 @@ void blur_columns(std::vector<Image>& level) {
     kernel.push_back(static_cast<float>(std::exp(-0.5 * j * j / (sigma * sigma)) / sum));
   parallel_for(count_of(level), [&](int i) {
     Image& image = level[i];
-    const Image before = image;
+    std::vector<float> padded(image.width + 2 * reach);
     for (int k = 0; k < image.height; ++k) {
-      for (int x = 0; x < image.width; ++x) {
-        float value = 0;
-        for (int j = -reach; j <= reach; ++j)
-          value += kernel[j + reach] * before(std::clamp(x + j, 0, image.width - 1), k);
-        image(x, k) = value;
+      float* row = image.row(k);
+      std::fill_n(padded.begin(), reach, row[0]);
+      std::copy_n(row, image.width, padded.begin() + reach);
+      std::fill_n(padded.end() - reach, reach, row[image.width - 1]);
+      std::fill_n(row, image.width, 0.0F);
+      for (int j = 0; j <= 2 * reach; ++j) {
+        for (int x = 0; x < image.width; ++x) row[x] += kernel[j] * padded[x + j];
       }
     }
   });
@@ -61,19 +63,29 @@ std::vector<Image> slopes(const std::vector<Image>& level, const std::vector<Col
   parallel_for(count_of(level), [&](int i) {
     const Image& in = level[i];
     out[i] = Image(in.width, in.height);
-    for (int x = 1; x + 1 < in.width; ++x) {
-      const auto half = static_cast<float>(0.5 * motion[i].at(x - axis_column));
-      for (int k = 0; k < in.height; ++k) out[i](x, k) = half * (in(x + 1, k) - in(x - 1, k));
+    std::vector<float> half(in.width);
+    for (int x = 0; x < in.width; ++x) half[x] = static_cast<float>(0.5 * motion[i].at(x - axis_column));
+    for (int k = 0; k < in.height; ++k) {
+      const float* from = in.row(k);
+      float* to = out[i].row(k);
+      for (int x = 1; x + 1 < in.width; ++x) to[x] = half[x] * (from[x + 1] - from[x - 1]);
     }
   });
   return out;
 }
 
-// What the line of (t, a) shows from this end less what it shows from the other.
-double difference(const std::vector<Image>& sinograms, int k, int t, int a) {
-  const Image& s = sinograms[k];
-  return static_cast<double>(s(t, a)) - static_cast<double>(s(s.width - 1 - t, (a + s.height / 2) % s.height));
-}
+// The lines of an angle, seen from both of their ends.
+class LineEnds {
+ public:
+  LineEnds(const Image& s, int angle)
+      : near_(s.row(angle)), far_(s.row((angle + s.height / 2) % s.height) + s.width - 1) {}
+  /// What the line of offset t shows from this end less what it shows from the other.
+  [[nodiscard]] double difference(int t) const { return static_cast<double>(near_[t]) - static_cast<double>(far_[-t]); }
+
+ private:
+  const float* near_;
+  const float* far_;
+};
 
 // What each ray would gain if the light were not absorbed, mu per column: mu M, M the integral of u rho along it. As
 // dP/dtheta = -dM/dt, the views hold it: P is the mean of both ends of a line, and the integral over t is the mean of
@@ -118,37 +130,58 @@ int other_height(int k, int count) {
   return k + rows < count ? k + rows : std::max(0, k - rows);
 }
 
-// Adds the lines of one height.
-void add_height(const Lines& lines, int k, double bound, Sums& sums) {
-  const auto& now = lines.now;
+std::array<LineEnds, unknowns> ends_of(const Lines& lines, int k, int angle) {
   const auto& by = lines.by;
-  const int other = other_height(k, count_of(now));
-  const Image& s = now[k];
+  return {LineEnds(by[0][k], angle), LineEnds(by[1][k], angle), LineEnds(by[2][k], angle), LineEnds(by[3][k], angle)};
+}
+
+// The lines of one height.
+Sums sums_of(const Lines& lines, int k, double bound) {
+  Sums sums;
+  const int other = other_height(k, count_of(lines.now));
+  const Image& s = lines.now[k];
   const int half = s.width / 2;
   for (int a = 0; a < s.height; ++a) {
-    const int angle_range = a * angle_ranges / s.height;
+    auto& by_offset = sums.by_both[a * angle_ranges / s.height];
+    const LineEnds now(s, a);
+    const auto here = ends_of(lines, k, a);
+    const auto there = ends_of(lines, other, a);
     for (int t = 2; t < half; ++t) {
       if (!lines.is_seen(k, t) || !lines.is_seen(other, t)) continue;
       Vector own{};
       Vector row{};
       for (int i = 0; i < unknowns; ++i) {
-        own[i] = difference(by[i], k, t, a);
-        row[i] = difference(by[i], other, t, a);
+        own[i] = here[i].difference(t);
+        row[i] = there[i].difference(t);
       }
-      const double r = difference(now, k, t, a);
+      const double r = now.difference(t);
       const double weight = std::min(1.0, bound / (std::abs(r) + 1e-300));
-      Vector gradient{};
+      Vector& gradient = by_offset[t * offset_ranges / half];
       for (int i = 0; i < unknowns; ++i) {
-        gradient[i] = weight * row[i] * r;
+        gradient[i] += weight * row[i] * r;
         for (int j = 0; j < unknowns; ++j) sums.normal(i, j) += weight * 0.5 * (row[i] * own[j] + own[i] * row[j]);
-      }
-      const int offset_range = t * offset_ranges / half;
-      for (int i = 0; i < unknowns; ++i) {
-        sums.right[i] += gradient[i];
-        sums.by_both[angle_range][offset_range][i] += gradient[i];
       }
     }
   }
+  return sums;
+}
+
+Sums sums_of(const Lines& lines, double bound) {
+  std::vector<Sums> heights(lines.now.size());
+  parallel_for(count_of(heights), [&](int k) { heights[k] = sums_of(lines, k, bound); });
+  Sums all;
+  for (const Sums& height : heights) {
+    all.normal += height.normal;
+    for (int a = 0; a < angle_ranges; ++a) {
+      for (int t = 0; t < offset_ranges; ++t) {
+        for (int i = 0; i < unknowns; ++i) {
+          all.by_both[a][t][i] += height.by_both[a][t][i];
+          all.right[i] += height.by_both[a][t][i];
+        }
+      }
+    }
+  }
+  return all;
 }
 
 // Of the first `count` unknowns; the others stay.
@@ -223,25 +256,35 @@ Vector variances(const Sums& sums, const Matrix& inverse) {
 
 // What the lines on edges differ by between their ends, those that see a motion best.
 std::vector<double> edge_differences(const Lines& lines) {
-  std::vector<double> sights;
-  std::vector<double> differences;
-  double sum = 0;
-  for (int k = 0; k < count_of(lines.now); ++k) {
+  struct Line {
+    double sight;
+    double difference;
+  };
+  std::vector<std::vector<Line>> heights(lines.now.size());
+  parallel_for(count_of(heights), [&](int k) {
     const Image& s = lines.now[k];
     for (int a = 0; a < s.height; ++a) {
+      const LineEnds now(s, a);
+      const auto here = ends_of(lines, k, a);
       for (int t = 2; t < s.width / 2; ++t) {
         if (!lines.is_seen(k, t)) continue;
         double sight = 0;
-        for (int i = 0; i < pair_motions; ++i) sight += std::pow(difference(lines.by[i], k, t, a), 2);
-        sights.push_back(sight);
-        differences.push_back(std::abs(difference(lines.now, k, t, a)));
-        sum += sight;
+        for (int i = 0; i < pair_motions; ++i) sight += std::pow(here[i].difference(t), 2);
+        heights[k].push_back({sight, std::abs(now.difference(t))});
       }
     }
+  });
+  double sum = 0;
+  std::size_t count = 0;
+  for (const auto& height : heights) {
+    for (const Line& line : height) sum += line.sight;
+    count += height.size();
   }
   std::vector<double> out;
-  for (std::size_t i = 0; i < sights.size(); ++i) {
-    if (sights[i] * static_cast<double>(sights.size()) >= sum) out.push_back(differences[i]);
+  for (const auto& height : heights) {
+    for (const auto& [sight, difference] : height) {
+      if (sight * static_cast<double>(count) >= sum) out.push_back(difference);
+    }
   }
   return out;
 }
@@ -331,8 +374,7 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
   constexpr double most = 300;          // of these in one step
   for (int step = 0; step < steps && !fit.converged; ++step) {
     const Lines lines = lines_after(fit.value);
-    Sums sums;
-    for (int k = 0; k < count_of(lines.now); ++k) add_height(lines, k, bound, sums);
+    const Sums sums = sums_of(lines, bound);
     Matrix inverse{};
     if (!inverted(sums.normal, count, inverse)) return {};
     const Vector move = times(inverse, sums.right);
