@@ -9,10 +9,14 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "io/stream/stream.hpp"
 #include "io/stream/stream_buffers.hpp"
 #include "io/vdb/private/facts.hpp"
@@ -73,15 +77,36 @@ class ArchiveToWrite : public openvdb::io::Archive {
     about.seekToEnd(stream);
   }
 
-  // Each as it comes out of the store, in the order of the tree.
+  // In the order of the tree; stretches of it are compressed side by side.
   static void put_leaves(std::ostream& stream, const SparseVolume::State& state) {
-    LeafStore::Values room;
-    LeafStore::Leaf whole(Coord(0), 0.0F);
+    constexpr std::size_t leaves_together = 8192;
+    std::vector<const LeafStore::Leaf*> some;
     for (auto leaf = state.sparse->constTree().cbeginLeaf(); leaf; ++leaf) {
-      whole.setValueMask(leaf->valueMask());
-      std::copy_n(state.leaves->values(*leaf, room), room.size(), whole.buffer().data());
-      whole.writeBuffers(stream, false);
+      some.push_back(leaf.getLeaf());
+      if (some.size() < leaves_together) continue;
+      put_leaves(stream, some, *state.leaves);
+      some.clear();
     }
+    put_leaves(stream, some, *state.leaves);
+  }
+
+  static void put_leaves(std::ostream& stream, std::span<const LeafStore::Leaf* const> some, const LeafStore& leaves) {
+    constexpr std::size_t stretch = 256;
+    std::vector<std::string> written((some.size() + stretch - 1) / stretch);
+    parallel_for(count_of(written), [&](int n) {
+      std::ostringstream out;
+      out.copyfmt(stream);  // compression and background are kept there
+      LeafStore::Values room;
+      LeafStore::Leaf whole(Coord(0), 0.0F);
+      const std::size_t first = stretch * static_cast<std::size_t>(n);
+      for (const LeafStore::Leaf* leaf : some.subspan(first, std::min(stretch, some.size() - first))) {
+        whole.setValueMask(leaf->valueMask());
+        std::copy_n(leaves.values(*leaf, room), room.size(), whole.buffer().data());
+        whole.writeBuffers(out, false);
+      }
+      written[n] = std::move(out).str();
+    });
+    for (const std::string& bytes : written) stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
 
   [[nodiscard]] openvdb::MetaMap with_statistics(FloatGrid& grid) const {
