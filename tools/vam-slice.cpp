@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-slice: voxelises a mesh, numbered images or a shape, with fractional coverage at the surface.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
+#include "light/grids/lit_grid.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 #include "model/printer.hpp"
@@ -105,6 +107,18 @@ void write(const cli::App& app, const Options& options, const model::Printer& pr
   io::write_volumes(options.output, volumes);
 }
 
+/// With the slices below and above in which the insert shades light that climbs to those of the grid.
+model::Grid with_shade(const model::Grid& grid, const model::Printer& printer, const solid::Part& part,
+                       const solid::Part& insert) {
+  const light::Margin lit = light::lit_margin(printer, grid, optics::judged_radius_mm(printer, part.extent.radius_mm));
+  const auto slices = [&](double mm, int most) {
+    return static_cast<int>(std::clamp(std::ceil(mm / grid.voxel_mm), 0.0, static_cast<double>(most)));
+  };
+  const solid::Bounds& box = insert.extent.box;
+  return light::extended(grid, {.below = slices(grid.z_mm(-0.5) - box.low[2], lit.below),
+                                .above = slices(box.high[2] - grid.z_mm(grid.nz - 0.5), lit.above)});
+}
+
 /// Around the part, or the resin that may be lit, and the insert, which must fit into the vial.
 model::Grid grid_of(const Options& options, const model::Printer& printer, const solid::Part& part,
                     const std::optional<solid::Part>& insert, const solid::Writable& room) {
@@ -114,6 +128,7 @@ model::Grid grid_of(const Options& options, const model::Printer& printer, const
     radius_mm = std::max(radius_mm, insert->extent.radius_mm);
   }
   model::Grid grid = solid::grid_around(part.extent, options.voxel_mm.value(), radius_mm, part.lattice, part.subject);
+  if (insert) grid = with_shade(grid, printer, part, *insert);
   // 16 slices at a time, those of the volume beside them.
   require_memory(2.0 * sizeof(float) * lanes * static_cast<double>(grid.slice_size()),
                  part.subject + ": " + model::size_text(grid), "use a larger --voxel");

@@ -191,7 +191,11 @@ cutting="vam-slice --shape box:x=6,y=6,z=4 --insert-shape box:x=2,y=2,z=8 --voxe
 quiet "an insert cut out of the part" $cutting --cut-insert 0 --report report.json -o insert.vdb
 holds "the part loses the volume of the insert" "($(json report.json volume_mm3) - (144 - 16))^2 < 1e-4"
 holds "part and insert touch and do not overlap" "$(json report.json insert.contact_voxels) > 500 && $(json report.json insert.shared_mm3) < 1e-6"
-is "the insert is in all slices of the part" "$(json report.json insert.slices_of_part)" "$(json report.json voxels.2)"
+holds "the insert is in all slices of the part, and those whose light it shades" "($(json report.json insert.slices_of_part) - 17)^2 <= 1 && $(json report.json insert.slices) == $(json report.json voxels.2)"
+under="vam-slice --shape box:x=6,y=6,z=4 --insert-shape box:x=12,y=12,z=2 --insert-at 0,0,-3 --voxel 0.25"
+quiet "an insert below a part" $under --report level.json -o under.vdb
+quiet "and high above the lens" $under --place 15 --report report.json -o under.vdb
+holds "shades light that climbs through more of it" "$(json report.json insert.slices) >= $(json level.json insert.slices) + 3"
 quiet "without a number, too" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --report bare.json -o bare.vdb --cut-insert cube.stl
 quiet "which is none" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --report none.json -o none.vdb --cut-insert 0 cube.stl
 is "the same part" "$(json bare.json volume_mm3)" "$(json none.json volume_mm3)"
