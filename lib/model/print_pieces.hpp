@@ -56,7 +56,7 @@ class PrintPieceCounter {
   FieldPieces part_at_half_, print_;
   TunnelCounter of_part_, of_print_, of_more_, of_less_;  // at the threshold, and 2 % more and less
   std::vector<Slice> last_;                               // up to two
-  TornSets broken_, shut_;                                // in all but the last slice
+  TornSets broken_{Torn::part}, shut_{Torn::gap};         // in all but the last slice
 };
 
 }  // namespace vam::model

@@ -19,8 +19,7 @@ class Neighbourhood {
  public:
   static constexpr int size = 27;
   void set(int i) { left_[i] = true; }
-  /// Whether it is in one piece.
-  [[nodiscard]] bool is_whole() const {
+  [[nodiscard]] int pieces() const {
     Neighbourhood rest = *this;
     int pieces = 0;
     for (int i = 0; i < size; ++i) {
@@ -28,7 +27,7 @@ class Neighbourhood {
       ++pieces;
       rest.clear(i);
     }
-    return pieces == 1;
+    return pieces;
   }
 
  private:
@@ -57,14 +56,15 @@ class Voxels {
     return gap_ ? (voxel & print) == 0 : (voxel & print) == print;
   }
   [[nodiscard]] bool is_lost(std::size_t at) const { return is_lost(slices_[1][at]); }
-  [[nodiscard]] bool is_torn(std::size_t at) const {
-    if (!is_lost(at)) return false;
+  [[nodiscard]] bool is_torn(std::size_t at) const { return is_lost(at) && pieces_around(at) != 1; }
+  /// Of what is left.
+  [[nodiscard]] int pieces_around(std::size_t at) const {
     Neighbourhood around;
     for_neighbours(at, [&](int n, std::uint8_t voxel) {
       if (is_left(voxel)) around.set(n);
       return false;
     });
-    return !around.is_whole();
+    return around.pieces();
   }
   [[nodiscard]] bool is_rim(std::size_t at) const {
     return is_left(slices_[1][at]) && for_neighbours(at, [this](int, std::uint8_t voxel) { return is_lost(voxel); });
@@ -91,19 +91,34 @@ class Voxels {
   const std::uint8_t* const* slices_;
 };
 
+/// Of the lost run with this number.
+void add_torn(TornSlice& slice, std::size_t lost_run, const Voxels& voxels, int width) {
+  const VoxelRun run = slice.lost[lost_run];
+  bool goes_on = false;
+  std::int64_t torn = 0;
+  for (int x = run.begin; x < run.end; ++x) {
+    const int pieces = voxels.pieces_around(product(run.row, width) + static_cast<std::size_t>(x));
+    if (pieces != 1 && !goes_on) {
+      slice.torn.push_back({run.row, x, x});
+      slice.lost_run.push_back(lost_run);
+      slice.apart.push_back(0);
+    }
+    goes_on = pieces != 1;
+    if (!goes_on) continue;
+    ++torn;
+    ++slice.torn.back().end;
+    slice.apart.back() += pieces > 1 ? 1 : 0;
+  }
+  slice.torn_of_lost.push_back(torn);
+}
+
 }  // namespace
 
 TornSlice torn_slice(Torn what, int width, int height, const std::uint8_t* const* slices) {
   const Voxels voxels(what, width, height, slices);
   TornSlice found;
   found.lost = runs_of(width, height, [&](std::size_t at) { return voxels.is_lost(at); });
-  for (const VoxelRun& run : found.lost) {
-    std::int64_t torn = 0;
-    for (int x = run.begin; x < run.end; ++x) {
-      torn += voxels.is_torn(product(run.row, width) + static_cast<std::size_t>(x)) ? 1 : 0;
-    }
-    found.torn.push_back(torn);
-  }
+  for (std::size_t run = 0; run < found.lost.size(); ++run) add_torn(found, run, voxels, width);
   bool any = !found.lost.empty();
   for (const int k : {0, 2}) {
     const std::uint8_t* slice = slices[k];
@@ -124,6 +139,23 @@ std::vector<std::size_t> torn_voxels(Torn what, int width, int height, const std
 }
 
 namespace {
+
+/// Sums over sets, at the runs that stand for them.
+std::vector<std::int64_t> of_sets(const RunSets& sets, const std::vector<std::int64_t>& of_runs) {
+  std::vector<std::int64_t> sums(sets.runs(), 0);
+  for (std::size_t run = 0; run < sets.runs(); ++run) sums[sets.set_of(run)] += of_runs[run];
+  return sums;
+}
+
+/// The same of the runs that are left, now that others are forgotten.
+std::vector<std::int64_t> carried(const std::vector<std::int64_t>& of_sets, const std::vector<std::size_t>& now,
+                                  std::size_t runs) {
+  std::vector<std::int64_t> sums(runs, 0);
+  for (std::size_t set = 0; set < of_sets.size(); ++set) {
+    if (of_sets[set] > 0 && now[set] != RunSets::gone) sums[now[set]] = of_sets[set];
+  }
+  return sums;
+}
 
 /// Of the pieces of a set that have ended the first and the last tell that it is cut; in order.
 void thin_out(std::vector<std::pair<std::size_t, std::size_t>>& touching, std::size_t ended) {
@@ -152,8 +184,12 @@ void TornSets::add(const TornSlice& slice) {
   const std::vector<VoxelRun> rim_below = rim_.last();
   lost_.add(slice.lost, at_corners);
   rim_.add(slice.rim, at_corners);
-  torn_.insert(torn_.end(), slice.torn.begin(), slice.torn.end());
+  torn_.add(slice.torn, at_corners);
+  apart_.insert(apart_.end(), slice.apart.begin(), slice.apart.end());
+  torn_of_lost_.insert(torn_of_lost_.end(), slice.torn_of_lost.begin(), slice.torn_of_lost.end());
+  counted_.resize(lost_.runs());
   const std::size_t lost = lost_.first_of_last();
+  for (const std::size_t run : slice.lost_run) lost_of_torn_.push_back(lost + run);
   const std::size_t rim = rim_.first_of_last();
   note_touching(slice.lost, lost, slice.rim, rim);
   note_touching(slice.lost, lost, rim_below, rim - rim_below.size());
@@ -173,6 +209,23 @@ std::vector<TornSets::Piece> TornSets::forget_rim() {
   return now;
 }
 
+/// Those that do not reach the last slice.
+void TornSets::decide_torn() {
+  constexpr std::int64_t least_apart = 3;
+  const std::vector<std::int64_t> apart = of_sets(torn_, apart_);
+  const std::vector<std::size_t> lost = lost_of_torn_;
+  const std::vector<std::size_t> now = torn_.forget([&](std::size_t set) {
+    if (apart[set] < least_apart && torn_.voxels(set) < least_torn_) return;
+    voxels_ += torn_.voxels(set);
+    counted_[lost[set]] += torn_.voxels(set);
+  });
+  apart_ = carried(apart, now, torn_.runs());
+  lost_of_torn_.assign(torn_.runs(), 0);
+  for (std::size_t run = 0; run < now.size(); ++run) {
+    if (now[run] != RunSets::gone) lost_of_torn_[now[run]] = lost[run];
+  }
+}
+
 /// Keeps what is still open: lost sets that reach the last slice, and those whose pieces may yet become one.
 void TornSets::decide() {
   const std::vector<Piece> now = forget_rim();
@@ -183,32 +236,30 @@ void TornSets::decide() {
   }
   std::sort(touching_.begin(), touching_.end());
   touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
-  std::vector<std::int64_t> torn(lost_.runs(), 0);
-  for (std::size_t run = 0; run < lost_.runs(); ++run) torn[lost_.set_of(run)] += torn_[run];
-
+  decide_torn();
+  const std::vector<std::int64_t> torn = of_sets(lost_, torn_of_lost_);
+  const std::vector<std::int64_t> counted = of_sets(lost_, counted_);
   const std::vector<std::size_t> runs = lost_.forget([&](std::size_t set) {
     std::vector<Piece> pieces;
     for (auto at = std::lower_bound(touching_.begin(), touching_.end(), std::pair{set, Piece{0}});
          at != touching_.end() && at->first == set; ++at) {
       pieces.push_back(at->second);
     }
-    judge(lost_.voxels(set), torn[set], std::move(pieces));
+    judge(lost_.voxels(set) - counted[set], torn[set] == lost_.voxels(set), std::move(pieces));
   });
   std::erase_if(touching_, [&](const auto& pair) { return runs[pair.first] == RunSets::gone; });
   thin_out(touching_, ended);
   for (auto& [lost, piece] : touching_) lost = runs[lost];
-  torn_.assign(lost_.runs(), 0);
-  for (std::size_t set = 0; set < torn.size(); ++set) {
-    if (torn[set] > 0 && runs[set] != RunSets::gone) torn_[runs[set]] = torn[set];
-  }
+  torn_of_lost_ = carried(torn, runs, lost_.runs());
+  counted_ = carried(counted, runs, lost_.runs());
+  for (std::size_t& lost : lost_of_torn_) lost = runs[lost];
 }
 
-/// Of a set that is complete, with the pieces that touch it, in order.
-void TornSets::judge(std::int64_t voxels, std::int64_t torn, std::vector<Piece> pieces) {
-  constexpr std::int64_t least_torn = 3;
-  const bool whole = pieces.empty() && torn == voxels;
+/// Of a set that is complete those that are not counted as torn, whether all are torn, and the pieces that touch it, in
+/// order.
+void TornSets::judge(std::int64_t voxels, bool is_whole, std::vector<Piece> pieces) {
   const bool cut = pieces.size() > 1 && pieces.back() >= ended;  // which no other will ever be one with
-  if (whole || cut || torn >= least_torn) {
+  if (cut || (pieces.empty() && is_whole)) {
     voxels_ += voxels;
   } else if (pieces.size() > 1) {
     undecided_.push_back({voxels, std::move(pieces)});
@@ -220,7 +271,7 @@ void TornSets::judge_undecided(const std::vector<Piece>& now) {
     for (Piece& piece : pieces) piece = now[piece];
     std::sort(pieces.begin(), pieces.end());
     pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
-    judge(voxels, 0, std::move(pieces));
+    judge(voxels, false, std::move(pieces));
   }
 }
 

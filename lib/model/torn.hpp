@@ -32,8 +32,11 @@ enum class Torn { part, gap };
 /// A slice of it, from three slices of printed:: bits.
 struct TornSlice {
   std::vector<VoxelRun> lost;
-  std::vector<std::int64_t> torn;  // of each run: its torn voxels
-  std::vector<VoxelRun> rim;       // left, with a lost one among their 26 neighbours
+  std::vector<std::int64_t> torn_of_lost;  // of each run: its torn voxels
+  std::vector<VoxelRun> torn;              // parts of the lost ones
+  std::vector<std::size_t> lost_run;       // that each torn run is a part of
+  std::vector<std::int64_t> apart;         // of each torn run: voxels around which what is left falls apart
+  std::vector<VoxelRun> rim;               // left, with a lost one among their 26 neighbours
 };
 
 /// slices: the middle one of three, nullptr beyond the volume, where nothing is lost and void is left.
@@ -42,13 +45,16 @@ struct TornSlice {
 /// hole of a wall, or falls apart without them, as at the foot of a wall that hangs on by its ends.
 [[nodiscard]] std::vector<std::size_t> torn_voxels(Torn what, int width, int height, const std::uint8_t* const* slices);
 
-/// Sets of lost voxels that touch, slice by slice, from the lowest up. A set is torn if the left voxels that touch it
-/// are in more than one piece, as at a rod that is cut, or in none, as of a cavity, or if three or more of its voxels
-/// are torn: less is a rough edge. Memory: what touches in two slices, and the sets around which pieces are still open.
+/// Sets of lost voxels that touch, slice by slice, from the lowest up. A set counts if the left voxels that touch it
+/// are in more than one piece, as at a rod that is cut, or in none, as of a cavity. Of others those torn voxels count
+/// that touch and are many: three around which the rest falls apart, or 27 of a part, three of a gap, around which
+/// nothing is left. Less is a rough face, or the tip of a sharp edge. Memory: what touches in two slices, and the sets
+/// around which pieces are still open.
 class TornSets {
  public:
+  explicit TornSets(Torn what) : least_torn_(what == Torn::part ? 27 : 3) {}
   void add(const TornSlice& slice);
-  /// Of all torn sets.
+  /// That count.
   [[nodiscard]] std::int64_t voxels() const;
 
  private:
@@ -57,7 +63,7 @@ class TornSets {
   static constexpr Piece ended = ~(~Piece{0} >> 1U);
   /// A set that is torn if these pieces stay apart.
   struct Undecided {
-    std::int64_t voxels;
+    std::int64_t voxels;  // that are not counted as torn
     std::vector<Piece> pieces;
   };
 
@@ -65,15 +71,19 @@ class TornSets {
                      std::size_t first_rim);
   [[nodiscard]] std::vector<Piece> forget_rim();
   void decide();
-  void judge(std::int64_t voxels, std::int64_t torn, std::vector<Piece> pieces);
+  void decide_torn();
+  void judge(std::int64_t voxels, bool is_whole, std::vector<Piece> pieces);
   void judge_undecided(const std::vector<Piece>& now);
 
-  RunSets lost_, rim_;
-  std::vector<std::int64_t> torn_;                       // of each lost run or, at the run that stands for it, set
+  std::int64_t least_torn_;
+  RunSets lost_, torn_, rim_;
+  std::vector<std::int64_t> torn_of_lost_, counted_;     // of each lost run or, at the run that stands for it, set
+  std::vector<std::int64_t> apart_;                      // of each torn one, likewise
+  std::vector<std::size_t> lost_of_torn_;                // the lost run that a torn one is of
   std::vector<std::pair<std::size_t, Piece>> touching_;  // a lost run and a piece
   std::vector<Undecided> undecided_;
   std::size_t ended_pieces_ = 0;
-  std::int64_t voxels_ = 0;  // of the torn sets that are known
+  std::int64_t voxels_ = 0;  // of what is decided
 };
 
 }  // namespace vam::model

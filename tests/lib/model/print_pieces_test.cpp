@@ -125,7 +125,7 @@ TEST_CASE("a wall without its foot is a piece of its own; one that hangs on by i
   CHECK(pieces(2).part == 1);
   CHECK(pieces(2).part_at_half == 1);
   CHECK(pieces(2).print == 1);
-  CHECK(pieces(2).broken == height - 2);
+  CHECK(pieces(2).broken == height - 3);  // beside the last one the wall is whole
   CHECK(!pieces(2).is_as_part());
   CHECK(pieces(0).print == 2);
   CHECK(pieces(0).broken == height);
@@ -150,8 +150,7 @@ TEST_CASE("rough faces and holes in walls cut nothing, however the slices come")
   }
 }
 
-TEST_CASE(
-    "a wall that does not cure, or has a wide hole, is broken; a rod of a voxel's width holds the part together") {
+TEST_CASE("a wall that does not cure is broken; a rod of a voxel's width holds the part together") {
   constexpr int size = 12;
   const auto found = [&](int low, int high) {  // of a wall at x = 5, no voxel of it cures within this range
     Print print(size, size);
@@ -165,7 +164,8 @@ TEST_CASE(
   };
   CHECK(found(0, 0).broken == 0);
   CHECK(found(4, 6).broken == 0);
-  CHECK(found(3, 8).broken == 25);  // 9 of them are torn
+  CHECK(found(3, 8).broken == 0);  // 9 of them are torn
+  CHECK(found(3, 8).holes == 1);
   CHECK(!found(3, 8).is_as_part());
   CHECK(found(0, size).broken == size * size);
   const auto blocks = [&](bool rod_cures) {  // with a rod between them that has 0.4 of its voxels
@@ -204,7 +204,7 @@ TEST_CASE("a channel is shut where it cures, and where what is left of it falls 
   CHECK(!found(3, 4).is_as_part());
   CHECK(found(3, 6).shut == 3);
   CHECK(found(1, 11).shut == 10);
-  CHECK(found(7, size).shut == 5);  // blind: three of it are torn
+  CHECK(found(7, size).shut == 3);  // blind: of five that are lost
   CHECK(found(9, size).shut == 0);  // a rounded end
 }
 
@@ -243,9 +243,9 @@ TEST_CASE("a strut is cut at any length, also in a frame that holds together wit
   }
 }
 
-TEST_CASE("holes of three voxels' width in a thin wall are rough where they are apart") {
+TEST_CASE("holes of a thin wall are holes, and no broken voxels") {
   constexpr int size = 14;
-  const auto broken = [&](int apart) {  // their middles
+  const auto found = [&](int apart) {  // their middles
     Print print(size, size);
     for (int k = 0; k < 7; ++k) {
       const auto wall = [&](int i) { return i / size == 6; };
@@ -257,10 +257,27 @@ TEST_CASE("holes of three voxels' width in a thin wall are rough where they are 
       };
       print.add([&](int i) { return wall(i) ? 1.0F : 0.0F; }, [&](int i) { return wall(i) && !hole(i); });
     }
-    return print.found(7).broken;
+    return print.found(7);
   };
-  CHECK(broken(4) == 0);
-  CHECK(broken(1) == 15);
+  CHECK(found(4).broken == 0);
+  CHECK(found(4).holes == 3);
+  CHECK(found(1).broken == 0);
+  CHECK(found(1).holes == 1);
+}
+
+TEST_CASE("a fin that loses its upper half is broken, a sharp edge that is rounded is not") {
+  constexpr int size = 16;
+  const auto broken = [&](int lost) {  // of the upper slices of a fin of 16 voxels on a block
+    Print print(size, size);
+    for (int k = 0; k < 12; ++k) {
+      const auto part = [&](int i) { return k < 4 || i % size == 8; };
+      print.add([&](int i) { return part(i) ? 1.0F : 0.0F; }, [&](int i) { return part(i) && k < 12 - lost; });
+    }
+    return print.found(5).broken;
+  };
+  CHECK(broken(2) == 0);  // one row that nothing is left around
+  CHECK(broken(3) == 2 * size);
+  CHECK(broken(6) == 5 * size);
 }
 
 TEST_CASE("coverage counts from its limits on") {
@@ -335,8 +352,8 @@ std::vector<int> numbered(const Solid& is, int& pieces) {
   return piece;
 }
 
-/// Voxels of torn sets by the definition, from the whole volume. beyond: whether what lies outside it is left.
-std::int64_t torn_by_definition(const Solid& lost, const Solid& left, bool beyond) {
+/// Voxels that count by the definition, from the whole volume. beyond: whether what lies outside it is left.
+std::int64_t torn_by_definition(const Solid& lost, const Solid& left, bool beyond, std::int64_t least_torn) {
   const auto near = [&](int i, const auto& visit) {
     for (int n = 0; n < 27; ++n) {
       visit(n, i % lost.nx + n % 3 - 1, i / lost.nx % lost.ny + n / 3 % 3 - 1, i / lost.nx / lost.ny + n / 9 - 1);
@@ -357,7 +374,8 @@ std::int64_t torn_by_definition(const Solid& lost, const Solid& left, bool beyon
   const std::vector<int> set = numbered(lost, sets);
   const std::vector<int> piece = numbered(rim, rims);
   std::vector<std::int64_t> voxels(sets, 0);
-  std::vector<std::int64_t> torn(sets, 0);
+  Solid torn = lost;
+  std::vector<char> falls_apart(all, 0);
   std::vector<std::vector<int>> beside(sets);
   for (int i = 0; i < all; ++i) {
     if (set[i] < 0) continue;
@@ -369,13 +387,29 @@ std::int64_t torn_by_definition(const Solid& lost, const Solid& left, bool beyon
     });
     int parts = 0;
     (void)numbered(around, parts);
-    torn[set[i]] += parts == 1 ? 0 : 1;
+    torn.voxels[i] = parts == 1 ? 0 : 1;
+    falls_apart[i] = parts > 1 ? 1 : 0;
+  }
+  int tears = 0;
+  const std::vector<int> tear = numbered(torn, tears);
+  std::vector<std::int64_t> size(tears, 0);
+  std::vector<std::int64_t> apart(tears, 0);
+  std::vector<std::int64_t> torn_of(sets, 0);
+  for (int i = 0; i < all; ++i) {
+    if (tear[i] < 0) continue;
+    ++torn_of[set[i]];
+    ++size[tear[i]];
+    apart[tear[i]] += falls_apart[i];
   }
   std::int64_t sum = 0;
-  for (int s = 0; s < sets; ++s) {
-    const auto [low, high] = std::minmax_element(beside[s].begin(), beside[s].end());
-    const bool whole = beside[s].empty() && torn[s] == voxels[s];
-    if (whole || (!beside[s].empty() && *low != *high) || torn[s] >= 3) sum += voxels[s];
+  for (int i = 0; i < all; ++i) {
+    if (set[i] < 0) continue;
+    const auto& pieces = beside[set[i]];
+    const auto [low, high] = std::minmax_element(pieces.begin(), pieces.end());
+    const bool whole = pieces.empty() && torn_of[set[i]] == voxels[set[i]];
+    const bool cut = !pieces.empty() && *low != *high;
+    const bool is_torn = tear[i] >= 0 && (apart[tear[i]] >= 3 || size[tear[i]] >= least_torn);
+    sum += whole || cut || is_torn ? 1 : 0;
   }
   return sum;
 }
@@ -408,8 +442,8 @@ TEST_CASE("torn sets are those of the whole volume, at every density and height 
           print.add([&](int i) { return part[i] ? 1.0F : 0.0F; }, [&](int i) { return cure[i]; });
         }
         const auto found = print.found(1 + trial % 4);
-        CHECK(found.broken == torn_by_definition(lost, left, false));
-        CHECK(found.shut == torn_by_definition(filled, open, true));
+        CHECK(found.broken == torn_by_definition(lost, left, false, 27));
+        CHECK(found.shut == torn_by_definition(filled, open, true, 3));
         some += found.broken > 0 && found.shut > 0 ? 1 : 0;
       }
     }
