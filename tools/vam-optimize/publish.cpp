@@ -45,6 +45,12 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
 }
 
+/// Of a grey target.
+std::string grey_verdict(const model::DoseMetrics& m) {
+  return (m.ver == 0 ? "met: " : "not met: ") + format_number(100 * (1 - m.ver), 4) +
+         " % of the prescribed voxels are within the band of the target; vam-score --grey-target judges the dose";
+}
+
 /// The weights of the proof, positive in the void, negative in the part, the largest 1 or -1.
 void write_proof(const optimize::Certificate& proof, const Scene& scene, const io::SparseVolume& target,
                  const model::StackInfo& info, const std::string& path) {
@@ -93,6 +99,8 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
   if (options.demands.grey) {  // no part and void, whose doses these would be
     for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
       report.erase(key);
+    report["verdict"] = grey_verdict(outcome.metrics);
+    note("vam-optimize: " + io::input_name(options.input) + " " + grey_verdict(outcome.metrics));
   } else {
     score::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
     if (outcome.all_cut) verdict.whole.part = 0;
