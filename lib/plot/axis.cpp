@@ -41,7 +41,9 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
   if (!(high > low) || wanted < 1) return {low};
   if (axis.logarithmic) return decades(low, high, wanted);
   double step = axis.step > 0 ? axis.step : round_step((high - low) / wanted);
-  if (axis.step == 0 && (high - low) / step > 1.6 * wanted) step = round_step(2.5 * step);
+  const auto ticks_by = [&](double by) { return std::floor(high / by + 1e-6) - std::ceil(low / by - 1e-6) + 1; };
+  const double coarser = round_step(2.5 * step);
+  if (axis.step == 0 && (high - low) / step > 1.6 * wanted && ticks_by(coarser) > 1) step = coarser;
   if (axis.whole) step = std::max(1.0, step);
   std::vector<double> values;
   for (double n = std::ceil(low / step - 1e-6); n * step <= high + 1e-6 * step; ++n)

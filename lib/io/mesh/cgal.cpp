@@ -115,7 +115,8 @@ void check_stl_vertices(std::string_view text) {
 }  // namespace
 
 PolygonSoup parse_ascii_stl(const std::string& bytes) {
-  const std::string text = lower_case(bytes);  // CGAL knows no capitals; names do not matter
+  std::string text = lower_case(bytes);  // CGAL knows no capitals; names do not matter
+  if (text.find('\n') == text.npos) std::replace(text.begin(), text.end(), '\r', '\n');
   const std::size_t last_word = text.find_last_not_of(" \t\r\n");
   const std::size_t last_line = text.find_last_of('\n', last_word);
   const std::string tail = last_line == std::string::npos ? "" : text.substr(last_line + 1);

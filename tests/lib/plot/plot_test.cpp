@@ -32,6 +32,7 @@ TEST_CASE("ticks are round numbers, inside the axis, about as many as requested"
   CHECK(ticks({"", 0, 10, false}, 5) == std::vector<double>{0, 2, 4, 6, 8, 10});
   CHECK(ticks({"", -1, 1, false}, 4) == std::vector<double>{-1, -0.5, 0, 0.5, 1});
   CHECK(ticks({"", 10, 0, false}, 5).size() == 6);
+  CHECK(ticks({"", -4.4, 4.4, false}, 2) == std::vector<double>{-4, -2, 0, 2, 4});  // not 0 alone
   CHECK(ticks({"", 1, 1000, true}, 5) == std::vector<double>{1, 10, 100, 1000});
   for (double span = 1e-3; span < 1e4; span *= 1.7) {
     const auto values = ticks({"", 0.3 * span, 1.3 * span, false}, 6);
