@@ -24,6 +24,13 @@ std::size_t character_bytes(std::string_view text) {
   return continues(1) && continues(2) && continues(3) && !overlong && !beyond ? 4 : 0;
 }
 
+/// Marks that turn the direction of what follows, and ends of lines: U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069.
+bool moves_text(std::string_view character) {
+  const auto last = static_cast<unsigned char>(character.back());
+  if (character.starts_with("\xe2\x80")) return last == 0x8e || last == 0x8f || (last >= 0xa8 && last <= 0xae);
+  return character.starts_with("\xe2\x81") && last >= 0xa6 && last <= 0xa9;
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
@@ -33,7 +40,7 @@ std::string printable(std::string_view text) {
     const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
     const bool c1 = byte == 0xc2 && next >= 0x80 && next <= 0x9f;  // U+0080 to U+009F
     const std::size_t bytes = character_bytes(text.substr(i));
-    if (byte >= 0x20 && byte != 0x7f && !c1 && bytes > 0) {
+    if (byte >= 0x20 && byte != 0x7f && !c1 && bytes > 0 && !moves_text(text.substr(i, bytes))) {
       shown += text.substr(i, bytes);
       i += bytes - 1;
     } else if (byte == '\n' || byte == '\t') {

@@ -7,8 +7,8 @@
 
 namespace vam {
 
-/// Control characters (ASCII, and C1 in UTF-8), and bytes that are no UTF-8, become \n, \t or \x1b; the rest stays as
-/// it is.
+/// Control characters (ASCII, and C1 in UTF-8), marks that turn the direction of text, and bytes that are no UTF-8,
+/// become \n, \t or \x1b; the rest stays as it is.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// In quotes, for a message: 'text', printable(); of a longer one than 64 bytes its begin: 'text...' (200000 bytes).
