@@ -3,8 +3,8 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 for script in vam-print vam-batch vam-renew vam-calibrate-all; do
-  fails 64 '--.\[31mx.\\ny: ' "$script" "$(printf -- '--\033[31mx\302\233\ny')"
-  is "$script shows no control character" "$("$script" "$(printf -- '--\033[31mx\302\233\ny')" 2>&1 | LC_ALL=C tr -d '[:print:]\n' | wc -c | tr -d ' ')" 0
+  fails 64 '--.\[31mx.\\ny: ' "$VAM_SOURCE/scripts/$script" "$(printf -- '--\033[31mx\302\233\ny')"
+  is "$script shows no control character" "$("$VAM_SOURCE/scripts/$script" "$(printf -- '--\033[31mx\302\233\ny')" 2>&1 | LC_ALL=C tr -d '[:print:]\n' | wc -c | tr -d ' ')" 0
 done
 fails 66 'no\\x1b\[31m\\nsuch\.stl: cannot open' vam-slice "$(printf 'no\033[31m\nsuch.stl')" -o x.vdb
 fails 64 '--\\x07: unknown option' vam-slice "$(printf -- '--\007')"

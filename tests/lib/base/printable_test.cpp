@@ -20,7 +20,7 @@ TEST_CASE("control characters are shown, not sent") {
 TEST_CASE("bytes that are no UTF-8 are shown as numbers") {
   CHECK(vam::printable("a\xff z") == "a\\xff z");
   CHECK(vam::printable("\xe2\x82\xac \xf0\x9f\x98\x80") == "\xe2\x82\xac \xf0\x9f\x98\x80");  // whole characters
-  CHECK(vam::printable("a\xe2\x80\xaeltsz") == "a\\xe2\\x80\\xaeltsz");  // right to left
+  CHECK(vam::printable("a\xe2\x80\xaeltsz") == "a\\xe2\\x80\\xaeltsz");
   CHECK(vam::printable("\xe2\x81\xa6") == "\\xe2\\x81\\xa6");
   CHECK(vam::printable("\xe2\x80\x93") == "\xe2\x80\x93");  // a dash
   CHECK(vam::printable("\xe2\x82") == "\\xe2\\x82");
