@@ -60,7 +60,7 @@ Declaration asked_about(Declaration tool, const std::vector<std::string>& words)
 
 // A smaller stack ends the process by a signal in the midst of its work; threads have one of the same size.
 void require_stack() {
-  constexpr rlim_t least_bytes = 256 * 1024;
+  constexpr rlim_t least_bytes = rlim_t{256} * 1024;
   rlimit limit{};
   if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= least_bytes) return;
   throw Error{Fault::memory, "needs a stack of " + std::to_string(least_bytes / 1024) + " KiB, and the limit is " +

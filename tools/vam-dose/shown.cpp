@@ -62,7 +62,7 @@ std::string settings_of(const std::string& run) {
 }
 
 std::string require_settings(const std::string& run) {
-  const std::string file = settings_of(run);
+  std::string file = settings_of(run);
   if (file.empty() && is_of_run(run)) {
     throw Error{Fault::no_input, (fs::path(folder_of(run)) / "printer.toml").string() +
                                      ": is gone; restore it, or give the settings of the print by --printer"};
