@@ -120,10 +120,14 @@ void check(const Options& options) {
 
 void seal(const std::string& path) {
   const std::string text = io::read_all(path);
-  (void)io::parse_printer(text, path);
-  if (io::require_text_seal(text, path)) return;
-  if (text.empty()) throw Error{Fault::data, path + ": is empty; there is nothing to seal"};
-  if (const std::string sign = io::sign_of_cut(text); !sign.empty()) throw Error{Fault::data, path + ": " + sign};
+  const std::string name = io::input_name(path);
+  (void)io::parse_printer(text, name);
+  if (io::require_text_seal(text, name)) {
+    if (path == "-") io::write_text(path, text);  // as a filter in a pipe it copies what it need not change
+    return;
+  }
+  if (text.empty()) throw Error{Fault::data, name + ": is empty; there is nothing to seal"};
+  if (const std::string sign = io::sign_of_cut(text); !sign.empty()) throw Error{Fault::data, name + ": " + sign};
   io::write_text(path, io::sealed_text(text));
 }
 
@@ -144,7 +148,8 @@ int main(int argc, char** argv) {
   app.flag(
          "--seal", options.seal,
          "Seal printer files instead of checking them: append a line with the seal, against which the tools verify the "
-         "file from then on. Standard input is copied to standard output with this line.")
+         "file from then on; a file with a seal stays as it is. Standard input is copied to standard output with this "
+         "line, unchanged if it has one.")
       .form();
   return app.run(argc, argv, [&] { run(options); });
 }

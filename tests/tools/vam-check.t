@@ -119,10 +119,14 @@ is 'a printer file is unsealed by default' "$(vam-check printer.toml)" 'printer.
 vam-check --seal printer.toml && vam-check --seal printer.toml
 is 'a printer file is sealed once' "$(grep -c '^# sealed xxh3:' printer.toml) $(vam-check printer.toml)" \
   '1 printer.toml: printer file, sealed'
+vam-check --seal <printer.toml >piped.toml
+is 'a sealed printer file passes a pipe unchanged' "$? $(cmp printer.toml piped.toml && echo same)" '0 same'
+fails 74 'stdout: ' sh -c 'vam-check --seal <printer.toml >/dev/full'
 ok 'a sealed printer file is read' vam-slice --print-printer --printer printer.toml -o again.toml
 sed 's/^radius_mm = 11.5/radius_mm = 17.5/' printer.toml >changed.toml
 fails 65 "changed.toml: changed after it was written .* remove its last line '# sealed" vam-slice --print-printer --printer changed.toml -o x.toml
 fails 65 'changed.toml: changed' vam-check changed.toml
+fails 65 'stdin: changed' sh -c 'vam-check --seal <changed.toml'
 for damage in s/^#.sealed/#.sealex/ s/^#.sealed/sealed/ s/xxh3:/xxi3:/; do
   sed "\$$damage" printer.toml >seal.toml
   fails 65 'seal.toml: (changed|.*not TOML)' vam-check seal.toml
