@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t piece = 1 << 16;
 
-/// What comes packed from another reader.
+/// What comes packed from another reader: members of gzip, one behind the other, each with its checksum.
 class Unpacked {
  public:
   Unpacked(Bytes::Read packed, std::string name) : packed_(std::move(packed)), name_(std::move(name)), in_(piece) {
@@ -30,31 +30,49 @@ class Unpacked {
 
   std::size_t read(void* to, std::size_t size) {
     std::size_t done = 0;
-    while (done < size && !ended_) {
+    while (done < size && (member_open_ || begin_member())) {
       const std::size_t step = std::min(size - done, piece);
       state_.next_out = static_cast<Bytef*>(to) + done;
       state_.avail_out = static_cast<uInt>(step);
-      if (state_.avail_in == 0) {
-        state_.next_in = in_.data();
-        state_.avail_in = static_cast<uInt>(packed_(in_.data(), in_.size()));
-        if (state_.avail_in == 0) break;  // cut off
-      }
-      const int status = inflate(&state_, Z_NO_FLUSH);
-      if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
-        throw Error{Fault::data, name_ + ": its gzip data is damaged"};
-      }
-      ended_ = status == Z_STREAM_END;
+      inflate_some();
       done += step - state_.avail_out;
     }
     return done;
   }
 
  private:
+  bool has_more() {
+    if (state_.avail_in > 0) return true;
+    state_.next_in = in_.data();
+    state_.avail_in = static_cast<uInt>(packed_(in_.data(), in_.size()));
+    return state_.avail_in > 0;
+  }
+
+  // False at the end of the file.
+  bool begin_member() {
+    constexpr Bytef magic = 0x1f;
+    if (!has_more()) return false;
+    if (*state_.next_in != magic) fail("has bytes behind its gzip data; it is damaged, or several files in one");
+    inflateReset(&state_);
+    return member_open_ = true;
+  }
+
+  void inflate_some() {
+    if (!has_more()) fail("is cut off before the end of its gzip data; the program that wrote it did not finish");
+    const int status = inflate(&state_, Z_NO_FLUSH);
+    if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
+      fail("its gzip data is damaged; write it again");
+    }
+    member_open_ = status != Z_STREAM_END;
+  }
+
+  [[noreturn]] void fail(const std::string& why) const { throw Error{Fault::data, name_ + ": " + why}; }
+
   Bytes::Read packed_;
   std::string name_;
   std::vector<Bytef> in_;
   z_stream state_{};
-  bool ended_ = false;
+  bool member_open_ = true;
 };
 
 }  // namespace

@@ -142,6 +142,30 @@ TEST_CASE("NRRD files that are not read are refused with a remedy") {
   CHECK(!array_refusal(damaged).empty());
 }
 
+TEST_CASE("NRRD: members of gzip are read one behind the other, up to the end of the file and its checksums") {
+  const auto packed = [](const std::string& data) {
+    return nrrd("type: float\nencoding: gzip\nendian: little\n", data);
+  };
+  const std::string values = counted<float>();
+  const std::string whole = gzipped(values);
+  for (const std::size_t first : {std::size_t{0}, std::size_t{1}, std::size_t{50}, values.size()}) {
+    CAPTURE(first);
+    check_counted(packed(gzipped(values.substr(0, first)) + gzipped(values.substr(first))));
+  }
+  for (std::size_t left = 1; left <= 8; ++left) {
+    CHECK(
+        has(array_refusal(packed(whole.substr(0, whole.size() - left))), "is cut off before the end of its gzip data"));
+    std::string damaged = whole;
+    damaged[whole.size() - left] = static_cast<char>(damaged[whole.size() - left] ^ 1);
+    CHECK(has(array_refusal(packed(damaged)), "its gzip data is damaged"));
+  }
+  CHECK(has(array_refusal(packed(whole + "junk")), "has bytes behind its gzip data; it is damaged"));
+  CHECK(has(array_refusal(packed(whole + '\0')), "has bytes behind its gzip data; it is damaged"));
+  CHECK(has(array_refusal(packed(whole + "\x1f")), "is cut off before the end of its gzip data"));
+  CHECK(has(array_refusal(packed(whole + whole)), "has bytes behind its 24 values"));
+  CHECK(has(array_refusal(packed(gzipped(values.substr(0, 50)))), "is cut off after"));
+}
+
 TEST_CASE("MRC volumes of the modes that are numbers, with and without an extended header") {
   check_counted(mrc(2, counted<float>()));
   check_counted(mrc(2, counted<float>(), 512));
