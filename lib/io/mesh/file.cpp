@@ -124,7 +124,8 @@ ColouredMesh triangulated(PolygonSoup&& soup) {
   for (std::size_t f = 0; f < soup.faces.size(); ++f) {
     const auto& face = soup.faces[f];
     if (face.size() < 3)
-      throw MeshProblem{"face " + std::to_string(f) + " has " + std::to_string(face.size()) + " corners"};
+      throw MeshProblem{"face " + std::to_string(f) + " has " + std::to_string(face.size()) +
+                        " corners; mend it, or save the mesh again"};
     if (face.size() > most_corners) {
       throw MeshProblem{"face " + std::to_string(f) + " has " + std::to_string(face.size()) + " corners; up to " +
                         std::to_string(most_corners) + " are read; cut it into triangles"};
@@ -132,7 +133,7 @@ ColouredMesh triangulated(PolygonSoup&& soup) {
     for (const int corner : face) {
       if (corner < 0 || corner >= points) {
         throw MeshProblem{"face " + std::to_string(f) + " uses vertex " + std::to_string(corner) + " of " +
-                          std::to_string(points) + " (counted from 0)"};
+                          std::to_string(points) + " (counted from 0); mend it, or save the mesh again"};
       }
     }
     for (std::size_t c = 2; c < face.size(); ++c) mesh.triangles.push_back({face[0], face[c - 1], face[c]});

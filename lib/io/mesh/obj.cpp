@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "base/printable.hpp"
@@ -47,32 +48,72 @@ std::string joined(const std::string& bytes) {
   return text;
 }
 
-// An index of a face that is 0: "0", "0/1", "00".
-bool has_index_0(std::string_view values) {
-  while (!(values = after_blanks(values)).empty()) {
-    const std::string_view word = values.substr(0, std::min(values.find_first_of(blanks), values.size()));
-    values.remove_prefix(word.size());
-    const std::string_view index = word.substr(0, word.find('/'));
-    if (!index.empty() && index.find_first_not_of('0') == index.npos) return true;
-  }
-  return false;
+bool is_statement(std::string_view text, char keyword) {
+  return text.starts_with(keyword) && (text.size() == 1 || blanks.find(text[1]) != blanks.npos);
 }
 
-void check_line(std::string_view line, std::size_t number) {
-  const std::string_view text = after_blanks(line);
-  if (text.empty() || (text.size() > 1 && blanks.find(text[1]) == blanks.npos)) return;
-  const std::string_view values = text.substr(1, text.substr(1).find('#'));
-  if (text.front() == 'v' && !begins_with_numbers(values, 3)) {
-    throw MeshProblem{"line " + std::to_string(number) + ": " +
-                      excerpt(text.substr(0, text.find_last_not_of(blanks) + 1)) +
-                      " is no vertex of three coordinates; mend the line, or save the mesh again"};
+[[noreturn]] void wrong_line(std::size_t number, const std::string& why) {
+  throw MeshProblem{"line " + std::to_string(number) + ": " + why + "; mend the line, or save the mesh again"};
+}
+
+struct Vertices {
+  long long so_far = 0;  // that a face may use by indices below 0
+  long long all = 0;
+};
+
+// Of "7", "+7", "-1", "7/1", "7//3", "7/1/3"; none of what is no such corner.
+std::optional<long long> vertex_of(std::string_view corner) {
+  const std::size_t slash = std::min(corner.find('/'), corner.size());
+  if (corner.find_first_not_of("+-0123456789/", slash) != corner.npos) return std::nullopt;
+  std::string_view digits = corner.substr(0, slash);
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  long long index = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  if (problem != std::errc{} || end != digits.data() + digits.size()) return std::nullopt;
+  return index;
+}
+
+void check_corner(std::string_view corner, const Vertices& vertices, std::size_t number) {
+  const std::optional<long long> index = vertex_of(corner);
+  if (!index) wrong_line(number, "a face has the corner " + excerpt(corner) + ", which is no index of a vertex");
+  if (*index == 0) wrong_line(number, "a face uses vertex 0, but vertices are counted from 1");
+  if (*index > vertices.all) {
+    wrong_line(number, "a face uses vertex " + std::to_string(*index) + ", of " + std::to_string(vertices.all) +
+                           " in the file");
   }
-  if (text.front() == 'f' && values.find('.') != values.npos) {
-    throw MeshProblem{"line " + std::to_string(number) + ": a face has an index that is no whole number"};
+  if (*index < -vertices.so_far) {
+    wrong_line(number, "a face uses vertex " + std::to_string(*index) + ", of " + std::to_string(vertices.so_far) +
+                           " before it");
   }
-  if (text.front() == 'f' && has_index_0(values)) {
-    throw MeshProblem{"line " + std::to_string(number) +
-                      ": a face uses vertex 0, but vertices are counted from 1; mend the line, or save the mesh again"};
+}
+
+// In the form that CGAL reads in full, as long as before: indices of vertices and blanks.
+void settle_face(char* line, std::size_t size, const Vertices& vertices, std::size_t number) {
+  const std::string_view text(line, size);
+  std::fill(line + std::min(text.find('#'), size), line + size, ' ');
+  for (std::size_t i = 0; i < size; ++i) line[i] = blanks.find(line[i]) == blanks.npos ? line[i] : ' ';
+  for (std::string_view rest = after_blanks(after_blanks(text).substr(1)); !rest.empty(); rest = after_blanks(rest)) {
+    const std::string_view corner = rest.substr(0, std::min(rest.find(' '), rest.size()));
+    check_corner(corner, vertices, number);
+    rest.remove_prefix(corner.size());
+    char* begin = line + (corner.data() - line);
+    std::fill(begin + std::min(corner.find('/'), corner.size()), begin + corner.size(), ' ');
+  }
+}
+
+void check_vertex(std::string_view text, std::size_t number) {
+  if (begins_with_numbers(text.substr(1, text.substr(1).find('#')), 3)) return;
+  wrong_line(number, excerpt(text.substr(0, text.find_last_not_of(blanks) + 1)) + " is no vertex of three coordinates");
+}
+
+// Calls for_line(begin, size, number) for each line.
+template <class ForLine>
+void for_lines(const std::string& text, const ForLine& for_line) {
+  std::size_t number = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    for_line(begin, end - begin, number);
+    begin = end + 1;
   }
 }
 
@@ -93,12 +134,20 @@ bool begins_with_numbers(std::string_view text, int count) {
 
 std::string checked_obj(const std::string& bytes) {
   std::string text = bytes.find('\\') == std::string::npos ? bytes : joined(bytes);
-  std::size_t number = 1;
-  for (std::size_t begin = 0; begin < text.size(); ++number) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    check_line(std::string_view(text).substr(begin, end - begin), number);
-    begin = end + 1;
-  }
+  const auto statement = [&](std::size_t begin, std::size_t size) {
+    return after_blanks(std::string_view(text).substr(begin, size));
+  };
+  Vertices vertices;
+  for_lines(text, [&](std::size_t begin, std::size_t size, std::size_t number) {
+    if (!is_statement(statement(begin, size), 'v')) return;
+    check_vertex(statement(begin, size), number);
+    ++vertices.all;
+  });
+  for_lines(text, [&](std::size_t begin, std::size_t size, std::size_t number) {
+    const std::string_view line = statement(begin, size);
+    if (is_statement(line, 'v')) ++vertices.so_far;
+    if (is_statement(line, 'f')) settle_face(text.data() + begin, size, vertices, number);
+  });
   return text;
 }
 

@@ -217,7 +217,6 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   CHECK(refusal(folder, box_off("nan 0 0")) != "no error");
   CHECK(refusal(folder, box_off("1e999 0 0")) != "no error");
   std::string obj = box_obj();
-  CHECK(has(refusal(folder, obj + "f 1 2 9\n"), "face 6 uses vertex 8 of 8 (counted from 0)"));
   const auto lines = std::to_string(std::count(obj.begin(), obj.end(), '\n') + 1);
   for (const char* face : {"f 0 1 2\n", "f 1 2 0", "f 1/1 0/2 3/1\n"}) {
     CHECK(has(refusal(folder, obj + face),
@@ -225,7 +224,7 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   }
   CHECK(refusal(folder, obj + "f 1/0 2/0 10/0\n") != "no error");
   CHECK(refusal(folder, obj + "f -8 -7 -6\n") == "no error");
-  CHECK(has(refusal(folder, obj + "f 1 2\n"), "face 6 has 2 corners"));
+  CHECK(has(refusal(folder, obj + "f 1 2\n"), "face 6 has 2 corners; mend it, or save the mesh again"));
   CHECK(has(refusal(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "the mesh is empty: 3 vertices, no face"));
   CHECK(has(refusal(folder, "solid nothing\nendsolid nothing\n"), "empty"));
   CHECK(has(refusal(folder, ""), "is empty"));
@@ -369,7 +368,7 @@ TEST_CASE("faces beyond the count of a header are refused with both numbers") {
   CHECK(has(refusal(folder, minus), "the PLY header states -1 vertex elements"));
   std::string obj = box_obj();
   obj.insert(obj.rfind("//1"), ".7");
-  CHECK(has(refusal(folder, obj), "a face has an index that is no whole number"));
+  CHECK(has(refusal(folder, obj), ".7//1', which is no index of a vertex; mend the line"));
 }
 
 TEST_CASE("lines of an OBJ file are joined where they go on, and one that is no vertex is named") {
@@ -381,7 +380,8 @@ TEST_CASE("lines of an OBJ file are joined where they go on, and one that is no 
   }
   continued.insert(continued.rfind("\nf ") + 2, "\\\n");
   CHECK(volume(read_mesh(folder.write("a", continued))) == doctest::Approx(6));
-  CHECK(has(refusal(folder, continued + "f 1 2.5 3\n"), ": a face has an index that is no whole number"));
+  CHECK(
+      has(refusal(folder, continued + "f 1 2.5 3\n"), ": a face has the corner '2.5', which is no index of a vertex"));
   for (const std::string bad : {"v 1 2", "v", "v 1 2 x", " v 1 nan 2", "v 1 1e400 2", "v 1 2,5 3", "v 1 # 2 3"}) {
     CAPTURE(bad);
     std::string damaged = "v\\\n 0 0 0\n" + bad + "\n" + obj;
@@ -390,6 +390,34 @@ TEST_CASE("lines of an OBJ file are joined where they go on, and one that is no 
   }
   CHECK(
       has(refusal(folder, "v +1e-3 .5 -7. 1\nv\t1 2 3 # here\r\nvn 1 0\n"), "the mesh is empty: 2 vertices, no face"));
+}
+
+TEST_CASE("a corner of a face of an OBJ file that is no vertex of it is named as it is written, with its line") {
+  const scratch::Folder folder;
+  const std::string obj = box_obj();
+  const std::string line = "line " + std::to_string(std::count(obj.begin(), obj.end(), '\n') + 1) + ": a face ";
+  for (const std::string corner :
+       {"99999999999999999999", "x", "8x", "8e0", "6,", "/4", "0x8", "+-8", "-", "8/x", "8/1.5", "8//n", "2.5"}) {
+    CAPTURE(corner);
+    CHECK(has(refusal(folder, obj + "f 5 6 7 " + corner + "\n"),
+              line + "has the corner '" + corner + "', which is no index of a vertex; mend the line, or save"));
+  }
+  for (const std::string beyond : {"9", "4294967304", "+9", "9/1/1"}) {
+    CAPTURE(beyond);
+    const std::string index = std::to_string(std::stoll(beyond));
+    CHECK(has(refusal(folder, obj + "f 5 6 7 " + beyond + "\n"),
+              line + "uses vertex " + index + ", of 8 in the file; mend the line, or save"));
+  }
+  CHECK(has(refusal(folder, obj + "f 5 6 7 -9\n"), line + "uses vertex -9, of 8 before it; mend the line"));
+  CHECK(has(refusal(folder, "v 0 0 0\nf -1 -2 1\nv 1 0 0\n"), "line 2: a face uses vertex -2, of 1 before it"));
+  const std::string long_corner = "f 1 2 3/" + std::string(300, '1') + " 4";
+  for (const std::string& face :
+       std::initializer_list<std::string>{"f 1 2 3 4", "f 1\t2\t3 4", "f +1 2/1 3//1 4/1/1", "f 1 2 3 4 # 5 6",
+                                          "f 1 2 3 4#x 5", "f -8 -7 -6 -5\r", "\tf 1  2 3\t4 #", long_corner}) {
+    CAPTURE(face);
+    CHECK(read_mesh(folder.write("a", obj + face + "\n")).triangles.size() == 14);
+  }
+  CHECK(read_mesh(folder.write("a", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n")).triangles.size() == 1);
 }
 
 TEST_CASE("an element of other programs in a PLY file, a digit a line, is no promise that the file is too short for") {
