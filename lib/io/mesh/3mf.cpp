@@ -63,7 +63,7 @@ class Package {
                                 number(all.triangles) + " triangles and " + number(all.points) + " vertices; ";
     if (all.triangles > max_triangles || all.points > max_points || all.instances > max_instances) {
       throw MeshProblem{expands + "up to " + number(max_instances) + ", " + number(max_triangles) + " and " +
-                        number(max_points) + " are read"};
+                        number(max_points) + " are read; save it as a plain mesh (STL)"};
     }
     const std::uint64_t needed = all.triangles * triangle_bytes + all.points * point_bytes;
     if (needed <= room_) return;
@@ -85,7 +85,7 @@ class Package {
     const ModelPart& owner = part(name);
     const auto found = owner.objects.find(id);
     if (found == owner.objects.end()) {
-      throw MeshProblem{"refers to object " + std::to_string(id) + ", which " + name + " does not have"};
+      throw MeshProblem{"refers to object " + std::to_string(id) + ", which " + name + " does not have; save it again"};
     }
     return found->second;
   }
@@ -101,9 +101,11 @@ class Package {
     const std::string which = "object " + std::to_string(instance.object);
     const auto [place, fresh] = counted_.try_emplace({name, instance.object});
     Expanded& count = place->second;
-    if (!fresh && count.open) throw MeshProblem{which + " is a component of itself"};
+    if (!fresh && count.open) throw MeshProblem{which + " is a component of itself; mend it, or save the mesh again"};
     if (!fresh) return count;
-    if (depth > max_depth) throw MeshProblem{"its components are nested deeper than " + std::to_string(max_depth)};
+    if (depth > max_depth)
+      throw MeshProblem{"its components are nested deeper than " + std::to_string(max_depth) +
+                        "; save it as a plain mesh (STL)"};
     const Object3mf& made_of = object(name, instance.object);
     if (made_of.support) return count = {0, 0, 0, false};
     if (!made_of.unread.empty()) {
@@ -129,7 +131,7 @@ class Package {
       for (const int corner : {a, b, c}) {
         if (corner >= 0 && corner < last) continue;
         throw MeshProblem{"object " + std::to_string(instance.object) + " uses vertex " + std::to_string(corner) +
-                          " of " + std::to_string(last) + " (counted from 0)"};
+                          " of " + std::to_string(last) + " (counted from 0); mend it, or save the mesh again"};
       }
       if (mirrored) std::swap(b, c);
       soup_.faces.push_back({first + a, first + b, first + c});

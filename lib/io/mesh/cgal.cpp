@@ -37,10 +37,12 @@ PolygonSoup converted(CgalSoup&& soup) {
 
 // CGAL takes coordinates of other types, and lists, for floats.
 void check_ply_property(const std::string& element, const std::string& type, const std::string& name) {
-  if (element.empty()) throw MeshProblem{"the PLY header has a property of no element"};
+  if (element.empty())
+    throw MeshProblem{"the PLY header has a property of no element; mend it, or save the mesh again"};
   const bool coordinate = (element == "vertex" || element == "vertices") && (name == "x" || name == "y" || name == "z");
   if (!coordinate || type == "float" || type == "double" || type == "float32" || type == "float64") return;
-  throw MeshProblem{"the PLY coordinate " + name + " is of type " + type + "; float and double are read"};
+  throw MeshProblem{"the PLY coordinate " + name + " is of type " + type +
+                    "; float and double are read, save it as one of them"};
 }
 
 // True where its numbers are text.
@@ -66,7 +68,9 @@ bool check_ply_header(const std::string& bytes) {
     }
     if (keyword != "element") continue;
     element = first;
-    if (second.starts_with('-')) throw MeshProblem{"the PLY header states " + second + " " + element + " elements"};
+    if (second.starts_with('-'))
+      throw MeshProblem{"the PLY header states " + second + " " + element +
+                        " elements; mend it, or save the mesh again"};
     std::uint64_t count = 0;
     if (std::istringstream(second) >> count) require_count(count, element.c_str(), bytes);
   }

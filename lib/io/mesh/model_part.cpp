@@ -34,7 +34,7 @@ double unit_mm(const XmlElement& model) {
   for (const auto& [name, mm] : units) {
     if (unit == name) return mm;
   }
-  throw MeshProblem{"unknown 3MF unit " + excerpt(unit)};
+  throw MeshProblem{"unknown 3MF unit " + excerpt(unit) + "; save it in millimeter"};
 }
 
 class ModelReader {
@@ -88,7 +88,7 @@ class ModelReader {
   void begin_object(const XmlElement& element) {
     const unsigned id = number_of_object(element, "id");
     const auto [place, fresh] = part_.objects.try_emplace(id);
-    if (!fresh) throw MeshProblem{"has two objects " + std::to_string(id)};
+    if (!fresh) throw MeshProblem{"has two objects " + std::to_string(id) + "; mend it, or save the mesh again"};
     object_ = &place->second;
     const std::string_view type = element.attribute("type").value_or("model");  // core specification, 4.1
     object_->support = type == "support" || type == "solidsupport";

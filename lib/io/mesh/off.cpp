@@ -80,7 +80,7 @@ PolygonSoup parse_off(const std::string& bytes) {
   const std::vector<double> counts = lines.next();
   constexpr double most = 1e15;
   if (counts.size() < 2 || !is_whole(counts[0], most) || !is_whole(counts[1], most)) {
-    throw MeshProblem{"the OFF header has no counts"};
+    throw MeshProblem{"the OFF header has no counts; mend it, or save the mesh again"};
   }
   const auto vertices = static_cast<std::uint64_t>(counts[0]);
   const auto faces = static_cast<std::uint64_t>(counts[1]);

@@ -3,8 +3,11 @@
 
 #include <zip.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
+#include "base/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/zip_end.hpp"
 
@@ -20,6 +23,24 @@ constexpr zip_flags_t name_flags = ZIP_FL_NOCASE;  // Open Packaging Conventions
   std::string why = zip_error_strerror(error);
   zip_error_fini(error);
   throw MeshProblem{"not a whole 3MF file: " + what + " (" + why + "); it is truncated or damaged"};
+}
+
+std::vector<std::string> names_of(zip* archive) {
+  std::vector<std::string> names;
+  const zip_int64_t count = zip_get_num_entries(archive, 0);
+  for (zip_int64_t i = 0; i < count; ++i) {
+    const char* name = zip_get_name(archive, static_cast<zip_uint64_t>(i), 0);
+    if (name != nullptr) names.push_back(lower_case(name));
+  }
+  return names;
+}
+
+void require_distinct(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice == names.end()) return;
+  throw MeshProblem{"the 3MF archive holds two files called " + excerpt(*twice) +
+                    ", of which only one would be read; save it again"};
 }
 
 struct CloseZipFile {
@@ -46,6 +67,7 @@ ZipArchive::ZipArchive(std::string_view bytes) : left_(most_unpacked + most_rati
     zip_source_free(source);
     damaged("no zip archive", &error);
   }
+  require_distinct(names_of(archive_.get()));
 }
 
 bool ZipArchive::has(const std::string& name) const {

@@ -44,7 +44,7 @@ Affine place(const ExtentUnder& under, const Placement& placement, const Writabl
   };
   const Point size = part.box.size();
   const double largest = std::max({size[0], size[1], size[2]});
-  if (!(largest > 0)) throw Error{Fault::data, subject + ": has no size, all its points coincide"};
+  if (!(largest > 0)) throw Error{Fault::data, subject + ": has no size, all its points coincide; save the mesh again"};
   if (placement.centre) map = centred(map, part);
   double factor = 1;
   if (placement.fit_mm) factor = *placement.fit_mm / largest;

@@ -129,10 +129,10 @@ TEST_CASE("3MF: rejects unbounded components and non-mesh geometry") {
   CHECK(has(refusal(folder, package(model(object(1, "<components>" + component(2) + "</components>") +
                                               object(2, "<components>" + component(1) + "</components>"),
                                           item(1)))),
-            "object 1 is a component of itself"));
+            "object 1 is a component of itself; mend it, or save"));
   std::string chain = object(1, mesh_xml(box()));
   for (int id = 2; id <= 100; ++id) chain += object(id, "<components>" + component(id - 1) + "</components>");
-  CHECK(has(refusal(folder, package(model(chain, item(100)))), "nested deeper than 64"));
+  CHECK(has(refusal(folder, package(model(chain, item(100)))), "nested deeper than 64; save it as a plain mesh"));
 
   const std::string lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"";
   std::string beams = mesh_xml(box());
@@ -177,6 +177,28 @@ TEST_CASE("3MF: what a small file unpacks and expands to is bounded, and refused
             "expand to 170000 objects of 2040000 triangles and 1360000 vertices; they need 0.16 GiB of memory, and "
             "those of a file of its size may take 0.157 GiB; save it as a plain mesh (STL)"));
   CHECK(has(packed_refusal(model(one, items((1 << 20) + 1))), "has more than 1048576 items and components"));
+}
+
+TEST_CASE("3MF: two files of a name in the archive, of which one would be read, are refused") {
+  const scratch::Folder folder;
+  const std::string root = model(object(1, mesh_xml(box())), item(1));
+  for (const char* name : {"3D/3dmodel.model", "3d/3DModel.MODEL"}) {
+    Zip zip;
+    zip.add("3D/3dmodel.model", root);
+    zip.add(name, root);
+    CHECK(has(refusal(folder, zip.done()),
+              "holds two files called '3d/3dmodel.model', of which only one would be read; save it again"));
+  }
+}
+
+TEST_CASE("3MF: what an object lacks or has twice is said with a remedy") {
+  const scratch::Folder folder;
+  const std::string one = object(1, mesh_xml(box()));
+  CHECK(has(refusal(folder, package(model(one + one, item(1)))), "has two objects 1; mend it, or save the mesh again"));
+  std::string beyond = one;
+  beyond.replace(beyond.find("v1=\"") + 4, 1, "-1");
+  CHECK(has(refusal(folder, package(model(beyond, item(1)))),
+            "object 1 uses vertex -1 of 8 (counted from 0); mend it, or save the mesh again"));
 }
 
 TEST_CASE("3MF: the unit and the place of the build item count") {

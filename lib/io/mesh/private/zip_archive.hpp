@@ -15,7 +15,8 @@ namespace vam::io {
 
 class ZipArchive {
  public:
-  /// The bytes must outlive it. Throws MeshProblem: no zip archive, cut off, damaged.
+  /// The bytes must outlive it. Throws MeshProblem: no zip archive, cut off, damaged, two files whose
+  /// names differ in capitals at most.
   explicit ZipArchive(std::string_view bytes);
 
   [[nodiscard]] bool has(const std::string& name) const;
