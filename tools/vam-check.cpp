@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-check: are files what was written, and what were they made from?
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,8 +13,10 @@
 #include "cli/app.hpp"
 #include "io/inspect/provenance.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/resumption.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace {
@@ -40,8 +43,11 @@ cli::Manual manual() {
        "and "
        "sinogram.exr, a link that is verified against the hash in events.jsonl); flips.jsonl is verified against "
        "summary.json, too, also where it is given alone; before the print has ended, or if it was killed, its lines "
-       "against the seals in events.jsonl, up to the last of which they are verified, as is said, its end against "
-       "angles.jsonl, and printer.toml against its own. Of a folder of "
+       "against the seals in events.jsonl, up to the last of which they are verified, as is said, its end and its "
+       "light "
+       "against angles.jsonl, what it began against what events.jsonl armed, and printer.toml against its own. A "
+       "print that was resumed must have its resumed.json: by its events.jsonl if it was killed, and by that of "
+       "the resumption if both folders are given. Of a folder of "
        "vam-capture every line of the manifest is verified against the one above, and every image "
        "against its line; images that are lost, exchanged or without a line are named; its manifest.jsonl stands for "
        "the folder.",
@@ -89,6 +95,17 @@ std::string report(const std::string& path, const std::vector<ProvenanceEntry>& 
   return text;
 }
 
+// Those of the files that are intact run folders.
+std::vector<std::string> runs_of(const std::map<std::string, std::vector<ProvenanceEntry>>& found) {
+  std::vector<std::string> runs;
+  for (const auto& [path, findings] : found) {
+    const auto events = std::filesystem::path(path) / "events.jsonl";
+    if (findings.front().damage.empty() && std::filesystem::is_directory(path) && io::has_regular_file(events.string()))
+      runs.push_back(path);
+  }
+  return runs;
+}
+
 void check(const Options& options) {
   std::map<std::string, std::vector<ProvenanceEntry>> found;
   Names names;
@@ -109,6 +126,7 @@ void check(const Options& options) {
       if (!finding.seal.empty()) names.emplace(finding.seal, io::input_name(path));
     }
   }
+  for (const std::string& problem : io::unmarked_resumptions(runs_of(found))) damaged.push_back({Fault::data, problem});
   std::string text;
   for (const std::string& path : options.files) {
     if (const auto findings = found.find(path); findings != found.end()) text += report(path, findings->second, names);

@@ -170,12 +170,35 @@ is 'a killed print leaves its pipes' "$(ls -A killed | grep '^[.]' | tr '\n' ' '
 ok 'a killed print is resumed' print --resume killed --run rest
 is 'which removes them' "$(ls -A killed | grep -c '^[.]')" 0
 fails 65 'killed: already resumed, by .*/rest; resume that one instead' print --resume killed --run none
+# That it was resumed is in its events, too: a mark that is lost or spoilt is not taken for none.
+for tool in vam-check vam-status 'print --run none --resume'; do
+  rm -rf spoilt; cp -r killed spoilt; rm spoilt/resumed.json
+  fails 65 'spoilt/resumed.json: is gone, but events.jsonl states that /.*/rest resumed this print; restore it$' $tool spoilt
+  for mark in '' '[]' '{"resumed_by":"/x"}' '{"utc":"2026-11-27T10:00:00Z","resumed_by":"'"$PWD/spoilt"'"}' malformed; do
+    printf %s "$mark" >spoilt/resumed.json
+    fails 65 'spoilt/resumed.json: (does not say when and by which print|names its own folder)' $tool spoilt
+  done
+  rm spoilt/resumed.json; mkdir spoilt/resumed.json; fails 65 'spoilt/resumed.json: is not a regular file' $tool spoilt
+  rmdir spoilt/resumed.json; ln -s gone spoilt/resumed.json; fails 65 'spoilt/resumed.json: is a link' $tool spoilt
+done
+ok 'both parts are verified' vam-check killed rest
+mkdir archive; cp -r killed archive; rm archive/killed/resumed.json; sed -i '/"event":"resumed"/d' archive/killed/events.jsonl
+fails 65 'archive/killed/resumed.json: is gone, but rest/events.jsonl states that it resumes this print; restore it$' vam-check archive/killed rest
+# One that is given up before light has given nothing.
+cp -r again early; printf '{"utc' >>early/events.jsonl
+(exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 9 --uncalibrated --resume early --run dark) 2>errors &
+printing=$!
+await grep -qs '"event":"resumed"' early/events.jsonl; await grep -qs '"event":"flip"' dark/flips.jsonl
+kill -TERM $printing; wait $printing
+is 'is taken back' "$? $(grep -o '"event":"re[a-z]*"' early/events.jsonl | tr '\n' ' ')$(ls early/resumed.json 2>/dev/null)" '143 "event":"resumed" "event":"released" '
+ok 'and the print can be resumed' print --resume early --plan
+ok 'both are verified' vam-check early dark
 is 'for its last turn' "$(grep -o '"turns":[0-9]*,"from_deg":[0-9]*' rest/events.jsonl | cut -d, -f1) $(json rest/summary.json outcome)" '"turns":1 done'
 # One that was calibrated needs no records to be resumed: its settings hold them. Its devices must be the same.
 vam-stage identify --printer killed/printer.toml >known/stage.json; echo '{"edges": 1}' >known/calibration.json
 ok 'a calibrated print is resumed with its own settings' dry --resume known --run rest2
 is 'its records are copied' "$(cat rest2/calibration.json)" '{"edges": 1}'
-rm known/resumed.json
+rm known/resumed.json; sed -i '/"event":"resumed"/d' known/events.jsonl
 is 'by its plan' "$(dry --resume known --plan | grep ^records)" 'records    as in known/printer.toml'
 sed -i 's/"serial": "/&9/' known/stage.json
 fails 65 'known: printed with another stage .stage.json differs.' dry --resume known --run rest3

@@ -103,6 +103,16 @@ for mark in '' '{}' '{"utc":"2026-11-27T10:00:00Z","resumed_by":""}' garbage; do
 done
 echo '{"utc":"2026-11-27T10:00:00Z","resumed_by":"a","resumed_by":"b"}' >part/resumed.json
 fails 65 "part/resumed.json: has the key 'resumed_by' twice" vam-check part
+for by in "$PWD/part" part .; do
+  echo '{"utc":"2026-11-27T10:00:00Z","resumed_by":"'"$by"'"}' >part/resumed.json
+  for tool in vam-check vam-status; do fails 65 'part/resumed.json: names its own folder as the print that resumed it' $tool part; done
+done
+rm part/resumed.json; mkdir part/resumed.json; fails 65 'part/resumed.json: is not a regular file' vam-check part
+spoil; rm part/SHA256SUMS part/summary.json
+fails 65 'part: has neither SHA256SUMS nor summary.json, which a print writes when it has ended .done, by events.jsonl.; restore both' vam-check part
+# A lack of the system says nothing of the folder.
+prlimit --nofile=4 vam-check run 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&- >said 2>err
+is 'too few open files are no damage' "$? $(cat said) $(grep -c 'Too many open files; raise the limit' err)" '71  1'
 
 # Links: that to the sinogram is held to the hash in the events, and no other is of a print.
 is 'the sinogram is a link' "$(readlink run/sinogram.exr)" "$PWD/frames.exr"

@@ -19,6 +19,7 @@
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/resumption.hpp"
 #include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/log_lines.hpp"
@@ -72,6 +73,7 @@ RunFolder::RunFolder(const std::string& path) : path_(path) {
   if (!fs::is_directory(path, ignored))
     throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
   io::require_run_logs(path);
+  io::require_resumption(path);
   if (!io::has_regular_file(file("events.jsonl")) && !about_to_be_armed(*this)) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }

@@ -13,6 +13,7 @@
 #include "io/image/capture_folder.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/resumption.hpp"
 #include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
@@ -72,6 +73,7 @@ std::string seals_of(const std::string& run) {
 std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
   require_run_settings(path);
   require_run_logs(path);
+  require_resumption(path);
   require_stated_flips(path);
   const std::string log = (std::filesystem::path(path) / "flips.jsonl").string();
   if (const std::string seals = has_regular_file(log) ? seals_of(path) : ""; !seals.empty())

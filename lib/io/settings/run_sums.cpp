@@ -11,6 +11,7 @@
 #include "base/system_error.hpp"
 #include "base/text.hpp"
 #include "io/settings/flip_log.hpp"
+#include "io/settings/resumption.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
@@ -77,25 +78,10 @@ std::string gone(const std::string& folder, const std::string& name) {
   return path_in(folder, name) + ": is gone, but " + list_name + " lists it; restore it";
 }
 
-// What a resumption leaves says which print it was, so that what remains is given once.
-std::string resumed_problem(const std::string& path) {
-  try {
-    constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
-    const Json mark = parse_distinct(has_regular_file(path) ? read_all(path, Content::text, most_bytes) : "", path);
-    if (!text_at(mark, "utc").empty() && !text_at(mark, "resumed_by").empty()) return "";
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return path +
-         ": does not say when and by which print this one was resumed (utc, resumed_by); restore it, or remove "
-         "it if the rest was not printed";
-}
-
 // What is wrong with a file that SHA256SUMS does not list.
 std::string unlisted_problem(const std::string& folder, const std::string& name) {
   const std::string path = path_in(folder, name);
   if (is_link(path)) return path + ": is a link, which no print leaves; remove it";
-  if (name == resumed_name) return resumed_problem(path);
   return path + ": is not in " + list_name +
          ": it was added after the print, or the list was cut; remove the file, or restore the list";
 }
@@ -201,8 +187,9 @@ std::vector<std::string> run_damage(const std::string& folder, const RunSums& su
     add(fast ? gone(folder, file.first) : sum_problem(folder, file));
   }
   const bool has_logs = damage.empty();
+  if (!sums.contains(resumed_name)) add(resumption_problem(folder));
   for (const std::string& name : entries_of(folder)) {
-    if (name == list_name || sums.contains(name)) continue;
+    if (name == list_name || name == resumed_name || sums.contains(name)) continue;
     add(name == sinogram_name ? sinogram_problem(folder, fast || !has_logs) : unlisted_problem(folder, name));
   }
   return damage;

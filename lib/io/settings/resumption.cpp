@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/settings/resumption.hpp"
+
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/json_text.hpp"
+#include "io/settings/flip_log.hpp"
+#include "io/stream/log_lines.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* mark_name = "resumed.json";
+
+// What the events of a run say of it and of others.
+struct Ties {
+  std::string sinogram_sha256;
+  std::string resumes;
+  std::string resumed_by;  // empty: not resumed
+};
+
+Ties ties_of(const std::string& run) {
+  Ties ties;
+  const std::string path = (fs::path(run) / "events.jsonl").string();
+  LogLines events(path);
+  for (std::string text; events.next(text);) {
+    const Json event = parse_distinct(text, path);
+    if (!event.is_object()) continue;
+    const std::string name = text_at(event, "event");
+    if (name == "armed") {
+      ties.sinogram_sha256 = text_at(event, "sinogram_sha256");
+      ties.resumes = text_at(event, "resumes");
+    }
+    if (name == "resumed") ties.resumed_by = text_at(event, "by", "another print");
+    if (name == "released") ties.resumed_by = "";
+  }
+  return ties;
+}
+
+bool is_same(const fs::path& one, const fs::path& other) {
+  std::error_code ignored;
+  return fs::equivalent(one, other, ignored);
+}
+
+// The last name of a path, "w" of "prints/w/".
+fs::path name_of(const std::string& path) {
+  std::error_code ignored;
+  const fs::path whole = fs::weakly_canonical(path, ignored);
+  return whole.has_filename() ? whole.filename() : whole.parent_path().filename();
+}
+
+// A name relative to where the print was, to the folder or to the one that holds it.
+bool names_itself(const std::string& by, const std::string& run) {
+  const fs::path folder(run);
+  return is_same(by, folder) || is_same(folder / by, folder) || is_same(folder / ".." / by, folder);
+}
+
+// A resumption without light has taken its mark back.
+bool has_light(const std::string& run) {
+  if (!has_regular_file((fs::path(run) / "flips.jsonl").string())) return false;
+  FlipLog log(run);
+  log.read();
+  return log.lit() > 0;
+}
+
+std::string mark_problem(const std::string& run, const std::string& path) {
+  constexpr const char* remedy = "; restore it, or remove it if the rest was not printed";
+  std::error_code ignored;
+  if (fs::is_symlink(fs::symlink_status(path, ignored))) return path + ": is a link, which no print leaves; remove it";
+  try {
+    constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
+    const Json mark = parse_distinct(has_regular_file(path) ? read_all(path, Content::text, most_bytes) : "", path);
+    const std::string by = text_at(mark, "resumed_by");
+    if (!by.empty() && names_itself(by, run))
+      return path + ": names its own folder as the print that resumed it" + remedy;
+    if (!by.empty() && !text_at(mark, "utc").empty()) return "";
+  } catch (const Error& error) {
+    if (error.fault != Fault::data) throw;
+    return error.what();
+  }
+  return path + ": does not say when and by which print this one was resumed (utc, resumed_by)" + remedy;
+}
+
+}  // namespace
+
+std::string resumption_problem(const std::string& run) {
+  const std::string path = (fs::path(run) / mark_name).string();
+  std::error_code ignored;
+  if (fs::exists(fs::symlink_status(path, ignored))) return mark_problem(run, path);
+  try {
+    const std::string by = ties_of(run).resumed_by;
+    return by.empty() ? "" : path + ": is gone, but events.jsonl states that " + by + " resumed this print; restore it";
+  } catch (const Error& error) {
+    if (error.fault != Fault::data) throw;
+    return error.what();
+  }
+}
+
+void require_resumption(const std::string& run) {
+  if (const std::string problem = resumption_problem(run); !problem.empty()) throw Error{Fault::data, problem};
+}
+
+std::string resumes_of(const std::string& run) { return ties_of(run).resumes; }
+
+bool resumes(const std::string& run, const std::string& earlier) {
+  const Ties ties = ties_of(run);
+  if (ties.resumes.empty() || is_same(run, earlier)) return false;
+  if (is_same(ties.resumes, earlier) || is_same(fs::path(run) / ".." / ties.resumes, earlier)) return true;
+  return name_of(ties.resumes) == name_of(earlier) && ties.sinogram_sha256 == ties_of(earlier).sinogram_sha256;
+}
+
+std::vector<std::string> unmarked_resumptions(const std::vector<std::string>& runs) {
+  std::vector<std::string> problems;
+  std::error_code ignored;
+  for (const std::string& earlier : runs) {
+    const std::string mark = (fs::path(earlier) / mark_name).string();
+    if (fs::exists(fs::symlink_status(mark, ignored)) || !ties_of(earlier).resumed_by.empty()) continue;  // told
+    for (const std::string& run : runs) {
+      if (!resumes(run, earlier) || !has_light(run)) continue;
+      problems.push_back(mark + ": is gone, but " + run +
+                         "/events.jsonl states that it resumes this print; restore it");
+      break;
+    }
+  }
+  return problems;
+}
+
+}  // namespace vam::io
