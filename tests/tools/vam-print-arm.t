@@ -255,6 +255,19 @@ spoilt 'events.jsonl:[0-9]+: bytes is 1e.308, not between [0-9]+ and' 'sed -i "\
 spoilt 'events.jsonl:[0-9]+: sha256 is not 64' 'sed -i "\$s/\"sha256\":\"[0-9a-f]*/\"sha256\":\"/" events.jsonl'
 spoilt 'angles.jsonl:3: angle_deg is missing, not between' 'sed -i "3s/angle_deg/angel_deg/" angles.jsonl'
 spoilt 'angles.jsonl:3: t_monotonic_s is 1e.300, not between' 'sed -i "3s/\"t_monotonic_s\":[0-9.]*/\"t_monotonic_s\":1e300/" angles.jsonl'
+# The stage is logged before light comes on.
+dark='light in flips.jsonl, which follows the angles; it was cut; restore it$'
+spoilt "angles.jsonl: is gone, but there is $dark" 'rm angles.jsonl'
+spoilt "angles.jsonl: has no angle, but there is $dark" ': >angles.jsonl'
+spoilt "angles.jsonl: ends [0-9.]+ s before $dark" 'sed -i "2,\$d" angles.jsonl'
+seals=$(grep -c '"event":"sealed"' again/events.jsonl)
+spoilt "angles.jsonl: has no angle, but there is $dark" ': >angles.jsonl; sed -i "\$d" events.jsonl
+  head -c "$(sed -n "\$s/.*\"bytes\":\([0-9]*\).*/\1/p" events.jsonl)" ../again/flips.jsonl >flips.jsonl'
+holds 'a cut at a seal was one' "$(grep -c '"event":"sealed"' spoilt/events.jsonl) == $seals - 1"
+# What was armed is what the sealed log began.
+spoilt 'events.jsonl: states 13 turns, but flips.jsonl 2; it was changed; restore it$' 'sed -i "1s/\"turns\":2/\"turns\":13/" events.jsonl'
+spoilt 'events.jsonl: states light from 90 deg, but flips.jsonl 0; it was changed; restore it$' 'sed -i "1s/\"from_deg\":0/\"from_deg\":90/" events.jsonl'
+spoilt 'events.jsonl: states a sinogram whose SHA-256 begins 0123abcd, but flips.jsonl' 'sed -i "1s/\"sinogram_sha256\":\"......../\"sinogram_sha256\":\"0123abcd/" events.jsonl'
 rm -r spoilt; cp -r again spoilt; rm spoilt/printer.toml
 for tool in vam-check vam-status 'print --run none --resume'; do
   fails 65 'spoilt/printer.toml: is gone, without which the print can be neither resumed nor its dose computed' $tool spoilt
@@ -270,7 +283,7 @@ set_other() { "$@" --set stage.speed_deg_s=40 --set vial.radius_mm=12.72; }
 fails 65 "$other" set_other print --resume again --run none
 is 'by its plan, too' "$(set_other print --resume again --plan 2>&1 | grep -c "$other")" 1
 is 'unless accepted' "$(set_other print --resume again --plan --accept-printer 2>&1 | grep -c "$other""accepted")" 1
-mkdir edited; for name in printer.toml flips.jsonl events.jsonl; do cp again/$name edited; done
+mkdir edited; for name in printer.toml flips.jsonl events.jsonl angles.jsonl; do cp again/$name edited; done
 (cd edited && find . -type f ! -name SHA256SUMS -exec sha256sum {} + >../sums && mv ../sums SHA256SUMS)
 ok 'a print with its hashes' vam-dose frames.exr --printer whole/printer.toml --shown edited -o edited.vdb
 for name in flips.jsonl printer.toml; do

@@ -39,7 +39,8 @@ rm half/SHA256SUMS half/summary.json  # which a print writes at its end
 sed -i '/"event":"end"/d;/"event":"sealed"/d' half/events.jsonl
 head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl | sed 's/,"seals":true//' >half/flips.jsonl  # as of a former version
 last=$(tail -n 1 half/flips.jsonl | grep -o '"angle_deg":[-0-9.e]*' | cut -d: -f2)
-printf '{"t_monotonic_s":1,"angle_deg":%s,"sigma_deg":0}\n{"t_mono' "$last" >half/angles.jsonl
+last_s=$(tail -n 1 half/flips.jsonl | grep -o '"t_monotonic_s":[0-9.]*' | cut -d: -f2)
+printf '{"t_monotonic_s":%s,"angle_deg":%s,"sigma_deg":0}\n{"t_mono' "$last_s" "$last" >half/angles.jsonl
 touch half/events.jsonl
 given=$(vam-status half | sed 's/.*dose delivered \([0-9.]*\) %.*/\1/')
 ok 'vam-dose on it' vam-dose frames.exr --shown half --printer half/printer.toml --report dose.json -o dose.vdb
@@ -176,6 +177,7 @@ changes=0
 for change in 's/"angle_deg":1\(..[.]\)/"angle_deg":2\1/' 's/"t_monotonic_s":./&1/' '$!N;s/\(.*\)\n\(.*\)/\2\n\1/'; do
   changes=$((changes + 1))
   spoil; rm part/SHA256SUMS; sed -i "$change" part/flips.jsonl
+  [ $changes != 2 ] || sed -i "$change" part/angles.jsonl
   for tool in 'vam-status part' 'timeout 20 vam-status --watch part' 'vam-dose frames.exr --shown part -o x.vdb' 'vam-check part' 'vam-check part/flips.jsonl'; do
     fails 65 'part/flips.jsonl: has lines whose SHA-256 begins [0-9a-f]{8}, but summary.json states [0-9a-f]{8}; it was cut or changed; restore it' $tool
   done
@@ -230,8 +232,11 @@ for tool in vam-status 'timeout 20 vam-status --watch' vam-check; do
 done
 without; rm part/printer.toml
 is 'the settings are lost, and with them the speed' "$(line_of | sed 's/  missed.*//')" 'ended: done  turn 3.00 of 3 | dose delivered unknown'
-without angles
-holds 'angles are lost: the last image has one' "$(vam-status part | sed 's/.*turn \([0-9.]*\) of 3 .*/\1/') > 2.9"
+for tool in vam-check vam-status; do
+  without angles; fails 65 'part/angles.jsonl: has no angle, but there is light in flips.jsonl, which follows the angles; it was cut; restore it' $tool part
+  rm part/angles.jsonl; fails 65 'part/angles.jsonl: is gone, but there is light in flips.jsonl' $tool part
+done
+sed -i '/"event":"armed"/d' part/events.jsonl; ok 'vam-project alone has no angles' vam-status part
 without flips; sed -i '/"event":"end"/d' part/events.jsonl
 fails 65 'part/flips.jsonl: has 0 bytes of whole lines, but events.jsonl states [0-9]+ at [-0-9T:.]*Z; it was cut; restore it' vam-status part
 sed -i '/"event":"sealed"/d' part/events.jsonl
@@ -244,6 +249,7 @@ for log in events flips angles stage; do
     without; head -c $(($(stat -c %s run/$log.jsonl) * tenths / 10)) run/$log.jsonl >part/$log.jsonl
     wanted=' turn [0-9.]* of '; [ $log != flips ] || wanted='part/flips.jsonl: .*; it was cut; restore it$'
     [ $log != events ] || wanted="$wanted\\|part/events.jsonl: has no seal of flips.jsonl"
+    [ $log != angles ] || wanted="$wanted\\|part/angles.jsonl: ends [0-9.]* s before light"
     [ "$(vam-status part 2>&1 | grep -c "$wanted")" = 1 ] || bad=$((bad + 1))
   done
 done

@@ -142,6 +142,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
     Json facts = facts_of(options.input, hash_of(options.input), full_scale);
     facts["frames"] = live.frames();
     facts["turns"] = turns;
+    facts["from_deg"] = options.live.from_deg;
     if (!options.live.log_seals.empty()) facts["seals"] = true;
     live.note("sinogram", facts);
     std::optional<Renewal> renewal;  // its thread begins before the print hurries

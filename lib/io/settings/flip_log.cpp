@@ -86,8 +86,15 @@ void FlipLog::read() {
     if (proof_ && proof_->check(bytes_, hash_)) sealed_ = count_of(flips_);
   }
   if (!proof_) return;
-  const bool is_lit = !flips_.empty() && flips_.back().frame >= 0;
-  proof_->require_all(bytes_, {is_lit, lit() > 0, flips_.empty() ? 0 : flips_.back().t_s, seals_since_s_});
+  FlipsEnd end{.seals_since_s = seals_since_s_};
+  for (const RunFlip& flip : flips_) {
+    end.lit = flip.frame >= 0;
+    end.t_s = flip.t_s;
+    if (!end.lit) continue;
+    end.lit_s = flip.t_s;
+    if (!end.lit_deg) end.lit_deg = flip.angle_deg;
+  }
+  proof_->require_all(bytes_, end);
 }
 
 std::string FlipLog::place() const { return file_ + ":" + std::to_string(line_); }
@@ -95,6 +102,7 @@ std::string FlipLog::place() const { return file_ + ":" + std::to_string(line_);
 void FlipLog::take(const Json& event) {
   try {
     if (event.at("event") == "display") begin_run();
+    if (event.at("event") == "sinogram" && proof_) proof_->require_armed(event);
     if (event.at("event") == "sinogram" || event.at("event") == "frames") {
       sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale")});
       sinogram_ = count_of(sinograms_) - 1;

@@ -20,6 +20,12 @@ namespace {
 constexpr double most_alone_s = 2;
 // The first seal is written within a second, if the disk is not busy.
 constexpr double most_unsealed_s = 5;
+// Light without a stage angle: vam-project ends it after 0.5 s. It has each line from tee, which has written it to the
+// log by then, so that a kill loses none; a power failure loses those since the log was last brought to the disk, which
+// vam-print does every second, if the disk is not busy.
+constexpr double most_unwatched_s = 5;
+constexpr double same_deg = 1e-3;   // vam-print states four digits
+constexpr double early_deg = 1;     // of the first image, at an angle that is predicted
 constexpr double most_turns = 1e6;  // as stage.turns
 constexpr double most_deg = 360 * most_turns;
 constexpr double most_s = 1e9;  // since the machine started
@@ -43,6 +49,15 @@ double number_of(const Json& entry, const char* key, double low, double high, co
   const std::string is = !entry.contains(key) ? "missing" : std::isnan(number) ? "no number" : format_number(number);
   throw Error{Fault::data, place + ": " + key + " is " + is + ", not between " + format_number(low) + " and " +
                                format_number(high) + changed};
+}
+
+// When the stage was last logged, by the log as it is now; none without whole lines.
+std::optional<double> last_time(const std::string& angles) {
+  constexpr std::streamoff tail_bytes = 65536;
+  std::optional<double> last_s;
+  LogLines lines(angles, tail_bytes);
+  for (std::string text; lines.next(text);) last_s = number_at(entry_of(text, angles), "t_monotonic_s");
+  return last_s;
 }
 
 bool is_hash(const std::string& text) {
@@ -73,8 +88,25 @@ void FlipProof::read_events() {
 }
 
 void FlipProof::take_armed(const Json& event, const std::string& place) {
-  const double turns = number_of(event, "turns", 1, most_turns, place);
-  from_deg_ = number_of(event, "from_deg", 0, 360 * turns, place);
+  turns_ = number_of(event, "turns", 1, most_turns, place);
+  from_deg_ = number_of(event, "from_deg", 0, 360 * turns_, place);
+  sinogram_sha256_ = text_at(event, "sinogram_sha256");
+}
+
+void FlipProof::require_armed(const Json& sinogram) const {
+  if (!from_deg_) return;
+  const auto differ = [this](const std::string& armed, const std::string& began) {
+    throw Error{Fault::data, beside(log_, "events.jsonl") + ": states " + armed + ", but flips.jsonl " + began +
+                                 "; it was changed; restore it"};
+  };
+  const double turns = number_at(sinogram, "turns", turns_);
+  if (turns != turns_) differ(format_number(turns_) + " turns", format_number(turns));
+  const double from_deg = number_at(sinogram, "from_deg", *from_deg_);
+  if (!(std::abs(from_deg - *from_deg_) < same_deg))
+    differ("light from " + format_number(*from_deg_, 8) + " deg", format_number(from_deg, 8));
+  const std::string hash = text_at(sinogram, "sinogram_sha256");
+  if (hash.empty() || sinogram_sha256_.empty() || hash == sinogram_sha256_) return;
+  differ("a sinogram whose SHA-256 begins " + sinogram_sha256_.substr(0, 8), hash.substr(0, 8));
 }
 
 void FlipProof::take_seal(const Json& event, const std::string& place) {
@@ -133,11 +165,30 @@ void FlipProof::require_all(std::uint64_t bytes, const FlipsEnd& end) const {
                 beside(log_, "events.jsonl") + ": has no seal of flips.jsonl, which was sealed every second for " +
                     format_number(end.t_s - *end.seals_since_s, 3) + " s; it was cut or changed; restore it"};
   }
-  if (end.was_lit && !end.lit) return;  // the stage turns on in the dark
-  const std::optional<double> until_s = end.was_lit ? std::optional(end.t_s) : began_s_;
+  if (end.lit_deg && from_deg_ && *end.lit_deg < *from_deg_ - early_deg) {
+    throw Error{Fault::data, beside(log_, "events.jsonl") + ": states light from " + format_number(*from_deg_, 8) +
+                                 " deg, but flips.jsonl has some at " + format_number(*end.lit_deg, 8) +
+                                 " deg; it was changed; restore it"};
+  }
+  require_angles(end);
+  if (end.lit_s && !end.lit) return;  // the stage turns on in the dark
+  const std::optional<double> until_s = end.lit_s ? std::optional(end.t_s) : began_s_;
   if (!until_s || !(last_s_ - *until_s > most_alone_s)) return;
-  require((end.was_lit ? "ends " : "has no light, ") + format_number(last_s_ - *until_s, 3) + " s before " +
+  require((end.lit_s ? "ends " : "has no light, ") + format_number(last_s_ - *until_s, 3) + " s before " +
           last_angle() + "; it was cut; restore it");
+}
+
+// A print that goes on has both logs longer than when the angles were read.
+void FlipProof::require_angles(const FlipsEnd& end) const {
+  if (!from_deg_ || !end.lit_s || *end.lit_s - last_s_ <= most_unwatched_s) return;
+  const std::string angles = beside(log_, "angles.jsonl");
+  const std::optional<double> until_s = last_time(angles);
+  if (until_s && *end.lit_s - *until_s <= most_unwatched_s) return;
+  const std::string problem = until_s ? "ends " + format_number(*end.lit_s - *until_s, 3) + " s before"
+                              : has_regular_file(angles) ? "has no angle, but there is"
+                                                         : "is gone, but there is";
+  throw Error{Fault::data,
+              angles + ": " + problem + " light in flips.jsonl, which follows the angles; it was cut; restore it"};
 }
 
 void FlipProof::require_none() const {

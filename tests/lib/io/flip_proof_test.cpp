@@ -33,6 +33,7 @@ const std::string armed = R"({"event":"armed","turns":3,"from_deg":0})"
                           "\n";
 
 struct Run : scratch::Folder {
+  Run() { (void)write("angles.jsonl", angle(9, -90) + angle(11.9, 80)); }
   std::string read(const std::string& flips) const {
     (void)write("flips.jsonl", flips);
     return error_of([&] { (void)vam::io::read_shown(path.string()); }, Fault::data);
@@ -114,7 +115,7 @@ TEST_CASE("whole lines of the other logs that no print leaves are refused with t
   const std::string lit = flip(10, -1, -3) + flip(11, 0, 2);
   const auto refused = [&](const char* log, const std::string& lines) {
     (void)run.write("events.jsonl", armed);
-    (void)run.write("angles.jsonl", "");
+    (void)run.write("angles.jsonl", angle(9, -90) + angle(11, 1));
     (void)run.write(log, lines);
     return run.read(lit);
   };
@@ -127,4 +128,38 @@ TEST_CASE("whole lines of the other logs that no print leaves are refused with t
   CHECK(has(refused("angles.jsonl", angle(9, -90) + "[]\n"), "angles.jsonl:2: is no entry"));
   CHECK(
       has(refused("angles.jsonl", angle(9, -90) + "{\"t_monotonic_s\":9}\n"), "angles.jsonl:2: angle_deg is missing"));
+}
+
+TEST_CASE("a print that was armed has angles of all its light, but for those that a power failure loses") {
+  const Run run;
+  (void)run.write("events.jsonl", armed);
+  const std::string lit = flip(10, -1, -3) + flip(11, 0, 2) + flip(12, 1, 92) + flip(14, 2, 182);
+  run.holds(lit + flip(14.1, -1, 0));
+  (void)run.write("angles.jsonl", angle(9, -90));
+  run.holds(lit);
+  (void)run.write("angles.jsonl", angle(8.5, -90) + R"({"t_mo)");
+  CHECK(has(run.read(lit), "angles.jsonl: ends 5.5 s before light in flips.jsonl, which follows the angles; it was "));
+  (void)run.write("angles.jsonl", R"({"t_mo)");
+  CHECK(has(run.read(lit + flip(14.1, -1, 0)), "angles.jsonl: has no angle, but there is light in flips.jsonl"));
+  run.holds(flip(10, -1, -3));
+  std::filesystem::remove(run.path / "angles.jsonl");
+  CHECK(has(run.read(lit), "angles.jsonl: is gone, but there is light in flips.jsonl"));
+  (void)run.write("events.jsonl", seal(lit));  // of vam-project alone
+  run.holds(lit);
+}
+
+TEST_CASE("what was armed is what was begun") {
+  const Run run;
+  const auto begun = [](const std::string& facts) {
+    return R"({"t_monotonic_s":9,"event":"sinogram","full_scale":1)" + facts + "}\n" + flip(11, 0, 100);
+  };
+  (void)run.write("events.jsonl", R"({"event":"armed","turns":3,"from_deg":100.5,"sinogram_sha256":"abcdefghij"})"
+                                  "\n");
+  run.holds(begun(R"(,"turns":3,"from_deg":100.5,"sinogram_sha256":"abcdefghij")"));
+  run.holds(begun(""));
+  const std::string log = "events.jsonl: states ";
+  CHECK(has(run.read(begun(R"(,"turns":2)")), log + "3 turns, but flips.jsonl 2; it was changed; restore it"));
+  CHECK(has(run.read(begun(R"(,"turns":3,"from_deg":0)")), log + "light from 100.5 deg, but flips.jsonl 0; it was"));
+  CHECK(has(run.read(begun(R"(,"sinogram_sha256":"b")")), log + "a sinogram whose SHA-256 begins abcdefgh, but "));
+  CHECK(has(run.read(flip(11, 0, 90)), log + "light from 100.5 deg, but flips.jsonl has some at 90 deg; it was"));
 }
