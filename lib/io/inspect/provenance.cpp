@@ -75,6 +75,11 @@ std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
   require_run_logs(path);
   require_resumption(path);
   require_stated_flips(path);
+  if (const auto outcome = logged_outcome(path)) {
+    throw Error{Fault::data, path +
+                                 ": has neither SHA256SUMS nor summary.json, which a print writes when it has ended (" +
+                                 *outcome + ", by events.jsonl); restore both"};
+  }
   const std::string log = (std::filesystem::path(path) / "flips.jsonl").string();
   if (const std::string seals = has_regular_file(log) ? seals_of(path) : ""; !seals.empty())
     return {{"run folder of a print that goes on or was killed: flips.jsonl " + seals, true, "", {}}};

@@ -205,6 +205,17 @@ std::optional<StatedFlips> stated_flips(const std::string& run) {
   return stated;
 }
 
+std::optional<std::string> logged_outcome(const std::string& run) {
+  const std::string path = (std::filesystem::path(run) / "events.jsonl").string();
+  std::optional<std::string> outcome;
+  LogLines events(path);
+  for (std::string text; events.next(text);) {
+    const Json event = parse_distinct(text, path);
+    if (event.is_object() && text_at(event, "event") == "end") outcome = text_at(event, "outcome", "unknown");
+  }
+  return outcome;
+}
+
 void require_stated_flips(const std::string& run, const std::optional<StatedFlips>& stated, long lit,
                           const std::string& sha256) {
   if (!stated) return;

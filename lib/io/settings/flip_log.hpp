@@ -96,6 +96,9 @@ struct StatedFlips {
 };
 /// None where no summary is there yet. Read it before the log, which it closes.
 [[nodiscard]] std::optional<StatedFlips> stated_flips(const std::string& run);
+/// How a print ended, by the last of the events that vam-print writes before the summary; none while it goes on, or of
+/// one that was killed.
+[[nodiscard]] std::optional<std::string> logged_outcome(const std::string& run);
 /// Throws Fault::data where a log differs from what was stated: a number of lit flips with both numbers, other lines by
 /// the beginnings of both hashes. A log that is gone has neither.
 void require_stated_flips(const std::string& run, const std::optional<StatedFlips>& stated, long lit,
