@@ -69,11 +69,17 @@ std::string link_problem(const std::string& folder, const std::string& name) {
   return "";
 }
 
+// What is wrong with a file; a lack of the system, as of open files, says nothing of it.
+std::string problem_of_file(const Error& error) {
+  if (error.fault != Fault::data && error.fault != Fault::no_input) throw error;
+  return error.what();
+}
+
 std::string gone(const std::string& folder, const std::string& name) {
   try {
     if (has_regular_file(path_in(folder, name))) return link_problem(folder, name);
   } catch (const Error& error) {  // what stands in its place
-    return error.what();
+    return problem_of_file(error);
   }
   return path_in(folder, name) + ": is gone, but " + list_name + " lists it; restore it";
 }
@@ -92,7 +98,7 @@ std::string sinogram_problem(const std::string& folder, bool by_name) {
   try {
     if (!has_regular_file(path) || by_name) return "";
   } catch (const Error& error) {
-    if (error.fault != Fault::no_input) return error.what();
+    if (error.fault != Fault::no_input) return problem_of_file(error);
     std::error_code ignored;
     warn(path + ": links to " + fs::read_symlink(path, ignored).string() +
          ", which cannot be read, so that the sinogram was not verified; restore it, or remove the link");
@@ -102,7 +108,7 @@ std::string sinogram_problem(const std::string& folder, bool by_name) {
     if (!is_link(path) && !states_sinogram(folder)) return unlisted_problem(folder, sinogram_name);
     require_sinogram_of(folder, path);
   } catch (const Error& error) {
-    return error.what();
+    return problem_of_file(error);
   }
   return "";
 }
