@@ -325,6 +325,9 @@ dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o 
 ok 'the dose of a run' dose whole.dose '--shown whole'
 ok 'that of a killed one' dose killed.dose '--shown killed'
 ok 'and of both parts' dose both.dose '--shown killed --shown rest/flips.jsonl'
+is 'without a word' "$(cat .log/err)" ''
+ok 'that of the rest alone' dose rest.dose '--shown rest'
+is 'with one' "$(cat .log/err)" 'vam-dose: warning: rest: resumes killed, whose light is not counted; give it, too: --shown killed'
 holds 'a whole print delivered its turns' "($(json whole.dose.json shown_turns) - 2) ^ 2 < 0.02 ^ 2"
 holds 'a killed one fewer' "$(json killed.dose.json shown_turns) > 1.2 && $(json killed.dose.json shown_turns) < 1.9"
 # One image of 480 at each end of either part; a blank of a busy machine is an image more or less.

@@ -39,7 +39,8 @@ std::vector<std::string> description() {
       "intensity, which are converted. Where a print showed several sinograms (vam-project --frames-from), each "
       "SINOGRAM "
       "counts for the time in which it was shown. An image on which the projector hung counts at the angle "
-      "where it began. The report then contains dose_shown instead of "
+      "where it began. A warning names the print that a resumption continues if it is not given. The report then "
+      "contains dose_shown instead of "
       "dose_per_turn, and shown_turns, the mean number of turns over the stage angles.",
       "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print (resin.diffusion_mm2_s) "
       "blur the volume; the dose beyond its faces is assumed to be 0."};

@@ -11,10 +11,12 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
+#include "io/settings/resumption.hpp"
 #include "io/settings/run_sums.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
@@ -53,6 +55,16 @@ bool is_of_run(const std::string& run) {
 // What was edited since the print ended states another exposure than was delivered; a log alone may lie anywhere.
 void require_unchanged(const std::string& run) {
   if (is_of_run(run)) io::require_run_logs(folder_of(run));
+}
+
+// A resumption shows the rest only: without the run that it resumes the dose is too low.
+void warn_of_rest(const std::vector<std::string>& runs) {
+  for (const std::string& run : runs) {
+    const std::string first = is_of_run(run) ? io::resumes_of(folder_of(run)) : "";
+    const auto is_first = [&](const std::string& one) { return io::resumes(folder_of(run), folder_of(one)); };
+    if (first.empty() || std::any_of(runs.begin(), runs.end(), is_first)) continue;
+    warn(run + ": resumes " + first + ", whose light is not counted; give it, too: --shown " + first);
+  }
 }
 
 // The settings that a run froze; empty: it is a log alone, or they are gone.
@@ -120,6 +132,7 @@ void take_sinogram(const cli::App& app, Options& options) {
 void take_full_scale(Options& options) {
   if (options.shown.empty()) return;
   for (const std::string& one : options.shown) require_unchanged(one);
+  warn_of_rest(options.shown);
   const std::string& run = options.shown.front();
   const std::string& sinogram = options.inputs.front();
   const double stated = io::read_showing(run, sinogram).full_scale;
