@@ -72,9 +72,9 @@ inline constexpr double farthest_point = 1e12;
 /// Whether text begins with so many finite numbers, between blanks.
 [[nodiscard]] bool begins_with_numbers(std::string_view text, int count);
 
-/// An OBJ file with its continued lines joined, its faces as indices and blanks. Throws MeshProblem for a vertex without
-/// three coordinates, which CGAL takes for the end of the file, and for a corner of a face that is no index of a
-/// vertex, which CGAL leaves out or takes for another.
+/// An OBJ file with its continued lines joined, its faces as indices and blanks. Throws MeshProblem for a vertex
+/// without three coordinates, which CGAL takes for the end of the file, and for a corner of a face that is no index of
+/// a vertex, which CGAL leaves out or takes for another.
 [[nodiscard]] std::string checked_obj(const std::string& bytes);
 
 /// By CGAL; each throws MeshProblem when CGAL gives up.
