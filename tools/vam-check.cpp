@@ -126,7 +126,12 @@ void check(const Options& options) {
       if (!finding.seal.empty()) names.emplace(finding.seal, io::input_name(path));
     }
   }
-  for (const std::string& problem : io::unmarked_resumptions(runs_of(found))) damaged.push_back({Fault::data, problem});
+  try {
+    for (const std::string& problem : io::unmarked_resumptions(runs_of(found)))
+      damaged.push_back({Fault::data, problem});
+  } catch (const Error& error) {  // in logs that --fast has not read
+    damaged.push_back(error);
+  }
   std::string text;
   for (const std::string& path : options.files) {
     if (const auto findings = found.find(path); findings != found.end()) text += report(path, findings->second, names);

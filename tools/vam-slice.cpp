@@ -110,7 +110,8 @@ void write(const cli::App& app, const Options& options, const model::Printer& pr
 /// With the slices below and above in which the insert shades light that climbs to those of the grid.
 model::Grid with_shade(const model::Grid& grid, const model::Printer& printer, const solid::Part& part,
                        const solid::Part& insert) {
-  const light::Margin lit = light::lit_margin(printer, grid, optics::judged_radius_mm(printer, part.extent.radius_mm));
+  const double farthest_mm = std::max(part.extent.radius_mm, insert.extent.radius_mm);
+  const light::Margin lit = light::lit_margin(printer, grid, optics::judged_radius_mm(printer, farthest_mm));
   const auto slices = [&](double mm, int most) {
     return static_cast<int>(std::clamp(std::ceil(mm / grid.voxel_mm), 0.0, static_cast<double>(most)));
   };

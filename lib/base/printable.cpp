@@ -24,8 +24,10 @@ std::size_t character_bytes(std::string_view text) {
   return continues(1) && continues(2) && continues(3) && !overlong && !beyond ? 4 : 0;
 }
 
-/// Marks that turn the direction of text, and ends of lines: U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069.
+/// Marks that turn the direction of text, and ends of lines: U+061C, U+200E, U+200F, U+2028 to U+202E, U+2066 to
+/// U+2069.
 bool moves_text(std::string_view character) {
+  if (character == "\xd8\x9c") return true;
   const auto last = static_cast<unsigned char>(character.back());
   if (character.starts_with("\xe2\x80")) return last == 0x8e || last == 0x8f || (last >= 0xa8 && last <= 0xae);
   return character.starts_with("\xe2\x81") && last >= 0xa6 && last <= 0xa9;

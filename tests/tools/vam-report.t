@@ -78,6 +78,8 @@ for words in 'Print and design' 'section across z' '5.2 .* 0.052 mm (design 5 mm
   'top.flatness_mm' 'The last bin holds all beyond'; do
   ok "it has: $words" grep -q -- "$words" inspection.html
 done
+ok 'a page of the design and the report' vam-report part.off inspection.json -o design.html
+is 'the design has no uncertainty' "$(grep -c '0.052 mm' design.html)" 0
 # A step at half height: the section would follow its face.
 {
   echo 'OFF 16 24 0'

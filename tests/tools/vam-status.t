@@ -110,7 +110,7 @@ for by in "$PWD/part" part .; do
 done
 rm part/resumed.json; mkdir part/resumed.json; fails 65 'part/resumed.json: is not a regular file' vam-check part
 spoil; rm part/SHA256SUMS part/summary.json
-fails 65 'part: has neither SHA256SUMS nor summary.json, which a print writes when it has ended .done, by events.jsonl.; restore both' vam-check part
+fails 65 'part: has no SHA256SUMS and no whole summary.json, which a print writes within a minute of its end .done, by events.jsonl.; wait, or restore both' vam-check part
 # A lack of the system says nothing of the folder.
 prlimit --nofile=4 vam-check run 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&- >said 2>err
 is 'too few open files are no damage' "$? $(cat said) $(grep -c 'Too many open files; raise the limit' err)" '71  1'

@@ -47,8 +47,8 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
 
 /// Of a grey target.
 std::string grey_verdict(const model::DoseMetrics& m) {
-  return (m.ver == 0 ? "met: " : "not met: ") + format_number(100 * (1 - m.ver), 4) +
-         " % of the prescribed voxels are within the band of the target; vam-score --grey-target judges the dose";
+  return (m.ver == 0 ? std::string("met: no") : "not met: " + format_number(100 * m.ver, 2) + " % of the") +
+         " prescribed voxels are outside the band of the target; vam-score --grey-target judges the dose";
 }
 
 /// The weights of the proof, positive in the void, negative in the part, the largest 1 or -1.

@@ -87,7 +87,8 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
   if (!sources.meshes.empty()) {
     const std::vector<ShownMesh> meshes = read_meshes(sources.meshes);
     made += meshes_view(meshes, inspection ? std::optional(inspection->limit_mm) : std::nullopt);
-    made += mesh_sections(meshes, inspection ? std::optional(inspection->errors) : std::nullopt);
+    const bool has_print = !meshes.empty() && !meshes.front().colours.empty();
+    made += mesh_sections(meshes, inspection && has_print ? std::optional(inspection->errors) : std::nullopt);
   }
   progress.tick();
   if (inspection) made += inspection->histogram;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
@@ -43,7 +45,10 @@ std::vector<File> read_files(std::span<const std::string> paths) {
   constexpr std::size_t most_bytes = std::size_t{1} << 24;
   std::vector<File> files{read_file(paths.front())};
   std::size_t bytes = files.front().bytes.size();
-  for (std::size_t i = 1; i < std::min(paths.size(), most_files) && bytes < most_bytes; ++i) {
+  for (std::size_t i = 1; i < std::min(paths.size(), most_files); ++i) {
+    std::error_code unknown;
+    const std::uintmax_t more = std::filesystem::file_size(paths[i], unknown);
+    if (unknown || bytes + more > most_bytes) break;
     try {
       files.push_back(read_file(paths[i]));
     } catch (const Error&) {

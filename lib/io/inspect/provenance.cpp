@@ -76,9 +76,12 @@ std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
   require_resumption(path);
   require_stated_flips(path);
   if (const auto outcome = logged_outcome(path)) {
-    throw Error{Fault::data, path +
-                                 ": has neither SHA256SUMS nor summary.json, which a print writes when it has ended (" +
-                                 *outcome + ", by events.jsonl); restore both"};
+    throw Error{Fault::data,
+                path +
+                    ": has no SHA256SUMS and no whole summary.json, which a print writes within a minute of "
+                    "its end (" +
+                    *outcome + ", by events.jsonl); wait, or restore both; if it was killed in that " +
+                    "minute, nothing of it can be verified"};
   }
   const std::string log = (std::filesystem::path(path) / "flips.jsonl").string();
   if (const std::string seals = has_regular_file(log) ? seals_of(path) : ""; !seals.empty())

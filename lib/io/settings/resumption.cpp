@@ -69,10 +69,17 @@ bool has_light(const std::string& run) {
   return log.lit() > 0;
 }
 
+// Of a mark that no print has left. Where the events state the resumption, too, removing it is no way out.
+std::string remedy_of(const std::string& run) {
+  const std::string by = ties_of(run).resumed_by;
+  return by.empty() ? "; restore it, or remove it if the rest was not printed"
+                    : "; restore it: {\"utc\": TIME, \"resumed_by\": FOLDER}, by events.jsonl that of " + by;
+}
+
 std::string mark_problem(const std::string& run, const std::string& path) {
-  constexpr const char* remedy = "; restore it, or remove it if the rest was not printed";
+  const std::string remedy = remedy_of(run);
   std::error_code ignored;
-  if (fs::is_symlink(fs::symlink_status(path, ignored))) return path + ": is a link, which no print leaves; remove it";
+  if (fs::is_symlink(fs::symlink_status(path, ignored))) return path + ": is a link, which no print leaves" + remedy;
   try {
     constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
     const Json mark = parse_distinct(has_regular_file(path) ? read_all(path, Content::text, most_bytes) : "", path);
@@ -112,6 +119,8 @@ bool resumes(const std::string& run, const std::string& earlier) {
   const Ties ties = ties_of(run);
   if (ties.resumes.empty() || is_same(run, earlier)) return false;
   if (is_same(ties.resumes, earlier) || is_same(fs::path(run) / ".." / ties.resumes, earlier)) return true;
+  std::error_code ignored;
+  if (fs::exists(ties.resumes, ignored) || fs::exists(fs::path(run) / ".." / ties.resumes, ignored)) return false;
   return name_of(ties.resumes) == name_of(earlier) && ties.sinogram_sha256 == ties_of(earlier).sinogram_sha256;
 }
 
