@@ -69,29 +69,28 @@ bool has_light(const std::string& run) {
   return log.lit() > 0;
 }
 
-// Of a mark that no print has left. Where the events state the resumption, too, removing it is no way out.
-std::string remedy_of(const std::string& run) {
-  const std::string by = ties_of(run).resumed_by;
-  return by.empty() ? "; restore it, or remove it if the rest was not printed"
-                    : "; restore it: {\"utc\": TIME, \"resumed_by\": FOLDER}, by events.jsonl that of " + by;
-}
-
+// What is wrong with the mark itself; empty: nothing.
 std::string mark_problem(const std::string& run, const std::string& path) {
-  const std::string remedy = remedy_of(run);
   std::error_code ignored;
-  if (fs::is_symlink(fs::symlink_status(path, ignored))) return path + ": is a link, which no print leaves" + remedy;
+  if (fs::is_symlink(fs::symlink_status(path, ignored))) return path + ": is a link, which no print leaves";
   try {
     constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
     const Json mark = parse_distinct(has_regular_file(path) ? read_all(path, Content::text, most_bytes) : "", path);
     const std::string by = text_at(mark, "resumed_by");
-    if (!by.empty() && names_itself(by, run))
-      return path + ": names its own folder as the print that resumed it" + remedy;
+    if (!by.empty() && names_itself(by, run)) return path + ": names its own folder as the print that resumed it";
     if (!by.empty() && !text_at(mark, "utc").empty()) return "";
   } catch (const Error& error) {
     if (error.fault != Fault::data) throw;
     return error.what();
   }
-  return path + ": does not say when and by which print this one was resumed (utc, resumed_by)" + remedy;
+  return path + ": does not say when and by which print this one was resumed (utc, resumed_by)";
+}
+
+// Where the events state the resumption, too, removing the mark is no way out.
+std::string remedy_of(const std::string& resumed_by) {
+  return resumed_by.empty()
+             ? "; restore it, or remove it if the rest was not printed"
+             : "; restore it: {\"utc\": TIME, \"resumed_by\": FOLDER}, by events.jsonl that of " + resumed_by;
 }
 
 }  // namespace
@@ -99,13 +98,16 @@ std::string mark_problem(const std::string& run, const std::string& path) {
 std::string resumption_problem(const std::string& run) {
   const std::string path = (fs::path(run) / mark_name).string();
   std::error_code ignored;
-  if (fs::exists(fs::symlink_status(path, ignored))) return mark_problem(run, path);
+  const bool is_there = fs::exists(fs::symlink_status(path, ignored));
+  const std::string problem = is_there ? mark_problem(run, path) : "";
+  if (is_there && problem.empty()) return "";
   try {
     const std::string by = ties_of(run).resumed_by;
+    if (is_there) return problem + remedy_of(by);
     return by.empty() ? "" : path + ": is gone, but events.jsonl states that " + by + " resumed this print; restore it";
   } catch (const Error& error) {
     if (error.fault != Fault::data) throw;
-    return error.what();
+    return is_there ? problem + remedy_of("") : error.what();
   }
 }
 
