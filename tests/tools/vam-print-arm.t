@@ -184,6 +184,8 @@ done
 ok 'both parts are verified' vam-check killed rest
 mkdir archive; cp -r killed archive; rm archive/killed/resumed.json; sed -i '/"event":"resumed"/d' archive/killed/events.jsonl
 fails 65 'archive/killed/resumed.json: is gone, but rest/events.jsonl states that it resumes this print; restore it$' vam-check archive/killed rest
+sed -i '/"event":"armed"/s/"utc":"202/"utc":"201/' archive/killed/events.jsonl
+ok 'another print by this name was not resumed' vam-check archive/killed rest
 # One that is given up before light has given nothing.
 cp -r again early; printf '{"utc' >>early/events.jsonl
 (exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 9 --uncalibrated --resume early --run dark) 2>errors &

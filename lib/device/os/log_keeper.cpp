@@ -62,16 +62,13 @@ LogKeeper::~LogKeeper() {
 }
 
 void LogKeeper::run() {
+  attempt([this] { seal(); });  // of nothing yet: a busy disk delays the next one, so that none would look like a cut
   sync_folder_of(path_);
   std::unique_lock lock(access_);
   for (bool last = false; !last;) {
     last = ended_;
     lock.unlock();
-    try {
-      keep();
-    } catch (const std::exception& error) {
-      warn_once(error.what());
-    }
+    attempt([this] { keep(); });
     lock.lock();
     if (!last) changed_.wait_for(lock, between, [this] { return ended_; });
   }
@@ -99,11 +96,24 @@ void LogKeeper::keep() {
   if (!read_on()) return;
   if (fdatasync(fd_) != 0 && errno != EINVAL && errno != EROFS)
     throw Error{Fault::io, path_ + ": cannot be brought to the disk (" + std::strerror(errno) + ")"};
+  seal();
+  if (seals_) seals_->sync();
+}
+
+void LogKeeper::seal() {
   if (!seals_) return;
   (*seals_)("sealed", {{"log", std::filesystem::path(path_).filename().string()},
                        {"bytes", bytes_},
                        {"sha256", Sha256(hash_).digest()}});
-  seals_->sync();
+}
+
+template <class Step>
+void LogKeeper::attempt(const Step& step) {
+  try {
+    step();
+  } catch (const std::exception& error) {
+    warn_once(error.what());
+  }
 }
 
 void LogKeeper::warn_once(const std::string& problem) {

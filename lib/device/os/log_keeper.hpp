@@ -16,8 +16,9 @@ namespace vam::device {
 class EventLog;
 
 /// Brings a log onto the disk, once a second and at the end, from a thread of its own; then appends to another log, if
-/// one is given, {"event": "sealed", "log": its name, "bytes": of its whole lines, "sha256": of these}. So a log that
-/// was cut later, or lost lines, is found out. What is no regular file is left alone. Warns once of a disk that fails.
+/// one is given, {"event": "sealed", "log": its name, "bytes": of its whole lines, "sha256": of these}, the first of
+/// none, before the disk is waited for. So a log that was cut later, or lost lines, is found out. What is no regular
+/// file is left alone. Warns once of a disk that fails.
 class LogKeeper {
  public:
   explicit LogKeeper(std::string log, const std::string& seals = "");
@@ -30,6 +31,9 @@ class LogKeeper {
   void run();
   bool read_on();
   void keep();
+  void seal();
+  template <class Step>
+  void attempt(const Step& step);
   void warn_once(const std::string& problem);
 
   std::string path_;

@@ -18,7 +18,7 @@ namespace {
 // What a stage still turns when the projector's tool has ended: vam-print ends it within a second, or it ends by
 // itself; and a power failure loses up to a second of flips.
 constexpr double most_alone_s = 2;
-// The first seal is written within a second, if the disk is not busy.
+// The first seal, of no bytes, precedes the light; a power failure loses it if the disk was busy.
 constexpr double most_unsealed_s = 5;
 // Light without a stage angle: vam-project ends it after 0.5 s. It has each line from tee, which has written it to the
 // log by then, so that a kill loses none; a power failure loses those since the log was last brought to the disk, which

@@ -20,9 +20,11 @@ constexpr const char* mark_name = "resumed.json";
 
 // What the events of a run say of it and of others.
 struct Ties {
+  std::string armed_utc;
   std::string sinogram_sha256;
   std::string resumes;
-  std::string resumed_by;  // empty: not resumed
+  std::string resumes_utc;  // when that was armed; a former version does not say
+  std::string resumed_by;   // empty: not resumed
 };
 
 Ties ties_of(const std::string& run) {
@@ -34,8 +36,10 @@ Ties ties_of(const std::string& run) {
     if (!event.is_object()) continue;
     const std::string name = text_at(event, "event");
     if (name == "armed") {
+      ties.armed_utc = text_at(event, "utc");
       ties.sinogram_sha256 = text_at(event, "sinogram_sha256");
       ties.resumes = text_at(event, "resumes");
+      ties.resumes_utc = text_at(event, "resumes_utc");
     }
     if (name == "resumed") ties.resumed_by = text_at(event, "by", "another print");
     if (name == "released") ties.resumed_by = "";
@@ -120,8 +124,11 @@ std::string resumes_of(const std::string& run) { return ties_of(run).resumes; }
 bool resumes(const std::string& run, const std::string& earlier) {
   const Ties ties = ties_of(run);
   if (ties.resumes.empty() || is_same(run, earlier)) return false;
+  const Ties first = ties_of(earlier);
+  if (!ties.resumes_utc.empty())
+    return ties.resumes_utc == first.armed_utc && ties.sinogram_sha256 == first.sinogram_sha256;
   if (is_same(ties.resumes, earlier) || is_same(fs::path(run) / ".." / ties.resumes, earlier)) return true;
-  return name_of(ties.resumes) == name_of(earlier) && ties.sinogram_sha256 == ties_of(earlier).sinogram_sha256;
+  return name_of(ties.resumes) == name_of(earlier) && ties.sinogram_sha256 == first.sinogram_sha256;
 }
 
 std::vector<std::string> unmarked_resumptions(const std::vector<std::string>& runs) {

@@ -108,6 +108,9 @@ TEST_CASE("a log that states that it is sealed has seals after some seconds") {
                            "\n";
   run.holds(head + flip(10, -1, -3) + flip(13.9, 0, 2));
   CHECK(has(run.read(head + flip(10, -1, -3) + flip(14.1, 0, 2)), "events.jsonl: has no seal of flips.jsonl"));
+  (void)run.write("events.jsonl", armed + seal(""));  // killed while the disk was busy
+  (void)run.write("angles.jsonl", angle(9, -90) + angle(14, 2));
+  run.holds(head + flip(10, -1, -3) + flip(14.1, 0, 2));
 }
 
 TEST_CASE("whole lines of the other logs that no print leaves are refused with their number") {
