@@ -35,16 +35,18 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
       print_(width, height, threshold, PrintPieces::least_voxels),
       of_part_(width, height, half_surface),
       of_print_(width, height, threshold),
-      of_more_(width, height, (1 + PrintPieces::rough) * threshold),
-      of_less_(width, height, (1 - PrintPieces::rough) * threshold) {}
+      of_firm_(width, height, threshold),
+      smooth_(width, height, threshold) {}
 
 void PrintPieceCounter::add(int count, const float* coverage, const float* dose) {
   const std::size_t size = product(width_, height_);
   std::vector<Slice> slices(count, Slice(size));
+  std::vector<float> firm(product(count, size));
   parallel_for(count, [&](int k) {
     const std::size_t first = product(k, size);
     for (std::size_t i = 0; i < size; ++i) {
       slices[k][i] = printed_bits(coverage[first + i], static_cast<double>(dose[first + i]) >= threshold_);
+      firm[first + i] = firm_dose(coverage[first + i], dose[first + i], threshold_);
     }
   });
   std::vector<const Slice*> all;
@@ -62,8 +64,10 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
     shut_.add(slice.gap);
   }
   of_part_.add(count, coverage);
-  const std::array<TunnelCounter*, 4> tunnels{&of_part_, &of_print_, &of_more_, &of_less_};
-  for (TunnelCounter* counter : {&of_print_, &of_more_, &of_less_}) counter->add(count, dose);
+  const std::vector<float> smoothed = smooth_.add(count, coverage, dose);
+  of_print_.add(static_cast<int>(smoothed.size() / size), smoothed.data());
+  of_firm_.add(count, firm.data());
+  const std::array<TunnelCounter*, 3> tunnels{&of_part_, &of_print_, &of_firm_};
   const auto add_pieces = [&](FieldPieces& field, const float* values) {
     for (int k = 0; k < count; ++k) field.add({values + product(k, size), values + product(k + 1, size)});
   };
@@ -95,9 +99,18 @@ PrintPieces PrintPieceCounter::found() const {
     broken.add(top.part);
     shut.add(top.gap);
   }
-  const std::int64_t likewise = std::max(of_more_.tunnels(), of_less_.tunnels());
-  const std::int64_t holes = std::min(of_print_.tunnels(), likewise) - of_part_.tunnels();
-  return {part_.count(), part_at_half_.count(), print_.count(), broken.voxels(), shut.voxels(), holes};
+  TunnelCounter of_print = of_print_;
+  const std::vector<float> rest = smooth_.rest();
+  of_print.add(static_cast<int>(rest.size() / product(width_, height_)), rest.data());
+  of_print.connect();
+  const std::int64_t of_part = of_part_.tunnels();
+  return {.part = part_.count(),
+          .part_at_half = part_at_half_.count(),
+          .print = print_.count(),
+          .broken = broken.voxels(),
+          .shut = shut.voxels(),
+          .holes = of_print.tunnels() - of_part,
+          .firm_holes = of_firm_.tunnels() - of_part};
 }
 
 }  // namespace vam::model

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/pieces.hpp"
+#include "model/smooth_print.hpp"
 #include "model/torn.hpp"
 #include "model/tunnels.hpp"
 
@@ -15,23 +16,25 @@ namespace vam::model {
 
 struct PrintPieces {
   static constexpr std::int64_t least_voxels = 8;  // of a piece: smaller ones are rounded tips and edges
-  static constexpr double rough = 0.02;            // of the threshold: holes that are there by less are roughness
-  int part = 0;             // of voxels with a trace of it that share a corner: thin rods hold together
-  int part_at_half = 0;     // of the coverage at a half: narrow gaps part it
-  int print = 0;            // of the dose at the threshold
-  std::int64_t broken = 0;  // voxels of torn sets of the part [TornSets]
-  std::int64_t shut = 0;    // and of gaps
-  std::int64_t holes = 0;   // tunnels of the print, at a threshold of 2 % more or less, too, beyond those of the part
-  int solids = 0;           // of the part's own surface; 0: not known
-  int specks = 0;           // of these, so small that they may not count
+  int part = 0;                 // of voxels with a trace of it that share a corner: thin rods hold together
+  int part_at_half = 0;         // of the coverage at a half: narrow gaps part it
+  int print = 0;                // of the dose at the threshold
+  std::int64_t broken = 0;      // voxels of torn sets of the part [TornSets]
+  std::int64_t shut = 0;        // and of gaps
+  std::int64_t holes = 0;       // tunnels of the print [SmoothPrint] beyond those of the part
+  std::int64_t firm_holes = 0;  // of these, on which 2 % of the dose do not decide [firm_dose]
+  int solids = 0;               // of the part's own surface; 0: not known
+  int specks = 0;               // of these, so small that they may not count
 
   [[nodiscard]] bool loses_walls() const { return broken > 0; }
   [[nodiscard]] bool shuts_gaps() const { return shut > 0; }
-  [[nodiscard]] bool has_holes() const { return holes > 0; }
+  [[nodiscard]] bool has_holes() const { return firm_holes > 0; }
+  [[nodiscard]] bool may_have_holes() const { return holes > 0; }
   /// In how many pieces the part is, as far as its surface or the two numbers tell.
   [[nodiscard]] int fewest() const { return solids > 0 ? solids - specks : std::min(part, part_at_half); }
   [[nodiscard]] int most() const { return solids > 0 ? solids : std::max(part, part_at_half); }
-  [[nodiscard]] bool is_certain() const { return solids > 0 || part == part_at_half; }
+  [[nodiscard]] bool knows_pieces() const { return solids > 0 || part == part_at_half; }
+  [[nodiscard]] bool is_certain() const { return knows_pieces() && !may_have_holes(); }
   [[nodiscard]] bool is_in_other_pieces() const { return print < fewest() || print > most(); }
   [[nodiscard]] bool is_as_part() const {
     return !is_in_other_pieces() && !loses_walls() && !shuts_gaps() && !has_holes();
@@ -54,9 +57,10 @@ class PrintPieceCounter {
   double threshold_;
   PieceCounter part_;
   FieldPieces part_at_half_, print_;
-  TunnelCounter of_part_, of_print_, of_more_, of_less_;  // at the threshold, and 2 % more and less
-  std::vector<Slice> last_;                               // up to two
-  TornSets broken_{Torn::part}, shut_{Torn::gap};         // in all but the last slice
+  TunnelCounter of_part_, of_print_, of_firm_;
+  SmoothPrint smooth_;
+  std::vector<Slice> last_;                        // up to two
+  TornSets broken_{Torn::part}, shut_{Torn::gap};  // in all but the last slice
 };
 
 }  // namespace vam::model

@@ -76,6 +76,8 @@ const std::vector<Score::Figure>& Score::figure_list() {
        [](const Score& score) { return of(score.pieces_, &PrintPieces::shut); }},
       {"holes", "holes of the print, through walls or between bridges over gaps, beyond those of the part",
        [](const Score& score) { return of(score.pieces_, &PrintPieces::holes); }},
+      {"firm_holes", "of these, those on which 2 % of the dose do not decide",
+       [](const Score& score) { return of(score.pieces_, &PrintPieces::firm_holes); }},
       {"prints", "1 if the part will print as designed, 0 if it will not or may not",
        [](const Score& score) { return answer(score.verdict()) == Answer::yes ? 1.0 : 0.0; }},
       {"trimmed_ver", "ver with the extremes trimmed", [](const Score& score) { return score.trimmed().ver; }},

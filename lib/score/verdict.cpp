@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/verdict.hpp"
 
+#include <algorithm>
+
 #include "base/json.hpp"
 #include "base/text.hpp"
 
@@ -24,7 +26,7 @@ std::string pieces_text(const model::PrintPieces& pieces) {
   if (pieces.is_in_other_pieces()) {
     text += "; the print is in " + in_pieces(pieces.print) + ", the part in " +
             std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part);
-  } else if (!pieces.is_certain()) {
+  } else if (!pieces.knows_pieces()) {
     text += "; the print is in " + in_pieces(pieces.print) +
             ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) + " or " +
             std::to_string(pieces.part_at_half);
@@ -37,9 +39,11 @@ std::string pieces_text(const model::PrintPieces& pieces) {
     text +=
         "; gaps are shut: " + std::to_string(pieces.shut) + " voxels that the part fills by less than a quarter cure";
   }
-  if (pieces.has_holes()) {
-    text += "; walls are pierced or gaps bridged: the print has " + std::to_string(pieces.holes) +
-            (pieces.holes == 1 ? " hole" : " holes") + " that the part has not";
+  if (pieces.may_have_holes() || pieces.has_holes()) {
+    const auto count = std::max(pieces.holes, pieces.firm_holes);
+    text += std::string("; walls ") + (pieces.has_holes() ? "are" : "may be") +
+            " pierced or gaps bridged: the print has " + std::to_string(count) + (count == 1 ? " hole" : " holes") +
+            " that the part has not" + (pieces.has_holes() ? "" : ", on which 2 % of the dose decide");
   }
   return text;
 }
@@ -132,6 +136,7 @@ void add_to(Json& figures, const Verdict& verdict) {
   figures["broken_voxels"] = verdict.pieces->broken;
   figures["shut_voxels"] = verdict.pieces->shut;
   figures["holes"] = verdict.pieces->holes;
+  figures["firm_holes"] = verdict.pieces->firm_holes;
 }
 
 }  // namespace vam::score

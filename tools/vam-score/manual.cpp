@@ -20,7 +20,8 @@ std::vector<std::string> description() {
       "It will not print as designed if walls or rods are too thin for the voxels (more than 0.1 % of the part, or 2 "
       "voxels of it farther than 3 voxels from any half covered voxel), if gaps are too narrow for them, or if the "
       "print "
-      "has broken walls, holes that the part has not, shut gaps, or more or fewer pieces than the part can have. It "
+      "has broken walls, firm holes that the part has not, shut gaps, or more or fewer pieces than the part can have. "
+      "It "
       "may print if "
       "vam-slice found "
       "walls or gaps thinner than 1.5 voxels, ridges and grooves as fine, or bores without a voxel that is wholly "
@@ -41,8 +42,10 @@ std::vector<std::string> description() {
       "end of a fin; less is the tip of a sharp edge. Sets of voxels less than a quarter part that cure are counted in "
       "the same way (shut_voxels), by the void that stays liquid, from three on. "
       "Holes of the print beyond those of the part (holes) are tunnels, through walls and between bridges over "
-      "gaps, counted by Euler characteristics of the dose and of the coverage at a half; those that a threshold of 2 % "
-      "more or less does not have are roughness. The threshold of all these is that of --print "
+      "gaps, counted by Euler characteristics of the dose and of the coverage at a half; a dose "
+      "within 2 % of the threshold counts as the part has it, but in walls and gaps of up to two voxels. If it does "
+      "there, too, those holes are left on which no 2 % of the dose decide (firm_holes); of others the print may "
+      "print. The threshold of all these is that of --print "
       "(print_threshold in the report, in the dose's unit), not the best threshold of the table.",
       "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures use "
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",

@@ -261,6 +261,7 @@ TEST_CASE("holes of a thin wall are holes, and no broken voxels") {
   };
   CHECK(found(4).broken == 0);
   CHECK(found(4).holes == 3);
+  CHECK(found(4).firm_holes == 3);
   CHECK(found(1).broken == 0);
   CHECK(found(1).holes == 1);
 }

@@ -110,12 +110,19 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .shut = 8};
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; gaps are shut: 8 voxels that the part fills by less than a quarter cure"));
-  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .holes = 5};
+  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .holes = 5, .firm_holes = 2};
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; walls are pierced or gaps bridged: the print has 5 holes that the part has not"));
-  cut.pieces->holes = -2;  // cavities of the print, or less is known of the part
+  cut.pieces->holes = cut.pieces->firm_holes = -2;  // cavities of the print, or less is known of the part
   CHECK(answer(cut) == Answer::yes);
+  cut.pieces->holes = 5;
+  cut.pieces->firm_holes = 0;
+  CHECK(answer(cut) == Answer::unsure);
+  CHECK(
+      words(cut).ends_with("; walls may be pierced or gaps bridged: the print has 5 holes that the part has not, on "
+                           "which 2 % of the dose decide"));
   cut.pieces->holes = 1;
+  cut.pieces->firm_holes = 1;
   CHECK(words(cut).ends_with("the print has 1 hole that the part has not"));
   cut.whole.pw = -0.1;  // pieces of what does not print at all say nothing
   CHECK(words(cut).find("pierced") == std::string::npos);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The dose of a print without the roughness of its faces, which has handles that are no holes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace vam::model {
+
+/// A dose within 2 % of the threshold is moved to the side of it on which the part has the voxel.
+[[nodiscard]] float firm_dose(float coverage, float dose, double threshold);
+
+/// The same, but in walls and gaps of up to two voxels, where this little dose decides on holes and bridges: a voxel is
+/// in one if up to two in a row, on a line through it and a neighbour, are between void, or between part, as none is
+/// beside an even face. Slice by slice, from the lowest up; beyond the volume is void. Memory: four slices.
+class SmoothPrint {
+ public:
+  /// threshold: more than 0.
+  SmoothPrint(int width, int height, double threshold) : width_(width), height_(height), threshold_(threshold) {}
+  /// The next slices, row-major: coverage 0...1, and dose. Returns the doses of those whose neighbours are known.
+  [[nodiscard]] std::vector<float> add(int count, const float* coverage, const float* dose);
+  /// Those of the last ones, up to two, beyond which is nothing.
+  [[nodiscard]] std::vector<float> rest() const;
+
+ private:
+  struct Slice {
+    std::vector<std::uint8_t> part;  // at least half covered
+    std::vector<float> dose;
+  };
+  [[nodiscard]] std::vector<float> smooth(int first, int last) const;
+  [[nodiscard]] bool has_part(int k, int x, int y) const;
+  [[nodiscard]] bool is_thin(int k, int x, int y) const;
+
+  int width_, height_;
+  double threshold_;
+  std::vector<Slice> slices_;
+  int returned_ = 0;  // of these
+};
+
+}  // namespace vam::model
