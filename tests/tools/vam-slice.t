@@ -280,7 +280,11 @@ fails 65 '; give --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
 fails 65 '; give --voxel 1.51 to make it fit' vam-slice stack --voxel 4 -o x.vdb
 ok "the stated voxel fits images" vam-slice stack --voxel 1.51 -o x.vdb
 fails 64 'does not apply to images' vam-slice stack --up y -o x.vdb
-fails 65 'array.npy: is a NumPy array .*, not a mesh; one of' vam-slice array.npy -o x.vdb
+fails 65 'array.npy: is a NumPy array .*, not a mesh; one of .*; vam-convert makes a volume' vam-slice array.npy -o x.vdb
+printf 'II*\000\010\000\000\000' >pages.tif
+fails 65 'pages.tif: is a TIFF image, not a mesh; .*; vam-convert makes a volume or a stack of its pages' vam-slice pages.tif -o x.vdb
+echo '<?xml version="1.0"?><amf unit="millimeter"/>' >part.amf
+fails 65 'part.amf: is an AMF model, not a mesh; .* is needed; export it as 3MF or STL$' vam-slice part.amf -o x.vdb
 fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb
 fails 65 'more than 4096 per axis' vam-slice cube.stl --voxel 0.001 -o x.vdb
 ok "a rod of 33,000 slices" vam-slice --shape cylinder:diameter=0.02,height=33 --voxel 0.001 --extent part -o rod.vdb

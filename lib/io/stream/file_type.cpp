@@ -21,7 +21,8 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::size_t look = 16;
+constexpr std::size_t look = 1024;  // for the names of foreign files
+constexpr std::size_t enough = 16;  // for those that are read
 
 // tee(2) copies what waits in one pipe into another and leaves it where it is.
 std::string pipe_head(int descriptor) {
@@ -29,12 +30,12 @@ std::string pipe_head(int descriptor) {
   if (pipe2(copy.data(), O_CLOEXEC) != 0) return "";
   std::string head;
   // A writer may deliver its first bytes one by one; they are examined again until they suffice or the input ends.
-  for (int attempt = 0; attempt < 1000 && head.size() < look; ++attempt) {
+  for (int attempt = 0; attempt < 1000 && head.size() < enough; ++attempt) {
     const ssize_t copied = tee(descriptor, copy[1], look, 0);
     if (copied <= 0) break;
     head.resize(copied);
     if (read(copy[0], head.data(), head.size()) != copied) break;
-    if (head.size() < look) poll(nullptr, 0, 1);
+    if (head.size() < enough) poll(nullptr, 0, 1);
   }
   close(copy[0]);
   close(copy[1]);

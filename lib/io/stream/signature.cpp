@@ -19,6 +19,8 @@ struct Signature {
 constexpr const char* by_convert = "; vam-convert makes a volume or a stack of it";
 constexpr const char* by_numpy = "; save it as a NumPy or HDF5 array, which vam-convert reads";
 constexpr const char* in_folder = "; put the images into a folder of their own, and give that";
+constexpr const char* as_pages =
+    "; vam-convert makes a volume or a stack of its pages; put single images into a folder, and give that";
 constexpr const char* as_png = "; save it as PNG, numbered with the others in a folder, and give that";
 constexpr const char* by_ffmpeg = "; convert it without loss: ffmpeg -i FILE -c:v ffv1 FILE.mkv";
 constexpr const char* by_export = "; export it as 3MF or STL";
@@ -28,9 +30,10 @@ constexpr Signature signatures[] = {
     {0, " BDV"sv, "a volume (OpenVDB)"},
     {0, "\x76\x2f\x31\x01"sv, "a stack (OpenEXR)"},
     {0, "\x93NUMPY"sv, "a NumPy array (.npy)", by_convert},
-    {0, "II*\0"sv, "a TIFF image", in_folder},
-    {0, "MM\0*"sv, "a TIFF image", in_folder},
-    {0, "II+\0"sv, "a TIFF image", in_folder},
+    {0, "II*\0"sv, "a TIFF image", as_pages},
+    {0, "MM\0*"sv, "a TIFF image", as_pages},
+    {0, "II+\0"sv, "a TIFF image", as_pages},
+    {0, "MM\0+"sv, "a TIFF image", as_pages},
     {0, "\x89PNG\r\n"sv, "a PNG image", in_folder},
     {0, "\xff\xd8\xff"sv, "a JPEG image", as_png},
     {0, "GIF8"sv, "a GIF image", by_ffmpeg},
@@ -50,6 +53,7 @@ constexpr Signature signatures[] = {
     {0, "#usda"sv, "a USD scene", by_export},
     {0, "MATLAB 5.0 MAT"sv, "a MATLAB file", by_numpy},
     {0, "version https://git-lfs"sv, "a pointer to a file in Git LFS", "; fetch the file by git lfs pull"},
+    {0, "#VRML"sv, "a VRML model", by_export},
     {0, "BLENDER"sv, "a Blender file", by_export},
     {0, "# vtk DataFile"sv, "a VTK file", by_numpy},
     {0, "\x1f\x8b"sv, "compressed by gzip", unpack},
@@ -75,18 +79,58 @@ constexpr Signature signatures[] = {
     {0, "\177ELF"sv, "a program"},
     {0, "<!DOCTYPE html"sv, "a web page"},
     {0, "<!doctype html"sv, "a web page"},
-    {0, "<html"sv, "a web page"},
-    {0, "<?xml"sv, "XML"},
     {0, "#!/"sv, "a script"},
     {0, "{"sv, "JSON (vam-report shows reports)"},
 };
+
+// XML by its root element.
+constexpr Signature roots[] = {
+    {0, "amf"sv, "an AMF model", by_export},
+    {0, "COLLADA"sv, "a COLLADA model", by_export},
+    {0, "X3D"sv, "an X3D model", by_export},
+    {0, "VTKFile"sv, "a VTK file", by_numpy},
+    {0, "svg"sv, "an SVG drawing"},
+    {0, "html"sv, "a web page"},
+    {0, "HTML"sv, "a web page"},
+};
+constexpr Signature other_xml{0, "", "XML"};
+
+// What follows the first end in text.
+std::string_view behind(std::string_view text, std::string_view end) {
+  const std::size_t at = text.find(end);
+  return at == std::string_view::npos ? "" : text.substr(at + end.size());
+}
+
+// The name of the element that holds all others, behind declaration and comments.
+std::string_view root_element(std::string_view xml) {
+  while (true) {
+    xml = behind(xml, "<");
+    if (xml.starts_with("?")) {
+      xml = behind(xml, "?>");
+    } else if (xml.starts_with("!--")) {
+      xml = behind(xml, "-->");
+    } else if (xml.starts_with("!")) {
+      xml = behind(xml, ">");
+    } else {
+      return xml.substr(0, xml.find_first_of(" \t\r\n/>"));
+    }
+  }
+}
+
+const Signature* xml_of(std::string_view head) {
+  const std::string_view name = root_element(head);
+  for (const Signature& root : roots) {
+    if (name == root.bytes) return &root;
+  }
+  return head.starts_with("<?xml") ? &other_xml : nullptr;
+}
 
 // Null for bytes without a known signature.
 const Signature* signature_of(std::string_view head) {
   for (const Signature& signature : signatures) {
     if (head.size() > signature.at && head.substr(signature.at).starts_with(signature.bytes)) return &signature;
   }
-  return nullptr;
+  return head.starts_with('<') ? xml_of(head) : nullptr;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace vam::io {
 
 /// "a NumPy array (.npy)", "compressed by gzip": fits behind "is". Empty for bytes without a known signature. 400 bytes
-/// suffice.
+/// suffice, but for XML whose root element comes later.
 [[nodiscard]] std::string foreign_format(std::string_view head);
 
 /// What makes such a file readable: "; unpack it", the end of a message. Empty where nothing does.

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "io/stream/signature.hpp"
 
@@ -69,9 +70,11 @@ bool is_archive(std::span<const char> bytes) { return Walk(bytes).number<std::in
 void check_head(std::span<const char> bytes) {
   Walk walk(bytes);
   if (walk.number<std::int64_t>() != openvdb::OPENVDB_MAGIC) {
-    const std::string foreign = foreign_format({bytes.data(), bytes.size()});
+    const std::string_view head{bytes.data(), bytes.size()};
+    const std::string foreign = foreign_format(head);
     throw std::runtime_error((foreign.empty() ? "is not" : "is " + foreign + ", not") +
-                             std::string(" an OpenVDB file (vam-slice makes one of a mesh, vam-dose of projections)"));
+                             std::string(" an OpenVDB file (vam-slice makes one of a mesh, vam-dose of projections)") +
+                             foreign_remedy(head));
   }
   const auto format = walk.number<std::uint32_t>();
   if (format > openvdb::OPENVDB_FILE_VERSION) {
