@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "base/index.hpp"
 #include "plot/canvas.hpp"
@@ -40,68 +41,70 @@ struct Corner {
   double x = 0;
   double y = 0;
   double near = 0;
-  Vector3 colour{};  // lit
 };
 
-/// Nearest colours so far.
+/// What is nearest at a pixel.
+struct Seen {
+  double near = -std::numeric_limits<double>::infinity();
+  int body = -1;  // none
+  int triangle = 0;
+  Vector3 weight{};  // of its corners
+};
+
+/// The nearest triangles so far.
 class Screen {
  public:
-  explicit Screen(int size)
-      : size_(size),
-        near_(product(size, size), -std::numeric_limits<double>::infinity()),
-        image_(size, size, paint::white) {}
+  explicit Screen(int size) : size_(size), seen_(product(size, size)) {}
 
-  void draw(const std::array<Corner, 3>& t) {
+  void draw(const std::array<Corner, 3>& t, int body, int triangle) {
     const double area = (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[2].x - t[0].x) * (t[1].y - t[0].y);
     if (area == 0) return;
-    const auto clamped = [&](double place) { return static_cast<int>(std::clamp(place, 0.0, size_ - 1.0)); };
-    const int left = clamped(std::floor(std::min({t[0].x, t[1].x, t[2].x})));
-    const int right = clamped(std::ceil(std::max({t[0].x, t[1].x, t[2].x})));
-    const int top = clamped(std::floor(std::min({t[0].y, t[1].y, t[2].y})));
-    const int bottom = clamped(std::ceil(std::max({t[0].y, t[1].y, t[2].y})));
+    const auto [left, right] = inside(t[0].x, t[1].x, t[2].x);
+    const auto [top, bottom] = inside(t[0].y, t[1].y, t[2].y);
     for (int y = top; y <= bottom; ++y) {
       for (int x = left; x <= right; ++x) {
         const double px = x + 0.5;
         const double py = y + 0.5;
         const double a = ((t[1].x - px) * (t[2].y - py) - (t[2].x - px) * (t[1].y - py)) / area;
         const double b = ((t[2].x - px) * (t[0].y - py) - (t[0].x - px) * (t[2].y - py)) / area;
-        if (a >= 0 && b >= 0 && a + b <= 1) set(x, y, t, {a, b, 1 - a - b});
+        if (a < 0 || b < 0 || a + b > 1) continue;
+        const Vector3 weight{a, b, 1 - a - b};
+        const double near = weight[0] * t[0].near + weight[1] * t[1].near + weight[2] * t[2].near;
+        Seen& seen = seen_[product(y, size_) + static_cast<std::size_t>(x)];
+        if (near > seen.near) seen = {near, body, triangle, weight};
       }
     }
   }
 
-  /// Means of supersample x supersample pixels.
-  [[nodiscard]] RgbImage image() const {
-    RgbImage out(size_ / supersample, size_ / supersample);
-    for (int y = 0; y < out.height; ++y) {
-      for (int x = 0; x < out.width; ++x) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          int sum = 0;
-          for (int n = 0; n < supersample * supersample; ++n)
-            sum += image_(supersample * x + n % supersample, supersample * y + n / supersample)[c];
-          out(x, y)[c] = static_cast<std::uint8_t>(sum / (supersample * supersample));
-        }
-      }
-    }
-    return out;
-  }
+  [[nodiscard]] const std::vector<Seen>& seen() const { return seen_; }
 
  private:
-  void set(int x, int y, const std::array<Corner, 3>& t, const Vector3& weight) {
-    const std::size_t at = product(y, size_) + static_cast<std::size_t>(x);
-    const double near = weight[0] * t[0].near + weight[1] * t[1].near + weight[2] * t[2].near;
-    if (near <= near_[at]) return;
-    near_[at] = near;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double value = weight[0] * t[0].colour[c] + weight[1] * t[1].colour[c] + weight[2] * t[2].colour[c];
-      image_.values[at][c] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
-    }
+  /// The first and the last pixel whose centres are between these.
+  [[nodiscard]] std::pair<int, int> inside(double a, double b, double c) const {
+    const auto [low, high] = std::minmax({a, b, c});
+    return {static_cast<int>(std::max(std::ceil(low - 0.5), 0.0)),
+            static_cast<int>(std::min(std::floor(high - 0.5), size_ - 1.0))};
   }
 
   int size_;
-  std::vector<double> near_;
-  RgbImage image_;
+  std::vector<Seen> seen_;
 };
+
+/// Means of supersample x supersample pixels.
+RgbImage reduced(const RgbImage& image) {
+  RgbImage out(image.width / supersample, image.height / supersample);
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        int sum = 0;
+        for (int n = 0; n < supersample * supersample; ++n)
+          sum += image(supersample * x + n % supersample, supersample * y + n / supersample)[c];
+        out(x, y)[c] = static_cast<std::uint8_t>(sum / (supersample * supersample));
+      }
+    }
+  }
+  return out;
+}
 
 Vector3 normal_of(const Body& body, const std::array<int, 3>& triangle) {
   const auto& points = body.mesh.points;
@@ -140,6 +143,40 @@ class Smoothed {
   std::vector<std::size_t> around_;  // triangles
 };
 
+/// The colours of a triangle's corners in the light.
+std::array<Vector3, 3> lit_corners(const Body& body, const Smoothed& normals, int triangle, const View& view) {
+  std::array<Vector3, 3> colours;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const int at = body.mesh.triangles[triangle][n];
+    const double shade = ambient + (1 - ambient) * std::abs(dot(normals.at(triangle, at), view.light));
+    const Rgb own = body.colours.empty() ? paint::light_grey : body.colours[at];
+    colours[n] = shade * Vector3{double(own[0]), double(own[1]), double(own[2])};
+  }
+  return colours;
+}
+
+/// Only what is seen is lit: most triangles of a volume's surface are behind others, or smaller than a pixel.
+RgbImage lit(const std::vector<Seen>& pixels, const std::vector<const Body*>& bodies, const View& view, int size) {
+  std::vector<Smoothed> normals;
+  for (const Body* body : bodies) normals.emplace_back(*body);
+  RgbImage image(size, size, paint::white);
+  std::array<Vector3, 3> colours{};
+  Seen last;  // whose colours these are: neighbours are often of one triangle
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Seen& seen = pixels[i];
+    if (seen.body < 0) continue;
+    if (seen.body != last.body || seen.triangle != last.triangle)
+      colours = lit_corners(*bodies[seen.body], normals[seen.body], seen.triangle, view);
+    last = seen;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value =
+          seen.weight[0] * colours[0][c] + seen.weight[1] * colours[1][c] + seen.weight[2] * colours[2][c];
+      image.values[i][c] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+    }
+  }
+  return image;
+}
+
 }  // namespace
 
 double side_mm(const std::vector<const Body*>& bodies, const Vector3& centre, Eye eye) {
@@ -159,22 +196,20 @@ RgbImage render(const std::vector<const Body*>& bodies, const Vector3& centre, d
   const int size = pixels * supersample;
   const double scale = size / side;
   Screen screen(size);
-  for (const Body* body : bodies) {
-    const Smoothed normals(*body);
-    for (std::size_t t = 0; t < body->mesh.triangles.size(); ++t) {
-      std::array<Corner, 3> corners;
-      for (std::size_t n = 0; n < 3; ++n) {
-        const int at = body->mesh.triangles[t][n];
-        const Vector3 place = body->mesh.points[at] - centre;
-        const double shade = ambient + (1 - ambient) * std::abs(dot(normals.at(t, at), view.light));
-        const Rgb own = body->colours.empty() ? paint::light_grey : body->colours[at];
-        corners[n] = {0.5 * size + scale * dot(place, view.right), 0.5 * size - scale * dot(place, view.up),
-                      dot(place, view.towards), shade * Vector3{double(own[0]), double(own[1]), double(own[2])}};
-      }
-      screen.draw(corners);
+  for (int b = 0; b < count_of(bodies); ++b) {
+    const model::TriangleSoup& mesh = bodies[b]->mesh;
+    std::vector<Corner> corners(mesh.points.size());
+    std::transform(mesh.points.begin(), mesh.points.end(), corners.begin(), [&](const auto& point) -> Corner {
+      const Vector3 place = point - centre;
+      return {0.5 * size + scale * dot(place, view.right), 0.5 * size - scale * dot(place, view.up),
+              dot(place, view.towards)};
+    });
+    for (int t = 0; t < count_of(mesh.triangles); ++t) {
+      const auto& at = mesh.triangles[t];
+      screen.draw({corners[at[0]], corners[at[1]], corners[at[2]]}, b, t);
     }
   }
-  return screen.image();
+  return reduced(lit(screen.seen(), bodies, view, size));
 }
 
 }  // namespace vam::plot
