@@ -86,12 +86,16 @@ bool is_movie(const Options& options) { return options.output.ends_with(".mp4");
 void write_movie(const Options& options, const io::SparseVolume& dose, const std::string& history) {
   const Judged with = judged(options, dose);
   view_tool::Exposure exposure;
+  const auto turns = tool::stated_number(dose.metadata, "vam:print_turns");
+  const auto seconds = tool::stated_number(dose.metadata, "vam:print_s");
+  if (turns && seconds) exposure.duration = {*turns, *seconds};
   if (options.threshold) {
     exposure.threshold = *options.threshold;
   } else {
     const score::Score result = tool::score_volumes(dose, with.target, with.how);
     exposure.threshold = result.print_threshold();
-    if (!with.how.threshold) exposure.plan = result.plan();  // else the dose is that of another exposure
+    const auto plan = with.how.threshold ? std::nullopt : result.plan();  // for the dose of one turn
+    if (plan) exposure.duration = {static_cast<double>(plan->turns), plan->seconds};
   }
   view_tool::write_movie(options.output, dose, with.target, exposure, options.view, options.dpi, history);
 }

@@ -53,6 +53,18 @@ for n in 1, 2, 3, 4:
     print(sum(value < 240 for value in raw))
 PY
 holds "the print grows, then stands" "$(tr '\n' ' ' <grown | awk '{ print ($1 * 4 < $2 && $2 < $3 && $4 > 0.98 * $3 && $4 < 1.02 * $3) }') == 1"
+# Its label: turns and seconds that the dose states, those that are planned for the dose of a turn, or a percentage.
+cure='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.02'
+vam-dose small.exr --like small.vdb $cure -o turn.vdb
+vam-dose small.exr --like small.vdb $cure --exposure-plan -o planned.vdb
+movie_label() {
+  vam-view "$@" --target small.vdb $cure --render --title '' --image-size 200 -o label.mp4
+  ffmpeg -v error -i label.mp4 -vf "select='eq(n,60)',crop=iw/2:24:iw/2:8" -vsync 0 -f md5 -
+}
+stated=$(movie_label planned.vdb)
+is "turns that are stated, and that are planned" "$(movie_label turn.vdb)" "$stated"
+is "also at another threshold" "$(movie_label planned.vdb --threshold 50)" "$stated"
+ok "of a dose without them a percentage" test "$(movie_label turn.vdb --threshold 15)" != "$stated"
 fails 64 'requires --render and --target' vam-view small.vdb -o x.mp4
 fails 64 'requires --render and --target' vam-view small.vdb --render -o x.mp4
 fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.mp4

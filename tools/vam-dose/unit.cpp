@@ -38,7 +38,11 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
              const model::StackInfo& light) {
   const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : exposed.light.peak;
-  Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, exposed.shown_turns, {}};
+  Unit unit{per_radian.has_value(),
+            per_radian && full > 0 ? *per_radian / full : 1.0,
+            exposed.shown_turns,
+            model::seconds_of(printer.stage, exposed.shown_turns),
+            {}};
   if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);
   return unit;
 }
@@ -53,7 +57,10 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
     const auto threshold = tool::threshold_dose(volume.metadata);
     if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.turn * turns, 9);
   }
-  if (unit.plan || of_run) volume.metadata["vam:full_intensity_turns"] = format_number(turns, 9);
+  if (!unit.plan && !of_run) return;
+  volume.metadata["vam:full_intensity_turns"] = format_number(turns, 9);
+  volume.metadata["vam:print_turns"] = format_number(unit.plan ? unit.plan->turns : unit.shown_turns, 9);
+  volume.metadata["vam:print_s"] = format_number(unit.plan ? unit.plan->seconds : unit.shown_s, 9);
 }
 
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,

@@ -17,6 +17,7 @@ struct Unit {
   bool absolute = false;
   double turn = 1;                          // multiplies the dose of one turn
   double shown_turns = 0;                   // of the run whose dose it is; 0: of none
+  double shown_s = 0;                       // which they take at the speed of the stage
   std::optional<score::ExposurePlan> plan;  // of the print
 };
 

@@ -26,7 +26,11 @@ cli::Manual manual() {
        "covered by, and where walls are cut, are missing, too. "
        "--render shows the same in three dimensions, the print beside the target; without --target it shows the "
        "surface of any grid. With an output in .mp4 it is a movie: the print as it grows, from where the first resin "
-       "gels to the end of the exposure, at a constant intensity. --compare shows two volumes beside each other in the "
+       "gels to the end of the exposure, at a constant intensity. Its label counts turns and seconds where the dose "
+       "states "
+       "them (vam-dose --exposure-plan or --shown) or vam-score would plan them, for a resin with a critical dose; "
+       "else "
+       "it is the percentage of the exposure. --compare shows two volumes beside each other in the "
        "same colours, and their "
        "difference. Meshes are shown as bodies, in the colours of their vertices if there are any (vam-sdf "
        "--output); the --trace of vam-optimize, a file that ends in .csv, as curves over the iterations. Any other "
@@ -53,7 +57,7 @@ cli::Manual manual() {
         "vam-sinogram part.vdb --filter ram-lak | vam-dose --like part.vdb -o dose.vdb\n"
         "vam-view dose.vdb --target part.vdb --cure-map -o cure.png\n"
         "vam-view dose.vdb --target part.vdb --render -o print.png"},
-       {"The print as it grows, for a talk:",
+       {"A movie of the print as it grows, for a talk:",
         "vam-slice --shape gyroid --voxel 0.4 -o part.vdb\n"
         "vam-sinogram part.vdb --filter ram-lak | vam-dose --like part.vdb -o dose.vdb\n"
         "vam-view dose.vdb --target part.vdb --render --image-size 320 -o growth.mp4"},

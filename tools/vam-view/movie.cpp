@@ -50,10 +50,10 @@ std::string part_of(double whole, double fraction, int decimals) {
 }
 
 /// "turn 2.4 of 6, 43 s" or "57 % of the exposure".
-std::string time_text(double fraction, const std::optional<score::ExposurePlan>& plan) {
-  if (!plan) return part_of(100, fraction, 0) + " % of the exposure";
-  return "turn " + part_of(plan->turns, fraction, 1) + " of " + std::to_string(plan->turns) + ", " +
-         part_of(plan->seconds, fraction, 0) + " s";
+std::string time_text(double fraction, const std::optional<Exposure::Duration>& whole) {
+  if (!whole) return part_of(100, fraction, 0) + " % of the exposure";
+  return "turn " + part_of(whole->turns, fraction, 1) + " of " + format_number(whole->turns, 3) + ", " +
+         part_of(whole->seconds, fraction, 0) + " s";
 }
 
 /// Figures may differ by a pixel, frames may not.
@@ -96,7 +96,7 @@ class Growth {
     std::vector<const plot::Body*> so_far;
     if (!print.mesh.triangles.empty()) so_far.push_back(&print);
     plot::ImageFigure figure = figure_;
-    add_panel(figure, so_far, sight_, view_.size * 7 / 10, time_text(fraction(n), exposure_.plan));
+    add_panel(figure, so_far, sight_, view_.size * 7 / 10, time_text(fraction(n), exposure_.duration));
     return plot::draw(figure).image(dpi);
   }
 

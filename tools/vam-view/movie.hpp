@@ -7,15 +7,18 @@
 
 #include "io/vdb/vdb.hpp"
 #include "plot/view.hpp"
-#include "score/exposure_plan.hpp"
 
 namespace vam::view_tool {
 
 /// What prints of the dose of the whole exposure, and when: after the fraction f of the exposure what has the dose
-/// threshold / f. With a plan the time is told in turns and seconds, else in per cent.
+/// threshold / f. The time is told in turns and seconds where they are known, else in per cent.
 struct Exposure {
+  struct Duration {
+    double turns = 0;
+    double seconds = 0;
+  };
   double threshold = 0;
-  std::optional<score::ExposurePlan> plan;
+  std::optional<Duration> duration;
 };
 
 /// Six seconds from where the first resin gels to the end of the exposure, which stands for one more: the target, and
