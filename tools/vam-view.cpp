@@ -97,18 +97,22 @@ void write_movie(const Options& options, const io::SparseVolume& dose, const std
     const auto plan = with.how.threshold ? std::nullopt : result.plan();  // for the dose of one turn
     if (plan) exposure.duration = {static_cast<double>(plan->turns), plan->seconds};
   }
-  view_tool::write_movie(options.output, dose, with.target, exposure, options.view, options.dpi, history);
+  const std::optional<io::SparseVolume> insert = insert_for(options, dose);
+  view_tool::write_movie(options.output, dose, with.target, insert ? &*insert : nullptr, exposure, options.view,
+                         options.dpi, history);
 }
 
 plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& volume) {
+  std::optional<io::SparseVolume> held;
+  if (options.cure || options.render) held = insert_for(options, volume);
+  const io::SparseVolume* insert = held ? &*held : nullptr;
   if (options.cure || (options.render && !options.target.empty())) {
     const Judged with = judged(options, volume);
     const double threshold = threshold_of(options, volume, with);
-    if (!options.cure) return view_tool::print_figure(volume, with.target, threshold, options.view);
-    const std::optional<io::SparseVolume> insert = insert_for(options, volume);
-    return plot::view_cure(volume, with.target, threshold, with.how.circle, options.view, insert ? &*insert : nullptr);
+    if (!options.cure) return view_tool::print_figure(volume, with.target, threshold, options.view, insert);
+    return plot::view_cure(volume, with.target, threshold, with.how.circle, options.view, insert);
   }
-  if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view);
+  if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view, insert);
   if (!options.compare.empty()) {
     const io::SparseVolume other = io::read_volume(options.compare, volume.name());
     return plot::view_difference(volume, other, view_tool::file_name(options.compare), options.view);

@@ -200,5 +200,16 @@ vam-sinogram held.vdb --filter ram-lak --negative clip -o held.exr
 vam-dose held.exr --like held.vdb -o held-dose.vdb
 vam-view held-dose.vdb --target held.vdb --cure-map -o held.png
 row() { for x in 420 422 424 426 428 430 432 434 436 438 440; do $png get held.png $x 400; done; }
+vam-view held-dose.vdb --target held.vdb --render --image-size 200 -o held.mp4
+ffmpeg -v error -y -i held.mp4 -vf "select='eq(n,0)'" -vsync 0 held-first.png
+for body in "held-dose.vdb --target held.vdb" held.vdb; do vam-view $body --render --title '' --image-size 200 -o body.png && cp body.png "held-${body%%.*}.png"; done
+greens() {
+  ffmpeg -v error -i "$1" -f rawvideo -pix_fmt rgb24 - | python3 -c '
+import sys
+raw = sys.stdin.buffer.read()
+print(sum(g > 1.5 * r + 20 and g > b for r, g, b in zip(raw[0::3], raw[1::3], raw[2::3])))'
+}
+for picture in held-first held-held-dose held-held; do holds "the insert in three dimensions is green: $picture" "$(greens $picture.png) > 200"; done
+is "where there is none, nothing is green" "$(greens print.png)" 0
 holds "the insert of a cure map is hatched" "$(row | sort -u | grep -Ec '^[0-9]{1,2} ') > 0"
 done_testing

@@ -21,12 +21,14 @@ namespace {
 
 constexpr Rgb right_colour{190, 190, 190};
 
-plot::ImageFigure single(const plot::Body& body, const plot::ViewOptions& view, const std::string& what) {
+plot::ImageFigure single(const plot::Body& body, const plot::ViewOptions& view, const std::string& what,
+                         const plot::Body& insert = {}) {
   plot::ImageFigure figure;
-  const Sight sight = sight_of({&body});
-  add_panel(figure, {&body}, sight, view.size, "");
+  const Sight sight = sight_of({&body, &insert});
+  add_panel(figure, {&body, &insert}, sight, view.size, "");
   label(figure, sight, view, what);
   figure.legend.push_back({plot::Mark::none, {}, size_text(solid::bounding_box(body.mesh))});
+  name_insert(figure, insert);
   return figure;
 }
 
@@ -50,17 +52,19 @@ plot::ImageFigure mesh_figure(const std::string& path, const plot::ViewOptions& 
   return single(body, view, "");
 }
 
-plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, const plot::ViewOptions& view) {
+plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, const plot::ViewOptions& view,
+                              const io::SparseVolume* insert) {
   plot::Body body{surface_of(volume, level, volume), {}};
   if (body.mesh.triangles.empty()) {
     throw Error{Fault::data, view.name + ": grid '" + volume.name() + "' reaches " + format_number(level, 4) +
                                  " nowhere; choose another --threshold"};
   }
-  return single(body, view, ": " + volume.name() + " at " + format_number(level, 4) + " " + volume.units);
+  return single(body, view, ": " + volume.name() + " at " + format_number(level, 4) + " " + volume.units,
+                insert_body(insert, volume));
 }
 
 plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
-                               const plot::ViewOptions& view) {
+                               const plot::ViewOptions& view, const io::SparseVolume* insert) {
   plot::Body part{surface_of(target, model::half_surface, target), {}};
   plot::Body print{surface_of(dose, threshold, target), {}};
   if (part.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
@@ -78,9 +82,10 @@ plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVol
   plot::Body thin{surface_of(plot::lost_wall_volume(target, nullptr, 0), 0.5, target), {}};
   plot::Body lost{surface_of(plot::lost_wall_volume(target, &dose, threshold), 0.5, target), {}};
   lost.colours.assign(lost.mesh.points.size(), plot::paint::blue);
+  const plot::Body held = insert_body(insert, target);
   plot::ImageFigure figure;
   figure.columns = 2;
-  std::vector<const plot::Body*> wanted{&part}, printed{&print, &missing};
+  std::vector<const plot::Body*> wanted{&part, &held}, printed{&print, &missing, &held};
   if (!thin.mesh.triangles.empty()) wanted.push_back(&thin);
   if (!lost.mesh.triangles.empty()) printed.push_back(&lost);
   std::vector<const plot::Body*> all = wanted;
@@ -96,6 +101,7 @@ plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVol
                     "missing: target outside the print" + by +
                         (lost.mesh.triangles.empty() ? "" : ", and walls thinner than half a voxel")},
                    {plot::Mark::none, {}, "target " + size_text(solid::bounding_box(part.mesh))}};
+  name_insert(figure, held);
   return figure;
 }
 

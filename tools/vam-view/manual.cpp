@@ -37,7 +37,8 @@ cli::Manual manual() {
        "table "
        "that ends in .csv and begins with the names of its columns is drawn, too: up to four columns over the first "
        "one. A unit in which all of their names end, as in open_mm,closed_mm, is stated at the axis.",
-       "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
+       "An insert in the volume, or in that of --target, is hatched, and green in three dimensions. Resin that it "
+       "shadows from some stage angles is "
        "orange, more saturated with the number of angles (for a horizontal parallel beam). Its voxels are no resin, "
        "and "
        "count neither in --dose-histogram nor in the shares of --cure-map.",

@@ -67,13 +67,14 @@ RgbImage of_size(const RgbImage& image, int width, int height) {
 
 class Growth {
  public:
-  Growth(const io::SparseVolume& dose, const io::SparseVolume& target, const Exposure& exposure,
-         const plot::ViewOptions& view)
+  Growth(const io::SparseVolume& dose, const io::SparseVolume& target, const io::SparseVolume* insert,
+         const Exposure& exposure, const plot::ViewOptions& view)
       : dose_(dose),
         target_(target),
         exposure_(exposure),
         view_(view),
-        part_{surface_of(target, model::half_surface, target), {}} {
+        part_{surface_of(target, model::half_surface, target), {}},
+        insert_(insert_body(insert, target)) {
     if (part_.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
     const plot::Body print = print_after(1);
     if (print.mesh.triangles.empty()) {
@@ -81,19 +82,20 @@ class Growth {
                                    format_number(exposure.threshold, 4) + " " + dose.units +
                                    "; choose a lower --threshold"};
     }
-    sight_ = sight_of({&part_, &print});
+    sight_ = sight_of({&part_, &print, &insert_});
     first_ = exposure.threshold / largest(dose);
     figure_.columns = 2;
-    add_panel(figure_, {&part_}, sight_, view_.size * 7 / 10, "target");
+    add_panel(figure_, {&part_, &insert_}, sight_, view_.size * 7 / 10, "target");
     label(figure_, sight_, view_, ": the print as it grows");
     figure_.legend = {{plot::Mark::none, {}, "target " + size_text(solid::bounding_box(part_.mesh))}};
+    name_insert(figure_, insert_);
   }
 
   /// What a growing frame shows.
   [[nodiscard]] plot::Body print(int n) const { return print_after(fraction(n)); }
 
   [[nodiscard]] RgbImage frame(int n, const plot::Body& print, double dpi) const {
-    std::vector<const plot::Body*> so_far;
+    std::vector<const plot::Body*> so_far{&insert_};
     if (!print.mesh.triangles.empty()) so_far.push_back(&print);
     plot::ImageFigure figure = figure_;
     add_panel(figure, so_far, sight_, view_.size * 7 / 10, time_text(fraction(n), exposure_.duration));
@@ -111,6 +113,7 @@ class Growth {
   const Exposure& exposure_;
   const plot::ViewOptions& view_;
   plot::Body part_;
+  plot::Body insert_;
   Sight sight_;
   plot::ImageFigure figure_;  // with the target alone
   double first_ = 0;          // fraction of the exposure at which the first resin gels
@@ -119,8 +122,9 @@ class Growth {
 }  // namespace
 
 void write_movie(const std::string& path, const io::SparseVolume& dose, const io::SparseVolume& target,
-                 const Exposure& exposure, const plot::ViewOptions& view, double dpi, const std::string& history) {
-  const Growth growth(dose, target, exposure, view);
+                 const io::SparseVolume* insert, const Exposure& exposure, const plot::ViewOptions& view, double dpi,
+                 const std::string& history) {
+  const Growth growth(dose, target, insert, exposure, view);
   RgbImage frame = growth.frame(growing - 1, growth.print(growing - 1), dpi);
   const int width = frame.width, height = frame.height;
   io::Movie movie(path, width, height, fps, history);

@@ -6,13 +6,15 @@
 
 #include "base/text.hpp"
 #include "facts.hpp"
+#include "model/dose_metrics.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 namespace vam::view_tool {
 
 namespace {
 constexpr double air = 1.04;  // of the square around the body
-}
+constexpr Rgb insert_colour = plot::paint::green;
+}  // namespace
 
 model::TriangleSoup surface_of(const io::SparseVolume& volume, double level, const io::SparseVolume& part) {
   model::TriangleSoup mesh = solid::fine_isosurface(
@@ -21,10 +23,21 @@ model::TriangleSoup surface_of(const io::SparseVolume& volume, double level, con
   return mesh;
 }
 
+plot::Body insert_body(const io::SparseVolume* insert, const io::SparseVolume& part) {
+  if (insert == nullptr) return {};
+  plot::Body body{surface_of(*insert, model::half_surface, part), {}};
+  body.colours.assign(body.mesh.points.size(), insert_colour);
+  return body;
+}
+
+void name_insert(plot::ImageFigure& figure, const plot::Body& insert) {
+  if (!insert.mesh.triangles.empty()) figure.legend.push_back({plot::Mark::patch, insert_colour, "insert"});
+}
+
 Sight sight_of(const std::vector<const plot::Body*>& bodies) {
   solid::Bounds box = solid::bounding_box(bodies.front()->mesh);
   for (const plot::Body* body : bodies) {
-    box.join(solid::bounding_box(body->mesh));
+    if (!body->mesh.triangles.empty()) box.join(solid::bounding_box(body->mesh));
   }
   const Vector3 centre = 0.5 * (box.low + box.high);
   return {centre, air * plot::side_mm(bodies, centre, {})};

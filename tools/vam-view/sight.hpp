@@ -18,6 +18,12 @@ namespace vam::view_tool {
 [[nodiscard]] model::TriangleSoup surface_of(const io::SparseVolume& volume, double level,
                                              const io::SparseVolume& part);
 
+/// What was in the vial before the print, in its own colour; without triangles for null.
+[[nodiscard]] plot::Body insert_body(const io::SparseVolume* insert, const io::SparseVolume& part);
+
+/// Its line of the legend, if it is there.
+void name_insert(plot::ImageFigure& figure, const plot::Body& insert);
+
 /// The square that holds the bodies from every side.
 struct Sight {
   Vector3 centre{};
