@@ -34,12 +34,16 @@ struct Counts {
   double outside = 0;
   double missing = 0;
   double overcured = 0;
+  double cut_missing = 0;
+  double cut_overcured = 0;
 
   void add(model::Label label, float coverage, float share, Cure cure) {
     part += label == model::Label::void_ ? 0 : static_cast<double>(coverage);
     outside += label == model::Label::void_ ? 1 : 0;
     missing += static_cast<double>(share);
     overcured += cure == Cure::overcured ? 1 : 0;
+    cut_missing += cure == Cure::cut_missing ? static_cast<double>(coverage) : 0;
+    cut_overcured += cure == Cure::cut_overcured ? static_cast<double>(1 - coverage) : 0;
   }
 };
 
@@ -47,6 +51,27 @@ struct Counts {
 std::string with_share(const std::string& what, double count, double of, const std::string& whole) {
   const double percent = of > 0 ? 100 * count / of : 0;
   return what + " (" + format_number(percent, 3) + " % of the " + whole + " seen)";
+}
+
+// Voxels that the surface cuts are only named where some are wrong: few prints are right to half a voxel.
+std::vector<LegendEntry> legend_of(const Counts& counts, bool insert) {
+  std::vector<LegendEntry> entries{
+      {Mark::patch, colours[cured], "cured"},
+      {Mark::patch, colours[missing], with_share("missing", counts.missing, counts.part, "part")},
+      {Mark::patch, colours[overcured], with_share("overcured", counts.overcured, counts.outside, "void")}};
+  if (counts.cut_missing > 0)
+    entries.push_back({Mark::patch, colours[cut_missing],
+                       with_share("missing in voxels that the surface cuts, of which half or more is part",
+                                  counts.cut_missing, counts.part, "part")});
+  if (counts.cut_overcured > 0)
+    entries.push_back({Mark::patch, colours[cut_overcured],
+                       with_share("overcured in voxels that the surface cuts, of which less than half is part",
+                                  counts.cut_overcured, counts.outside, "void")});
+  entries.push_back({Mark::none,
+                     {},
+                     insert ? "the insert, and void beyond the writable circle, are not counted"
+                            : "void beyond the writable circle is not counted"});
+  return entries;
 }
 
 }  // namespace
@@ -91,15 +116,7 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
   }
   views::set_section_axes(figure, dose.grid(), options);
   figure.outline_name = "surface of the target";
-  figure.legend = {{Mark::patch, colours[cured], "cured"},
-                   {Mark::patch, colours[missing], with_share("missing", counts.missing, counts.part, "part")},
-                   {Mark::patch, colours[overcured], with_share("overcured", counts.overcured, counts.outside, "void")},
-                   {Mark::patch, colours[cut_missing], "not cured, cut by the surface (half or more is part)"},
-                   {Mark::patch, colours[cut_overcured], "cured, cut by the surface (less than half is part)"},
-                   {Mark::none,
-                    {},
-                    insert == nullptr ? "void beyond the writable circle is not counted"
-                                      : "the insert, and void beyond the writable circle, are not counted"}};
+  figure.legend = legend_of(counts, insert != nullptr);
   figure.title = options.title.value_or(options.name + ": cured at " + format_number(threshold, 4) + " " + dose.units +
                                         views::sections_text(sections, options.plane));
   return figure;

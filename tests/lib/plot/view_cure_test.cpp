@@ -27,6 +27,8 @@ TEST_CASE("the cure map tells what is missing and what is too much, and where th
   CHECK(seen == std::vector<Rgb>{paint::blue, {150, 150, 150}, cut_missing, paint::vermilion, paint::white});
   CHECK(figure.legend[1].words == "missing (40 % of the part seen)");  // 1 of 2.5 voxels
   CHECK(figure.legend[2].words == "overcured (50 % of the void seen)");
+  CHECK(figure.legend[3].words ==
+        "missing in voxels that the surface cuts, of which half or more is part (20 % of the part seen)");
   for (const auto& [coverage, dose_there, colour] :
        {std::tuple{0.4F, 0.6F, cut_cured}, {0.4F, 0.4F, paint::white}, {0.6F, 0.6F, Rgb{150, 150, 150}}}) {
     std::vector<float> cut = covered;
@@ -36,7 +38,10 @@ TEST_CASE("the cure map tells what is missing and what is too much, and where th
     SparseVolume target2("target", grid), dose2("dose", grid);
     target2.write_slices(0, 1, cut.data());
     dose2.write_slices(0, 1, there.data());
-    CHECK(view_cure(dose2, target2, 0.5, all, {}).panels[0].picture(2, 0) == colour);
+    const ImageFigure cut_figure = view_cure(dose2, target2, 0.5, all, {});
+    CHECK(cut_figure.panels[0].picture(2, 0) == colour);
+    CHECK(cut_figure.legend.size() == (colour == cut_cured ? 5 : 4));  // what is not seen is not named
+    if (colour == cut_cured) CHECK(cut_figure.legend[3].words.starts_with("overcured in voxels that the surface cuts"));
   }
   // Void outside the circle is seen, but not judged.
   const vam::model::Circle inner{2, 0, 1};
