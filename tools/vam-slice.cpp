@@ -26,6 +26,7 @@
 #include "printer.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
+#include "solid/voxel/trapped_resin.hpp"
 #include "vam-slice/lift.hpp"
 #include "vam-slice/options.hpp"
 #include "vam-slice/overprint.hpp"
@@ -71,6 +72,9 @@ void judge_size(const cli::App& app, const Options& options, const solid::Part& 
   for (const std::string& thin :
        solid::resolution_doubts(part.subject, content.unresolved, grid, options.placement.stretch_z))
     warn(thin);
+  const bool holds_insert = !options.insert.empty() || !options.insert_shape.empty();  // which may fill the cavity
+  const std::string trapped = solid::trapped_resin(content.cavities, grid.voxel_mm, options.placement.stretch_z);
+  if (!trapped.empty() && !holds_insert) warn(part.subject + ": " + trapped + "; open it by a hole");
 }
 
 /// For a part that is too large.

@@ -82,6 +82,8 @@ class RunSets {
 
 /// Voxels that touch, by a corner at least, are of one set.
 [[nodiscard]] inline bool at_corners(const VoxelPair& /*pair*/) { return true; }
+/// Only those that share a face are.
+[[nodiscard]] inline bool by_faces_only(const VoxelPair& /*pair*/) { return false; }
 
 /// Counts pieces of at least so many voxels. Memory: the runs of two slices.
 class PieceCounter {

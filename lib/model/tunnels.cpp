@@ -116,8 +116,6 @@ std::size_t run_of(const std::vector<VoxelRun>& runs, int x, int y) {
   return static_cast<std::size_t>(after - runs.begin()) - 1;
 }
 
-bool by_faces_only(const VoxelPair& /*pair*/) { return false; }
-
 }  // namespace
 
 void TunnelCounter::add_cell(const Corners& values, double level, int x, int y, Layer& layer) {

@@ -280,6 +280,17 @@ fails 65 '; give --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
 fails 65 '; give --voxel 1.51 to make it fit' vam-slice stack --voxel 4 -o x.vdb
 ok "the stated voxel fits images" vam-slice stack --voxel 1.51 -o x.vdb
 fails 64 'does not apply to images' vam-slice stack --up y -o x.vdb
+# Resin that cannot drain, until its wall is lost to the voxels
+shell='egg-shell:length=9,diameter=8,wall=0.8,opening'
+vam-slice --shape $shell=0 --voxel 0.2 -o egg.vdb --report egg.json 2>egg.log
+holds "a closed shell traps resin" "$(grep -c '1 closed cavity of 1[0-9]* mm3 at x, y, z = .* mm, from which resin cannot drain; open it by a hole$' egg.log) == 1"
+holds "which the report states" "$(json egg.json trapped_resin.cavities) == 1 && ($(json egg.json trapped_resin.volume_mm3) / 145 - 1) ^ 2 < 0.01 ^ 2"  # as with voxels half as large
+vam-slice --shape $shell=2 --voxel 0.2 -o egg.vdb --report egg.json 2>egg.log
+is "an opening lets it out" "$(json egg.json trapped_resin) $(grep -c cavity egg.log)" "None 0"
+vam-slice --shape hollow-cylinder --voxel 0.2 -o egg.vdb --report egg.json 2>egg.log
+is "so do the ends of a tube" "$(json egg.json trapped_resin) $(grep -c cavity egg.log)" "None 0"
+vam-slice --shape egg-shell:length=9,diameter=8,wall=0.2,opening=0 --voxel 0.8 -o egg.vdb --report egg.json 2>egg.log
+is "and a wall that no voxel shows" "$(json egg.json trapped_resin) $(grep -c cavity egg.log)" "None 0"
 fails 65 'array.npy: is a NumPy array .*, not a mesh; one of .*; vam-convert makes a volume' vam-slice array.npy -o x.vdb
 printf 'II*\000\010\000\000\000' >pages.tif
 fails 65 'pages.tif: is a TIFF image, not a mesh; .*; vam-convert makes a volume or a stack of its pages' vam-slice pages.tif -o x.vdb

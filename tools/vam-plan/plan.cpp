@@ -190,6 +190,7 @@ void add_walls(Plan& plan, const solid::Part& part) {
     warn_of_resolution(part.subject, fine, plan.stretch_z);
   const solid::Walls walls = solid::walls(fine.volume, plan.stretch_z);
   plan.sharp_edges = walls.sharp_edges;
+  plan.cavities = fine.content.cavities;
   plan.wall_voxels = walls.thinnest_voxels;
   plan.wall_mm = walls.thinnest_mm;
   plan.in_doubt = doubts(unresolved);

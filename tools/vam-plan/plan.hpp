@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/json_fwd.hpp"
+#include "model/cavities.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "model/unresolved.hpp"
@@ -42,6 +43,7 @@ struct Plan {
   std::optional<double> wall_voxels;  // of that grid; none: the thinnest one is thinner than the resolution
   double wall_mm = 0;                 // of the print
   std::optional<solid::Walls::Place> thinnest_place;  // where a few voxels are thinner than that
+  model::Cavities cavities;                           // closed ones, in voxels of the walls' resolution
   bool in_doubt = false;       // the printer's voxels lose walls or gaps, or leave open whether they print
   bool sharp_edges = false;    // thinner than what prints
   int wall_resolution = 1;     // in voxels

@@ -8,6 +8,7 @@
 
 #include "base/json.hpp"
 #include "solid/voxel/placement.hpp"
+#include "solid/voxel/trapped_resin.hpp"
 #include "solid/voxel/wall.hpp"
 #include "vam-plan/plan.hpp"
 
@@ -114,6 +115,8 @@ std::string place_row(const Plan& plan) {
                                      (place->voxels < solid::least_printed_voxels ? "; it may not print" : ""));
 }
 
+double cavity_voxel_mm(const Plan& plan) { return plan.wall_resolution * plan.grid.voxel_mm; }
+
 Json fit_json(const Fit& fit) {
   Json json;
   json["fits"] = fit.fits();
@@ -141,6 +144,8 @@ std::string table(const Plan& plan) {
   }
   text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm / plan.stretch_z) + " mm");
   text += row("thinnest wall", wall_words(plan)) + place_row(plan);
+  const std::string trapped = solid::trapped_resin(plan.cavities, cavity_voxel_mm(plan), plan.stretch_z);
+  if (!trapped.empty()) text += row("trapped resin", trapped);
   if (plan.sharp_edges)
     text += row("sharp edges", "some, or tips, taper to less than 3 voxels, and may not print there");
   return plan.coarseness > 0 ? text + print_rows(plan) : text;
@@ -163,6 +168,7 @@ Json report(const Plan& plan) {
     }
   }
   json["sharp_edges"] = plan.sharp_edges;
+  json["trapped_resin"] = solid::trapped_resin_figures(plan.cavities, cavity_voxel_mm(plan), plan.stretch_z);
   if (plan.coarseness > 0) {
     json["estimate_voxel_mm"] = plan.coarseness * plan.grid.voxel_mm;
     json["all_judged"] = is_sure(plan);

@@ -16,6 +16,7 @@
 #include "model/dose_metrics.hpp"
 #include "solid/mesh/part_surface.hpp"
 #include "solid/shapes/shapes.hpp"
+#include "solid/voxel/trapped_resin.hpp"
 
 namespace vam::solid {
 
@@ -135,6 +136,7 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
   FillSummary content;
   double voxels = 0;
   model::UnresolvedFinder finder(grid);
+  model::CavityFinder cavities(grid);
   content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
     std::vector<FillSummary> of_slice(static_cast<std::size_t>(count));
     std::vector<double> covered(of_slice.size());
@@ -152,9 +154,11 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
       content.radius_mm = std::max(content.radius_mm, of_slice[k].radius_mm);
     }
     finder.add(count, slices);
+    cavities.add(count, slices);
     sink(k0, count, slices);
   });
   content.unresolved = finder.found();
+  content.cavities = cavities.found();
   if (part.surface) content.unresolved.surface = {part.surface(grid), grid.voxel_mm};
   if (voxels == 0) {
     throw Error{Fault::data, part.subject + ": covers no voxel of " + format_number(grid.voxel_mm) +
@@ -177,7 +181,8 @@ Json figures(const Part& part, const FillSummary& content, const model::Grid& gr
               {"interior_voxels", content.solid_voxels},
               {"surface_voxels", content.surface_voxels},
               {"lost_volume_mm3", content.unresolved.lost_walls.voxels * std::pow(grid.voxel_mm, 3) / stretch_z},
-              {"lost_gaps_mm3", content.unresolved.lost_gaps.voxels * std::pow(grid.voxel_mm, 3) / stretch_z}};
+              {"lost_gaps_mm3", content.unresolved.lost_gaps.voxels * std::pow(grid.voxel_mm, 3) / stretch_z},
+              {"trapped_resin", trapped_resin_figures(content.cavities, grid.voxel_mm, stretch_z)}};
   if (const auto& surface = content.unresolved.surface) {
     const auto places = [&](const model::ThinPlaces& of) -> Json {
       if (of.area_mm2 == 0) return nullptr;

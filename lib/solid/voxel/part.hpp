@@ -8,6 +8,7 @@
 
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
+#include "model/cavities.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "model/part_surface.hpp"
@@ -67,6 +68,7 @@ struct FillSummary {
   float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
   model::Unresolved unresolved;
+  model::Cavities cavities;
   Vote vote;
 };
 

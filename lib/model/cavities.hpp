@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Room within a part that is closed on all sides, whose resin cannot drain.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/grid.hpp"
+#include "model/pieces.hpp"
+
+namespace vam::model {
+
+struct Cavities {
+  int count = 0;
+  std::int64_t voxels = 0;        // of all
+  std::int64_t largest = 0;       // voxels of it
+  std::array<double, 3> at_mm{};  // the middle of its longest row along x
+};
+
+/// Voxels that are covered by less than a half, joined by faces, that no way leads out of; at least 8 of them. Where
+/// walls have no voxel that is half covered a cavity is not closed. Slice by slice, from the lowest up. Memory: the
+/// runs of two slices.
+class CavityFinder {
+ public:
+  explicit CavityFinder(const Grid& grid);
+  /// The next slices of coverage 0...1, row-major, on all threads.
+  void add(int count, const float* slices);
+  /// In the volume, beyond which all is free. After the last slice.
+  [[nodiscard]] Cavities found() const;
+
+ private:
+  /// The longest row of a cavity, in the volume with a margin of one voxel.
+  struct Row {
+    int length = 0;
+    std::array<int, 3> at{};
+    bool outside = false;  // some row of this piece is on the margin
+  };
+  void add(const std::vector<VoxelRun>& runs);
+
+  Grid grid_;
+  RunSets open_;           // that reach the last slice
+  std::vector<Row> rows_;  // of each run
+  int slices_ = 0;
+  Cavities closed_;
+};
+
+}  // namespace vam::model
