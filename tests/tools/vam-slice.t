@@ -196,7 +196,8 @@ under="vam-slice --shape box:x=6,y=6,z=4 --insert-shape box:x=12,y=12,z=2 --inse
 quiet "an insert below a part" $under --report level.json -o under.vdb
 quiet "and high above the lens" $under --place 15 --report report.json -o under.vdb
 vam-slice --shape box:x=6,y=6,z=4 --insert-shape cylinder:diameter=24,height=2 --insert-at 0,0,-3 --voxel 0.25 --place 15 --report wide.json -o under.vdb 2>.log/wide
-holds "and more of it where it is wide" "$(json wide.json insert.slices) >= $(json report.json insert.slices)"
+vam-slice --shape box:x=6,y=6,z=4 --insert-shape cylinder:diameter=4,height=2 --insert-at 0,0,-3 --voxel 0.25 --place 15 --report narrow.json -o under.vdb 2>.log/narrow
+holds "and more of it where it is wide" "$(json wide.json insert.slices) > $(json narrow.json insert.slices)"
 holds "shades light that climbs through more of it" "$(json report.json insert.slices) >= $(json level.json insert.slices) + 3"
 quiet "without a number, too" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --report bare.json -o bare.vdb --cut-insert cube.stl
 quiet "which is none" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --report none.json -o none.vdb --cut-insert 0 cube.stl
