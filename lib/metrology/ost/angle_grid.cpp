@@ -84,10 +84,13 @@ AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_
     const AngleCluster& high = clusters[(before + 1) % clusters.size()];
     const double part = wrapped(angle - low.angle_deg) / gaps[before];
     auto& taps = taps_[a];
-    for (const int i : low.frames)
-      taps.push_back({i, static_cast<float>((1 - part) / static_cast<double>(low.frames.size()))});
-    for (const int i : high.frames)
-      taps.push_back({i, static_cast<float>(part / static_cast<double>(high.frames.size()))});
+    const auto add = [&](const AngleCluster& cluster, double share) {
+      if (share == 0) return;
+      for (const int i : cluster.frames)
+        taps.push_back({i, static_cast<float>(share / static_cast<double>(cluster.frames.size()))});
+    };
+    add(low, 1 - part);
+    add(high, part);
   }
 }
 
