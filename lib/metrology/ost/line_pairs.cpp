@@ -349,23 +349,39 @@ std::vector<ColumnMotion> motion_of(const Vector& p, const PairBasis& basis) {
   return motion;
 }
 
+/// The views of a fit, blurred, and their lines after a motion.
+class MovedViews {
+ public:
+  MovedViews(const std::vector<Image>& level, const PairBasis& basis, const SinogramsOf& sinograms_of)
+      : basis_(basis),
+        sinograms_of_(sinograms_of),
+        blurred_(level),
+        hidden_(hidden_lines(sinograms_of(level), blur_of(level))) {
+    blur_columns(blurred_);
+  }
+  [[nodiscard]] Lines lines(const Vector& value) const {
+    std::vector<Image> moved = blurred_;
+    undo_motion(moved, motion_of(value, basis_), basis_.axis_column);
+    Lines lines{sinograms_of_(moved), {}, hidden_};
+    for (int i = 0; i < pair_motions; ++i) {
+      lines.by[i] = sinograms_of_(slopes(moved, basis_.motion[i], basis_.axis_column));
+    }
+    restore(lines, value[pair_motions], basis_.even_light);
+    return lines;
+  }
+
+ private:
+  const PairBasis& basis_;
+  const SinogramsOf& sinograms_of_;
+  std::vector<Image> blurred_;
+  RayMask hidden_;
+};
+
 }  // namespace
 
 PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, int count,
-                       const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of) {
-  std::vector<Image> blurred = level;
-  blur_columns(blurred);
-  const RayMask hidden = hidden_lines(sinograms_of(level), blur_of(level));
-  const auto lines_after = [&](const Vector& value) {
-    std::vector<Image> moved = blurred;
-    undo_motion(moved, motion_of(value, basis), basis.axis_column);
-    Lines lines{sinograms_of(moved), {}, hidden};
-    for (int i = 0; i < pair_motions; ++i) {
-      lines.by[i] = sinograms_of(slopes(moved, basis.motion[i], basis.axis_column));
-    }
-    restore(lines, value[pair_motions], basis.even_light);
-    return lines;
-  };
+                       const SinogramsOf& sinograms_of) {
+  const MovedViews views(level, basis, sinograms_of);
   PairFit fit;
   double bound = 1e300;
   constexpr int steps = 12;
@@ -373,7 +389,7 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
   constexpr double near_per_px = 1e-4;  // of the absorption
   constexpr double most = 300;          // of these in one step
   for (int step = 0; step < steps && !fit.converged; ++step) {
-    const Lines lines = lines_after(fit.value);
+    const Lines lines = views.lines(fit.value);
     const Sums sums = sums_of(lines, bound);
     Matrix inverse{};
     if (!inverted(sums.normal, count, inverse)) return {};
@@ -386,17 +402,21 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
       fit.sigma[i] = std::sqrt(variance[i]);
       farthest = std::max(farthest, std::abs(move[i]) / near);
     }
-    bound = 2.5 * stats::median(edge_differences(lines)) / 0.6745 + 1e-30;
     fit.converged = step > 0 && farthest < 1;
+    if (!fit.converged) bound = 2.5 * stats::median(edge_differences(lines)) / 0.6745 + 1e-30;
   }
-  if (!fit.converged) return fit;
+  return fit;
+}
+
+bool motion_explains(const std::vector<Image>& level, const PairBasis& basis, const PairVector& value,
+                     const SinogramsOf& sinograms_of) {
+  const MovedViews views(level, basis, sinograms_of);
   Vector unmoved{};
-  unmoved[pair_motions] = fit.value[pair_motions];
-  const auto before = edge_differences(lines_after(unmoved));
+  unmoved[pair_motions] = value[pair_motions];
+  const auto before = edge_differences(views.lines(unmoved));
   constexpr double few = 3;
   const double limit = few * stats::median(before);
-  fit.explains = usual_difference(edge_differences(lines_after(fit.value)), limit) < usual_difference(before, limit);
-  return fit;
+  return usual_difference(edge_differences(views.lines(value)), limit) < usual_difference(before, limit);
 }
 
 }  // namespace vam::metrology

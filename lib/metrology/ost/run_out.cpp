@@ -68,13 +68,11 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
                          s.motion(angles_deg, 0, unit_mm)},
                         s.axis.column,
                         !light.intensity.empty()};
-  const auto fitted = [&](int count) {
-    return fit_line_pairs(level, basis, count, [&](const std::vector<Image>& moved) {
-      return s.virtual_sinograms(camera_sinograms(moved, turns), heights_mm);
-    });
+  const SinogramsOf sinograms_of = [&](const std::vector<Image>& moved) {
+    return s.virtual_sinograms(camera_sinograms(moved, turns), heights_mm);
   };
-  PairFit fit = fitted(pair_unknowns);
-  if (!fit.converged) fit = fitted(pair_motions);  // where bubbles pass
+  PairFit fit = fit_line_pairs(level, basis, pair_unknowns, sinograms_of);
+  if (!fit.converged) fit = fit_line_pairs(level, basis, pair_motions, sinograms_of);  // where bubbles pass
   found.determined = fit.converged;
   found.mm = {s.options.run_out_mm[0] + fit.value[1] * unit_mm, s.options.run_out_mm[1] + fit.value[2] * unit_mm};
   // Both are seen by the same lines; what these say of one alone is little for a standard deviation.
@@ -90,7 +88,10 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
     found.absorption_per_mm = fit.value[pair_motions] / s.grid.voxel_mm;
     found.absorption_sigma_per_mm = fit.sigma[pair_motions] / s.grid.voxel_mm;
   }
-  if (found.absorbs() || (found.seen() && !fit.explains)) found.determined = false;
+  // A quarter of the fit's time, so only where it matters.
+  if (found.absorbs() || (found.seen() && !motion_explains(level, basis, fit.value, sinograms_of))) {
+    found.determined = false;
+  }
   return found;
 }
 

@@ -23,20 +23,26 @@ struct PairBasis {
   bool even_light = false;  // the views were divided by their intensities
 };
 
+/// Takes views to virtual sinograms, linearly, the axis in their middle.
+using SinogramsOf = std::function<std::vector<Image>(const std::vector<Image>&)>;
+
 /// With one standard deviation each.
 struct PairFit {
   PairVector value{};
   PairVector sigma{};
   bool converged = false;
-  bool explains = false;  // converged, and most lines on edges look more alike from both ends than without motion
 };
 
 /// Fits the motion, and with `count` of 4 the absorption, after which each line looks alike from both of its ends.
-/// `level` has a view each, columns x heights; `sinograms_of` takes views to virtual sinograms, linearly, the axis in
-/// their middle. Gauss-Newton on the differences, far ones weighted down [HUB64]; bubbles, which are in single lines,
-/// can still pull it away from most of them, which `explains` tells. Standard deviations from the scatter between
-/// ranges of angle and of offset, as the errors of neighbouring lines are not independent [physics §8].
+/// `level` has a view each, columns x heights. Gauss-Newton on the differences, far ones weighted
+/// down [HUB64]. Standard deviations from the scatter between ranges of angle and of offset, as the errors of
+/// neighbouring lines are not independent [physics §8].
 [[nodiscard]] PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, int count,
-                                     const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of);
+                                     const SinogramsOf& sinograms_of);
+
+/// Do most lines on edges look more alike from both ends with the motion than without? Bubbles, which are in single
+/// lines, can pull a fit away from most of them.
+[[nodiscard]] bool motion_explains(const std::vector<Image>& level, const PairBasis& basis, const PairVector& value,
+                                   const SinogramsOf& sinograms_of);
 
 }  // namespace vam::metrology
