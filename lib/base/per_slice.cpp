@@ -14,13 +14,17 @@ std::vector<Slab> slabs(std::size_t count, int width, int height) {
 }
 
 std::vector<Slab> packed(std::span<const Image> slices, int width, int height) {
-  std::vector<Slab> all = slabs((slices.size() + lanes - 1) / lanes, width, height);
-  parallel_for(count_of(slices), [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
-    const Image& image = slices[i];
+  for (const Image& image : slices) {
     if (image.width != width || image.height != height) throw Error{Fault::bug, "packed: a slice of another size"};
-    float* to = all[i / lanes].values.data() + i % lanes;
-    for (std::size_t p = 0; p < image.size(); ++p) to[p * lanes] = image.values[p];
+  }
+  std::vector<Slab> all = slabs((slices.size() + lanes - 1) / lanes, width, height);
+  parallel_for(count_of(all) * height, [&](int item) {
+    const std::size_t first = product(item / height, lanes);
+    const auto some = slices.subspan(first, std::min<std::size_t>(lanes, slices.size() - first));
+    const int y = item % height;
+    std::array<const float*, lanes> rows{};
+    for (std::size_t s = 0; s < some.size(); ++s) rows[s] = some[s].row(y);
+    side_by_side(std::span(rows).first(some.size()), width, all[item / height].at(0, y), lanes);
   });
   return all;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "base/aligned_memory.hpp"
@@ -25,6 +26,13 @@ struct Slab {
   }
   [[nodiscard]] const float* at(int x, int y) const { return const_cast<Slab*>(this)->at(x, y); }
 };
+
+/// Values 0 .. count - 1 of up to 16 rows side by side, groups of 16 `stride` apart: to[i * stride + s] = rows[s][i],
+/// and 0 for rows that are not there.
+void side_by_side(std::span<const float* const> rows, int count, float* to, std::ptrdiff_t stride);
+
+/// The inverse: rows[s][i] = from[i * stride + s].
+void one_by_one(const float* from, std::ptrdiff_t stride, int count, std::span<float* const> rows);
 
 /// Copies `count` <= 16 row-major images of slab.width x slab.height, one after the other, into lanes 0..count-1 and
 /// zeroes the rest.

@@ -4,6 +4,7 @@
 #include "optics/resample.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -11,13 +12,14 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
+#include "base/slab.hpp"
 #include "optics/private/resample_kernel.hpp"
 
 namespace vam::optics {
 
 namespace {
 
-constexpr int lanes = resample_lanes;
+static_assert(lanes == resample_lanes);
 constexpr int tile_columns = 16;  // one cache line of an output row
 
 using Index = std::ptrdiff_t;
@@ -29,27 +31,24 @@ struct ResampleKernels {
 
 ResampleKernels kernels() { return {VAM_KERNEL(mix_columns, simd_level()), VAM_KERNEL(shift_rows, simd_level())}; }
 
-// Columns [first, last) of up to 16 images as [column][row][16]; missing lanes stay 0.
+// Columns [first, last) of up to 16 images as [column][row][16]; missing lanes are 0.
 void pack(std::span<const Image> images, int first, int last, std::vector<float>& packed) {
   const int rows = images.front().height;
-  packed.assign(Index{last - first} * rows * lanes, 0.0F);
-  for (std::size_t s = 0; s < images.size(); ++s) {
-    for (int r = 0; r < rows; ++r) {
-      const float* from = images[s].row(r) + first;
-      float* to = packed.data() + Index{r} * lanes + static_cast<Index>(s);
-      for (int c = 0; c < last - first; ++c) to[Index{c} * rows * lanes] = from[c];
-    }
+  packed.resize(Index{last - first} * rows * lanes);
+  for (int r = 0; r < rows; ++r) {
+    std::array<const float*, lanes> from{};
+    for (std::size_t s = 0; s < images.size(); ++s) from[s] = images[s].row(r) + first;
+    side_by_side(std::span(from).first(images.size()), last - first, packed.data() + Index{r} * lanes,
+                 Index{rows} * lanes);
   }
 }
 
 void unpack(const std::vector<float>& packed, int first, int last, std::span<Image> images) {
   const int rows = images.front().height;
-  for (std::size_t s = 0; s < images.size(); ++s) {
-    for (int r = 0; r < rows; ++r) {
-      const float* from = packed.data() + Index{r} * lanes + static_cast<Index>(s);
-      float* to = images[s].row(r) + first;
-      for (int c = 0; c < last - first; ++c) to[c] = from[Index{c} * rows * lanes];
-    }
+  for (int r = 0; r < rows; ++r) {
+    std::array<float*, lanes> to{};
+    for (std::size_t s = 0; s < images.size(); ++s) to[s] = images[s].row(r) + first;
+    one_by_one(packed.data() + Index{r} * lanes, Index{rows} * lanes, last - first, std::span(to).first(images.size()));
   }
 }
 

@@ -27,3 +27,31 @@ TEST_CASE("pack puts image s into lane s and zeroes the rest; unpack undoes it")
   unpack(slab, count, back.data());
   CHECK(back == images);
 }
+
+TEST_CASE("rows side by side are 0 where there are none, and one by one they are what they were") {
+  constexpr int stride = 24;
+  for (const int given : {1, 4, 7, 16}) {
+    for (const int count : {1, 4, 11}) {
+      CAPTURE(given);
+      CAPTURE(count);
+      std::vector<std::vector<float>> rows(given, std::vector<float>(count));
+      std::vector<const float*> from;
+      for (int s = 0; s < given; ++s) {
+        std::iota(rows[s].begin(), rows[s].end(), static_cast<float>(1 + 100 * s));
+        from.push_back(rows[s].data());
+      }
+      std::vector<float> together(stride * count, -1.0F);
+      side_by_side(from, count, together.data(), stride);
+      for (int i = 0; i < count; ++i) {
+        for (int s = 0; s < stride; ++s) {
+          CHECK(together[i * stride + s] == (s >= lanes ? -1.0F : s < given ? rows[s][i] : 0.0F));
+        }
+      }
+      std::vector<std::vector<float>> back(given, std::vector<float>(count));
+      std::vector<float*> to;
+      for (auto& row : back) to.push_back(row.data());
+      one_by_one(together.data(), stride, count, to);
+      CHECK(back == rows);
+    }
+  }
+}
