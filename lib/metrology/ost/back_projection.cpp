@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -19,7 +20,7 @@ using Index = std::ptrdiff_t;
 
 // Rays climb alike within a tile: u departs from that of its middle by 5.6 voxels at most, and what this does to a
 // voxel's height averages out over the angles. Tiles of a block share the detector columns in cache.
-constexpr int tile = 8;
+constexpr int tile = climb_tile;
 constexpr int tiles_across = 4;
 constexpr int block = tile * tiles_across;
 constexpr int tiles_a_block = tiles_across * tiles_across;
@@ -82,6 +83,13 @@ struct Scratch {
   std::array<float, tile_columns> gain{};
 };
 
+// Is all of a square of voxels outside the circle that the detector sees?
+bool is_outside(const ClimbingRays& rays, const model::Grid& grid, int x0, int y0, int edge) {
+  const double near_x_mm = std::clamp(0.0, grid.x_mm(x0), grid.x_mm(x0 + edge - 1));
+  const double near_y_mm = std::clamp(0.0, grid.y_mm(y0), grid.y_mm(y0 + edge - 1));
+  return std::hypot(near_x_mm, near_y_mm) > 0.5 * rays.columns * grid.voxel_mm;
+}
+
 class BackProjection {
  public:
   /// The detector begins at slice `first`.
@@ -102,6 +110,7 @@ class BackProjection {
       for (int n = 0; n < tiles_a_block; ++n) {
         const int x = x0 + n % tiles_across * tile;
         const int y = y0 + n / tiles_across * tile;
+        if (is_outside(rays_, grid_, x, y, tile)) continue;
         for (int m = 0; m < angles; ++m) prepare(a + m, m, x, y, slice, heights, scratch);
         kernels_.add({scratch.shifted.data(), Index{widest} * climb_heights, angles, tile_columns, scratch.base.data(),
                       scratch.low.data(), scratch.high.data(), heights,
@@ -138,7 +147,7 @@ class BackProjection {
       }
     }
     const auto entry = product(m, tile_columns);
-    kernels_.place({static_cast<float>(t_first - left), static_cast<float>(c), static_cast<float>(s), tile,
+    kernels_.place({static_cast<float>(t_first - left), static_cast<float>(c), static_cast<float>(s),
                     static_cast<float>(seen) - 2, scratch.gain.data(), scratch.base.data() + entry,
                     scratch.low.data() + entry, scratch.high.data() + entry});
   }
@@ -151,7 +160,7 @@ class BackProjection {
   std::vector<std::array<double, 2>> directions_;
 };
 
-// Adds a block of sums to the volume, within the circle that the detector sees.
+// Puts a block of sums into the volume, within the circle that the detector sees.
 void put(const Scratch& scratch, int x0, int y0, int slice, int count, int columns, model::Volume& volume) {
   const model::Grid& g = volume.grid;
   const double radius_mm = 0.5 * columns * g.voxel_mm;
@@ -160,12 +169,15 @@ void put(const Scratch& scratch, int x0, int y0, int slice, int count, int colum
     for (int x = x0; x < std::min(x0 + block, g.nx); x += tile) {
       const int first = std::max(x, ceil_int((-half_mm - g.origin_mm[0]) / g.voxel_mm));
       const int last = std::min({x + tile - 1, g.nx - 1, floor_int((half_mm - g.origin_mm[0]) / g.voxel_mm)});
+      if (first > last) continue;
       const int n = (j - y0) / tile * tiles_across + (x - x0) / tile;
       const float* from =
-          scratch.sums.data() + (Index{n} * tile_columns + Index{(j - y0) % tile} * tile) * climb_heights;
-      for (int k = 0; k < count; ++k) {
-        float* out = volume.slice(slice + k) + Index{j} * g.nx;
-        for (int i = first; i <= last; ++i) out[i] += from[Index{i - x} * climb_heights + k];
+          scratch.sums.data() + (Index{n} * tile_columns + Index{(j - y0) % tile} * tile + first - x) * climb_heights;
+      for (int k = 0; k < count; k += lanes) {
+        const int some = std::min(lanes, count - k);
+        std::array<float*, lanes> out{};
+        for (int s = 0; s < some; ++s) out[s] = volume.slice(slice + k + s) + Index{j} * g.nx + first;
+        one_by_one(from + k, climb_heights, last - first + 1, std::span(out).first(some));
       }
     }
   }
@@ -187,7 +199,6 @@ void back_project(const ClimbingRays& rays, const std::vector<Slab>& filtered, i
   const model::Grid& g = volume.grid;
   const int across = (g.nx + block - 1) / block;
   const int down = (g.ny + block - 1) / block;
-  const double radius_mm = 0.5 * rays.columns * g.voxel_mm;
   for (int from = 0; from < count; from += climb_heights) {
     const int slices = std::min(climb_heights, count - from);
     const int heights = (slices + climb_step - 1) / climb_step * climb_step;
@@ -197,9 +208,7 @@ void back_project(const ClimbingRays& rays, const std::vector<Slab>& filtered, i
       thread_local Scratch scratch;
       const int x0 = item % across * block;
       const int y0 = item / across * block;
-      const double near_x_mm = std::clamp(0.0, g.x_mm(x0), g.x_mm(x0 + block - 1));
-      const double near_y_mm = std::clamp(0.0, g.y_mm(y0), g.y_mm(y0 + block - 1));
-      if (std::hypot(near_x_mm, near_y_mm) > radius_mm) return;
+      if (is_outside(rays, g, x0, y0, block)) return;
       job.sum(x0, y0, first + from, heights, scratch);
       put(scratch, x0, y0, first + from, slices, rays.columns, volume);
     });

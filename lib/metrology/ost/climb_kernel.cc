@@ -42,9 +42,9 @@ void climb_columns(const ShearedColumns& job) {
 
 void place_tile(const TilePlace& job) {
   int q = 0;
-  for (int j = 0; j < job.edge; ++j) {
+  for (int j = 0; j < climb_tile; ++j) {
     const float row = job.t + static_cast<float>(j) * job.step_y;
-    for (int i = 0; i < job.edge; ++i, ++q) {
+    for (int i = 0; i < climb_tile; ++i, ++q) {
       const float t = row + static_cast<float>(i) * job.step_x;
       const float inside = t < 0 ? 0.0F : t > job.last ? job.last : t;
       const int base = static_cast<int>(inside);
@@ -56,27 +56,38 @@ void place_tile(const TilePlace& job) {
   }
 }
 
-void add_tile(const TileSum& job) {
-  constexpr int together = 2;
-  for (int q = 0; q < job.columns; ++q) {
-    float* sums = job.sums + static_cast<long>(q) * climb_heights;
-    for (int z = 0; z < job.heights; z += together * vector_floats) {
-      Vector sum[together];
-#pragma GCC unroll 2
-      for (int v = 0; v < together; ++v) sum[v] = load(sums + z + v * vector_floats);
-      for (int m = 0; m < job.angles; ++m) {
-        const int entry = m * job.columns + q;
-        const float* from = job.shifted + m * job.angle_stride + static_cast<long>(job.base[entry]) * climb_heights + z;
-        const float low = job.low[entry];
-        const float high = job.high[entry];
-#pragma GCC unroll 2
-        for (int v = 0; v < together; ++v) {
-          sum[v] += low * load(from + v * vector_floats) + high * load(from + climb_heights + v * vector_floats);
-        }
-      }
-#pragma GCC unroll 2
-      for (int v = 0; v < together; ++v) store(sums + z + v * vector_floats, sum[v]);
+namespace {
+
+// `together` vectors of heights at once, so that an angle's weights are loaded once for all of them.
+template <int together>
+void add_heights(const TileSum& job, int q, int z) {
+  float* sums = job.sums + static_cast<long>(q) * climb_heights + z;
+  Vector sum[together];
+#pragma GCC unroll 4
+  for (int v = 0; v < together; ++v) sum[v] = load(sums + v * vector_floats);
+  for (int m = 0; m < job.angles; ++m) {
+    const int entry = m * job.columns + q;
+    const float* from = job.shifted + m * job.angle_stride + static_cast<long>(job.base[entry]) * climb_heights + z;
+    const float low = job.low[entry];
+    const float high = job.high[entry];
+#pragma GCC unroll 4
+    for (int v = 0; v < together; ++v) {
+      sum[v] += low * load(from + v * vector_floats) + high * load(from + climb_heights + v * vector_floats);
     }
+  }
+#pragma GCC unroll 4
+  for (int v = 0; v < together; ++v) store(sums + v * vector_floats, sum[v]);
+}
+
+}  // namespace
+
+void add_tile(const TileSum& job) {
+  constexpr int few = climb_step / vector_floats;
+  constexpr int many = 4;
+  for (int q = 0; q < job.columns; ++q) {
+    int z = 0;
+    for (; z + many * vector_floats <= job.heights; z += many * vector_floats) add_heights<many>(job, q, z);
+    for (; z < job.heights; z += climb_step) add_heights<few>(job, q, z);
   }
 }
 

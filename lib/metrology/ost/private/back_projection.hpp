@@ -22,7 +22,7 @@ struct ClimbingRays {
 /// How many heights beyond a slice its rays reach, for the slices of the grid.
 [[nodiscard]] int heights_beyond(const ClimbingRays& rays, const model::Grid& grid);
 
-/// Adds to slices [first, first + count) of the volume, those within the circle that the columns see. `filtered` has
+/// Fills slices [first, first + count) of the volume within the circle that the columns see. `filtered` has
 /// columns x angles, heights from slice first - beyond on, 16 a slab, at the pitch of the slices.
 void back_project(const ClimbingRays& rays, const std::vector<Slab>& filtered, int beyond, int first, int count,
                   model::Volume& volume);

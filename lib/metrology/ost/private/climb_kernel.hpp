@@ -6,6 +6,7 @@
 namespace vam::metrology {
 
 inline constexpr int climb_heights = 64;  // slices of one tile
+inline constexpr int climb_tile = 8;      // voxel columns of one tile across and down
 inline constexpr int climb_step = 32;     // heights a call are a multiple of it, whole vectors
 
 /// Detector columns at other heights: out[c][z] = in[c](first + slope * z), linear, for z = 0 ... heights - 1.
@@ -26,7 +27,6 @@ struct TilePlace {
   float t;
   float step_x;
   float step_y;
-  int edge;           // voxel columns across and down
   float last;         // highest base
   const float* gain;  // of each voxel column
   int* base;
