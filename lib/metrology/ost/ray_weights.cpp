@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "metrology/ost/private/ost_state.hpp"
 #include "model/absorption.hpp"
 #include "model/circle.hpp"
@@ -15,15 +17,20 @@ namespace vam::metrology {
 void OstReconstructor::State::weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const {
   const double radius_mm = optics::resin_radius_mm(eye.view);
   const double rate = climb_rate_per_mm(eye, 0);
-  for (std::size_t k = 0; k < sinograms.size(); ++k) {
-    const double cosine = 1 / std::hypot(1, rate * heights_mm[k]);
-    for (int t = 0; t < detector.columns; ++t) {
-      const double x_mm = detector.x_mm(t);
-      const double way_mm = model::half_chord(radius_mm, x_mm);
-      const auto weight = static_cast<float>(cosine / model::transmitted(absorption_per_mm, way_mm));
-      for (int a = 0; a < sinograms[k].height; ++a) sinograms[k](t, a) *= weight;
-    }
+  std::vector<double> lost;
+  for (int t = 0; t < detector.columns; ++t) {
+    lost.push_back(1 / model::transmitted(absorption_per_mm, model::half_chord(radius_mm, detector.x_mm(t))));
   }
+  parallel_for(count_of(sinograms), [&](int k) {
+    Image& s = sinograms[k];
+    const double cosine = 1 / std::hypot(1, rate * heights_mm[k]);
+    std::vector<float> weight(s.width);
+    for (int t = 0; t < s.width; ++t) weight[t] = static_cast<float>(cosine * lost[t]);
+    for (int a = 0; a < s.height; ++a) {
+      float* row = s.row(a);
+      for (int t = 0; t < s.width; ++t) row[t] *= weight[t];
+    }
+  });
 }
 
 }  // namespace vam::metrology
