@@ -2,6 +2,7 @@
 #include "vam-ost/session.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
@@ -36,9 +37,9 @@ Session::Session(const cli::App& app, const Options& options)
   (void)optics::camera_view(printer_);  // an impossible bench is no matter of the views
 }
 
-metrology::CameraView Session::take(const io::CameraFrame& frame) {
-  metrology::CameraView view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg,
-                             frame.time_s};
+metrology::CameraView Session::take(io::CameraFrame frame) {
+  metrology::CameraView view{metrology::corrected(std::move(frame.image), fields_, options_.binning, frame.name),
+                             frame.angle_deg, frame.time_s};
   if (width_ == 0) {
     width_ = view.image.width;
     height_ = view.image.height;

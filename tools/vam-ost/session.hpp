@@ -25,7 +25,7 @@ class Session {
   Session(const cli::App& app, const Options& options);
 
   /// A frame as a view: its size checked, corrected, binned.
-  metrology::CameraView take(const io::CameraFrame& frame);
+  metrology::CameraView take(io::CameraFrame frame);
   /// Live: a turn may show nothing yet, or have gaps; the next one may be better. The axis is found as soon as
   /// something is visible, and again until it is certain.
   struct Attempt {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-ost/usable_views.hpp"
 
+#include <utility>
+
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/log.hpp"
@@ -21,8 +23,8 @@ std::vector<metrology::CameraView> usable_views(Session& session, io::ViewSource
       leave_out(frame.name, problem);
       continue;
     }
-    views.push_back(session.take(frame));
     names.push_back(frame.name);
+    views.push_back(session.take(std::move(frame)));
   }
   const std::vector<std::string> unlike = metrology::contrast_problems(views);
   std::vector<metrology::CameraView> usable;

@@ -141,12 +141,11 @@ std::vector<double> some_of(const std::vector<double>& heights) {
 
 }  // namespace
 
-Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, std::span<const double> angles_deg,
-                                         double background) const {
+Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, const Image& mean,
+                                         std::span<const double> angles_deg, double background) const {
   if (absorption_per_mm > 0 || !options.refraction || views.size() < 3 * terms) return {};
   const RowOfHeight map(eye);
-  const auto heights_mm =
-      some_of(print_heights(mean_view(views), map, eye, grid, std::numeric_limits<std::size_t>::max()));
+  const auto heights_mm = some_of(print_heights(mean, map, eye, grid, std::numeric_limits<std::size_t>::max()));
   if (heights_mm.empty()) return {};
   auto level = level_views(views, LevelRows(map, eye.camera.columns, eye.rows, heights_mm, axis));
   make_steady(level, background, {});

@@ -184,8 +184,9 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   Dirt dirt;
   Flicker light;
   if (s.options.clean) {
-    dirt = even_background(mean_view(views));
-    light = s.flicker(views, angles_deg, dirt.background);
+    const Image mean = mean_view(views);
+    dirt = even_background(mean);
+    light = s.flicker(views, mean, angles_deg, dirt.background);
     dirt.flicker_percent = light.percent;
   }
   model::Volume volume{s.grid, std::vector<float>(s.grid.size())};

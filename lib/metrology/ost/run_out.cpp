@@ -60,7 +60,7 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm, s.axis);
   auto level = level_views(views, rows);
   const double background = even_background(mean).background;
-  const Flicker light = s.flicker(views, angles_deg, background);
+  const Flicker light = s.flicker(views, mean, angles_deg, background);
   make_steady(level, background, light.intensity);
   undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
   const double unit_mm = s.eye.camera.pixel_mm;

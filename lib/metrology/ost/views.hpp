@@ -28,7 +28,7 @@ struct CameraFields {
 /// (raw - dark) / (flat / mean(flat)), then the mean of binning x binning pixels; a remainder at the right and lower
 /// edge is dropped. `subject` begins messages. Throws Fault::data when sizes differ or the flat field has a pixel that
 /// is not positive.
-[[nodiscard]] Image corrected(const Image& raw, const CameraFields& fields, int binning, const std::string& subject);
+[[nodiscard]] Image corrected(Image raw, const CameraFields& fields, int binning, const std::string& subject);
 
 /// Why a frame cannot be measured: no contrast at all (dark), or more than 2 % of its pixels at one and the same
 /// highest value (saturated). Empty when it can.

@@ -41,10 +41,10 @@ struct OstReconstructor::State {
   [[nodiscard]] std::vector<double> heights_mm(int first, int count) const;
   [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
                                                      std::span<const double> heights_mm) const;
-  /// The light of the views over that of the median view. Not determined in absorbing resin, without refraction, and
-  /// where the print leaves the image.
-  [[nodiscard]] Flicker flicker(std::span<const CameraView> views, std::span<const double> angles_deg,
-                                double background) const;
+  /// The light of the views, of which `mean` is the mean, over that of the median view. Not determined in absorbing
+  /// resin, without refraction, and where the print leaves the image.
+  [[nodiscard]] Flicker flicker(std::span<const CameraView> views, const Image& mean,
+                                std::span<const double> angles_deg, double background) const;
   /// What a run-out of (x, y) mm in the frame of the part does to the columns of views at these stage angles.
   [[nodiscard]] std::vector<ColumnMotion> motion(std::span<const double> angles_deg, double x_mm, double y_mm) const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
