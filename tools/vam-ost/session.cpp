@@ -93,7 +93,7 @@ io::SparseVolume Session::sparse(const std::string& name, const model::Volume& v
   made.history.push_back(app_.history());
   made.metadata["vam:printer"] = io::printer_settings(printer_);
   made.units = "view units per mm";
-  made.write_slices(0, volume.grid.nz, volume.values.data());
+  made.show(volume.values.data());
   return made;
 }
 

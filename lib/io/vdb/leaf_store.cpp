@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "base/index.hpp"
+
 namespace vam::io {
 
 namespace {
@@ -13,13 +15,36 @@ std::uint64_t offset_of(openvdb::Index32 place) { return (std::uint64_t{place} -
 
 }  // namespace
 
+void LeafStore::show(const float* dense, const openvdb::Coord& size) {
+  dense_ = dense;
+  size_ = size;
+}
+
+const float* LeafStore::shown(const openvdb::Coord& origin, Values& room) const {
+  const openvdb::Coord last = openvdb::Coord::minComponent(size_ - origin, openvdb::Coord(Leaf::DIM));
+  const bool whole = last == openvdb::Coord(Leaf::DIM);
+  if (!whole) room.fill(0);
+  for (int z = 0; z < last.z(); ++z) {
+    for (int y = 0; y < last.y(); ++y) {
+      const std::size_t row = flat_index(origin.z() + z, size_.y(), origin.y() + y);
+      const float* from = dense_ + flat_index(row, size_.x(), origin.x());
+      float* to = room.data() + (y << 3) + z;
+      const int n = whole ? static_cast<int>(Leaf::DIM) : last.x();
+      for (int x = 0; x < n; ++x) to[x << 6] = from[x];
+    }
+  }
+  return room.data();
+}
+
 const float* LeafStore::values(const Leaf& leaf, Values& room) const {
+  if (shows()) return shown(leaf.origin(), room);
   if (leaf.transientData() == 0) return leaf.buffer().data();
   file_->read(offset_of(leaf.transientData()), room.data(), leaf_bytes);
   return room.data();
 }
 
 void LeafStore::add(Leaf& leaf, const Leaf* old) {
+  if (shows()) return;
   if (old != nullptr) remove(*old);
   if (in_memory_ < most_in_memory) {
     ++in_memory_;
@@ -41,6 +66,7 @@ void LeafStore::add(Leaf& leaf, const Leaf* old) {
 }
 
 void LeafStore::remove(const Leaf& leaf) {
+  if (shows()) return;
   if (leaf.transientData() == 0) {
     --in_memory_;
   } else {

@@ -5,7 +5,10 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "io/vdb/private/facts.hpp"
 
 namespace vam::io {
@@ -63,10 +66,22 @@ LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf, const float* 
 void seal(openvdb::FloatGrid& sparse, const LeafStore& leaves) {
   VoxelSealer voxels;
   voxels.begin(sparse.constTree());
-  LeafStore::Values room;
+  constexpr std::size_t leaves_together = 2048;
+  std::vector<const LeafStore::Leaf*> some;
+  std::vector<LeafRecord> records(leaves_together);
+  const auto add_some = [&] {
+    parallel_for(count_of(some), [&](int n) {
+      LeafStore::Values room;
+      records[n] = record_of(*some[n], leaves.values(*some[n], room));
+    });
+    for (std::size_t n = 0; n < some.size(); ++n) voxels.add(records[n]);
+    some.clear();
+  };
   for (auto leaf = sparse.constTree().cbeginLeaf(); leaf; ++leaf) {
-    voxels.add(record_of(*leaf, leaves.values(*leaf, room)));
+    some.push_back(leaf.getLeaf());
+    if (some.size() == leaves_together) add_some();
   }
+  add_some();
   sparse.insertMeta(facts_seal_key, openvdb::StringMetadata(seal_text(facts_digest(sparse))));
   sparse.insertMeta(values_seal_key, openvdb::StringMetadata(seal_text(voxels.digest())));
 }

@@ -145,8 +145,11 @@ LeafBlock block_at(const Coord& at, const LeafSlab& slab, const float* in, const
                                 std::to_string(at.z()) + " and on is not a finite number"};
   }
   if (is_one_value(values)) return block;
-  block.leaf = std::make_unique<Leaf>(at, background, false);
-  std::copy_n(values, Leaf::SIZE, block.leaf->buffer().data());
+  block.leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), at, background, false);
+  if (!state.leaves->shows()) {
+    block.leaf->allocate();
+    std::copy_n(values, Leaf::SIZE, block.leaf->buffer().data());
+  }
   block.leaf->setValueMask(active_mask(values, background));
   return block;
 }
@@ -249,6 +252,11 @@ void SparseVolume::write_slices(int k0, int count, const float* in) {
       hang_in(block, slab.origin(row, i), *state_, accessor);
     }
   }
+}
+
+void SparseVolume::show(const float* in) {
+  state_->leaves->show(in, {state_->grid.nx, state_->grid.ny, state_->grid.nz});
+  write_slices(0, state_->grid.nz, in);
 }
 
 void SparseVolume::prune() {

@@ -29,6 +29,8 @@ class SparseVolume {
   /// Copies slices in; background values are not stored. One thread at a time; whole multiples of 8 slices from a
   /// multiple of 8 are fastest.
   void write_slices(int k0, int count, const float* in);
+  /// All slices of a volume that holds nothing yet, background 0, without a copy: `in` stays as it is while this lives.
+  void show(const float* in);
   /// Takes a larger grid of the same voxels, with the background around; nothing is copied. Throws Fault::data where
   /// the grid does not hold this one, of that file, or its voxels lie elsewhere.
   void extend_to(const model::Grid& grid, const std::string& file);

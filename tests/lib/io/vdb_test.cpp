@@ -167,6 +167,20 @@ TEST_CASE("the same volume gives the same bytes, whatever the number of threads"
   CHECK(slurp(folder / "1").substr(21, 36) != slurp(folder / "3").substr(21, 36));  // the archive's UUID
 }
 
+TEST_CASE("a volume that is shown has the voxels and the seal of one that is copied") {
+  const scratch::Folder folder;
+  const model::Grid grid = model::centred_grid(27, 16, 13, 0.1);
+  const auto values = ball(grid);
+  auto copied = filled("scatter", grid, values);
+  SparseVolume shown("scatter", grid);
+  shown.show(values.data());
+  CHECK(dense(shown) == values);
+  write_volume(folder / "copied", copied);
+  write_volume(folder / "shown", shown);
+  CHECK(dense(read_volume(folder / "shown", "scatter")) == values);
+  CHECK(check_volumes(folder / "shown", false).front().seal == check_volumes(folder / "copied", false).front().seal);
+}
+
 TEST_CASE("several archives on one stream are read as one") {
   const scratch::Folder folder;
   const auto grid = model::centred_grid(10, 10, 10, 0.1);

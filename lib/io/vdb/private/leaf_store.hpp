@@ -35,10 +35,18 @@ class LeafStore {
   /// A leaf leaves the tree.
   void remove(const Leaf& leaf);
 
+  /// Leaves come without values from here on: theirs are the voxels of `dense`, x fastest, from (0, 0, 0) on.
+  void show(const float* dense, const openvdb::Coord& size);
+  [[nodiscard]] bool shows() const { return dense_ != nullptr; }
+
   /// Whether leaves without values are in the tree.
-  [[nodiscard]] bool spilt() const { return file_ != nullptr; }
+  [[nodiscard]] bool spilt() const { return file_ != nullptr || shows(); }
 
  private:
+  [[nodiscard]] const float* shown(const openvdb::Coord& origin, Values& room) const;
+
+  const float* dense_ = nullptr;
+  openvdb::Coord size_;  // of it
   std::size_t in_memory_ = 0;
   openvdb::Index32 places_ = 0;  // of the file
   std::vector<openvdb::Index32> free_;
