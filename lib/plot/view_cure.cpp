@@ -61,12 +61,11 @@ std::vector<LegendEntry> legend_of(const Counts& counts, bool insert) {
       {Mark::patch, colours[overcured], with_share("overcured", counts.overcured, counts.outside, "void")}};
   if (counts.cut_missing > 0)
     entries.push_back({Mark::patch, colours[cut_missing],
-                       with_share("missing in voxels that the surface cuts, of which half or more is part",
-                                  counts.cut_missing, counts.part, "part")});
+                       with_share("missing in voxels that the surface cuts", counts.cut_missing, counts.part, "part")});
   if (counts.cut_overcured > 0)
-    entries.push_back({Mark::patch, colours[cut_overcured],
-                       with_share("overcured in voxels that the surface cuts, of which less than half is part",
-                                  counts.cut_overcured, counts.outside, "void")});
+    entries.push_back(
+        {Mark::patch, colours[cut_overcured],
+         with_share("overcured in voxels that the surface cuts", counts.cut_overcured, counts.outside, "void")});
   entries.push_back({Mark::none,
                      {},
                      insert ? "the insert, and void beyond the writable circle, are not counted"

@@ -190,7 +190,7 @@ std::vector<std::string> notes() {
       "finished slices that recur; with --bits all projections. Of coupled slices, what exceeds --memory is kept in "
       "scratch files in TMPDIR (default: /var/tmp). With --robust an iteration "
       "takes three times as long and needs one more array of the slices and four more of the sinograms, and all "
-      "projections are kept; each simulated printer takes about a third of the time of a plain iteration."};
+      "projections are kept; each simulated printer takes the time of vam-dose."};
 }
 
 }  // namespace

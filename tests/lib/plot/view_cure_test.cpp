@@ -27,8 +27,7 @@ TEST_CASE("the cure map tells what is missing and what is too much, and where th
   CHECK(seen == std::vector<Rgb>{paint::blue, {150, 150, 150}, cut_missing, paint::vermilion, paint::white});
   CHECK(figure.legend[1].words == "missing (40 % of the part seen)");  // 1 of 2.5 voxels
   CHECK(figure.legend[2].words == "overcured (50 % of the void seen)");
-  CHECK(figure.legend[3].words ==
-        "missing in voxels that the surface cuts, of which half or more is part (20 % of the part seen)");
+  CHECK(figure.legend[3].words == "missing in voxels that the surface cuts (20 % of the part seen)");
   for (const auto& [coverage, dose_there, colour] :
        {std::tuple{0.4F, 0.6F, cut_cured}, {0.4F, 0.4F, paint::white}, {0.6F, 0.6F, Rgb{150, 150, 150}}}) {
     std::vector<float> cut = covered;
