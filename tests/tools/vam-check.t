@@ -208,6 +208,16 @@ is 'one without checksums, whatever its name' "$(vam-check looks.mkv | head -n 1
 fails 66 'none.exr: cannot open' vam-check none.exr
 : >empty.vdb
 fails 65 'empty.vdb: is empty' vam-check empty.vdb
+python3 -c "
+import struct, sys
+head = struct.pack('<qIIIB', 0x56444220, 224, 10, 0, 1) + b'6219db8d-fccc-86ea-8254-68b69b4f6c3f'
+sys.stdout.buffer.write(head + struct.pack('<II', 0, 0))" >bare.vdb
+fails 65 'bare.vdb: has no grids; ' vam-check bare.vdb
+fails 65 'bare.vdb: has no grids; ' vam-check --fast bare.vdb
+fails 65 'stdin: has no grids; ' sh -c 'vam-check <bare.vdb'
+fails 65 'bare.vdb: has no grids; ' vam-curethrough model bare.vdb
+vam-check bare.vdb part.vdb >out 2>.log/err
+is 'beside it the others are checked' "$? $(grep -c '^part.vdb: grid' out)" '65 1'
 { cat part.vdb; echo more; } >long.vdb
 fails 65 'long.vdb: trailing data after the last grid, from byte [0-9]+ on, is not a volume' vam-check long.vdb
 fails 65 'stdin: trailing data after the last grid' sh -c 'vam-sinogram - -o x.exr <long.vdb'

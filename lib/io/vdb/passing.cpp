@@ -150,7 +150,9 @@ class PassingArchive : public openvdb::io::Archive {
     setDataCompression(stream);
     openvdb::MetaMap().readMeta(stream);
     std::map<std::string, PassingGrid*> grids;  // of this archive
-    for (auto left = readGridCount(stream); left > 0; --left) {
+    auto left = readGridCount(stream);
+    if (left == 0) throw std::runtime_error("has no grids; the program that wrote it had nothing to write");
+    for (; left > 0; --left) {
       openvdb::io::GridDescriptor about;
       const openvdb::GridBase::Ptr grid = about.read(stream);
       kept_.push_back(grid);

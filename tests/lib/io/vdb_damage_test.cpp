@@ -61,6 +61,27 @@ TEST_CASE("a size that OpenVDB believes ends one line, not the process") {
   }
 }
 
+TEST_CASE("an archive without grids is one line") {
+  const scratch::Folder folder;
+  for (const bool with_offsets : {false, true}) {
+    CAPTURE(with_offsets);
+    std::string bytes(65, '\0');
+    const std::uint32_t format_and_library[] = {224, 10, 0};
+    std::memcpy(bytes.data(), " BDV", 4);
+    std::memcpy(bytes.data() + 8, format_and_library, sizeof format_and_library);
+    bytes[20] = with_offsets ? 1 : 0;
+    std::memcpy(bytes.data() + 21, "6219db8d-fccc-86ea-8254-68b69b4f6c3f", 36);
+    spill(folder / "a.vdb", bytes);
+    std::string line;
+    for (const bool fast : {false, true}) {
+      CHECK(status([&] { (void)check_volumes(folder / "a.vdb", fast); }, &line) == 65);
+      CHECK(line.find("a.vdb: has no grids; ") != std::string::npos);
+    }
+    CHECK(status([&] { by_blocks(folder / "a.vdb", "target"); }, &line) == 65);
+    CHECK(line.find("a.vdb: has no grids; ") != std::string::npos);
+  }
+}
+
 TEST_CASE("an archive truncated anywhere is status 65, and a flipped bit never crashes") {
   const scratch::Folder folder;
   const auto grid = model::centred_grid(30, 30, 30, 0.1);
