@@ -101,6 +101,12 @@ is 'a file of another program is reported as unsealed' "$(vam-check foreign.exr 
 ok 'other tools read an unsealed file' vam-resample foreign.exr -o r.exr
 is 'a mesh is unsealed' "$(vam-check a.off)" 'a.off: file of another kind, unsealed'
 
+vam-view part.vdb -o seen.png
+is 'a whole PNG image' "$(vam-check seen.png)" 'seen.png: a PNG image, unsealed'
+head -c 60 seen.png >cut.png
+fails 65 'cut.png: the PNG is damaged: it is truncated' vam-check cut.png
+fails 65 'stdin: the PNG is damaged: it is truncated' sh -c 'vam-check <cut.png'
+
 # A volume that states an impossible stretch.
 for stretch in 1e300 nan 2x -1; do
   python3 - "$stretch" <<'PY'

@@ -103,6 +103,16 @@ ImageBatch::~ImageBatch() = default;
 
 int ImageBatch::count() const { return state_->count; }
 
+void require_png(const std::string& bytes, const std::string& name) {
+  read_apart(
+      {name, bytes.size(), -1, most_unpacked},
+      [&](Sender& out) {
+        (void)decode_png(bytes, name);
+        out.put(true);
+      },
+      [](Receiver& in) { (void)in.get<bool>(); });
+}
+
 GreyImage ImageBatch::next() {
   GreyImage image;
   state_->apart.take([&](Receiver& in) { image = received(in); });

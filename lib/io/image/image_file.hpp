@@ -18,6 +18,9 @@ namespace vam::io {
 /// Throws Error: no_input, io, data (neither PNG nor TIFF, truncated, damaged).
 [[nodiscard]] GreyImage read_image(const std::string& path);
 
+/// Throws Error: data, beginning with `name`, unless the bytes are a whole PNG that read_image() reads.
+void require_png(const std::string& bytes, const std::string& name);
+
 /// Text that goes into a PNG beside the pixels (tEXt chunks): keyword to text.
 using ImageText = std::map<std::string, std::string>;
 

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <csetjmp>
+#include <cstdint>
 #include <cstring>
 #include <vector>
 
@@ -20,14 +21,17 @@ struct Source {
   const char* at;
   std::size_t left;
   char problem[120];
+  std::size_t allowed = SIZE_MAX;  // bytes until the next row
 };
 
 void read(png_structp png, png_bytep to, std::size_t size) {
   auto& source = *static_cast<Source*>(png_get_io_ptr(png));
   if (size > source.left) png_error(png, "it is truncated");
+  if (size > source.allowed) png_error(png, "IDAT: Too much image data");  // as libpng says when it has unpacked it all
   std::memcpy(to, source.at, size);
   source.at += size;
   source.left -= size;
+  source.allowed -= size;
 }
 
 [[noreturn]] void fail(png_structp png, png_const_charp why) {
@@ -36,12 +40,16 @@ void read(png_structp png, png_bytep to, std::size_t size) {
   png_longjmp(png, 1);
 }
 
-void ignore(png_structp /*png*/, png_const_charp /*why*/) {}
+// What stands in the way of other chunks than those of the pixels does no harm.
+void judge(png_structp png, png_const_charp why) {
+  if (std::strncmp(why, "IDAT", 4) == 0) png_error(png, why);
+}
 
 class PngReader {
  public:
   explicit PngReader(Source& source)
-      : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, fail, ignore)),
+      : source_(source),
+        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, fail, judge)),
         info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
     if (info_ == nullptr) throw std::bad_alloc();
     png_set_read_fn(png_, &source, read);
@@ -60,13 +68,22 @@ class PngReader {
     png_set_strip_alpha(png_);
     if ((png_get_color_type(png_, info_) & PNG_COLOR_MASK_COLOR) != 0) png_set_rgb_to_gray(png_, 1, 0.299, 0.587);
     if (std::endian::native == std::endian::little) png_set_swap(png_);
-    png_set_interlace_handling(png_);
+    passes_ = png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     return true;
   }
-  bool pixels(png_bytepp rows) {
+  // With the last row libpng unpacks what follows it, without an end: each row may take no more than it can need, in
+  // codes of 15 bits, beside the tables of deflate and what libpng reads ahead (8 KiB).
+  bool pixels(std::vector<png_bytep>& rows) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
-    png_read_image(png_, rows);
+    const std::size_t a_row = 2 * row_bytes() + (std::size_t{1} << 15);
+    for (int pass = 0; pass < passes_; ++pass) {
+      for (png_bytep row : rows) {
+        source_.allowed = a_row;
+        png_read_row(png_, row, nullptr);
+      }
+    }
+    source_.allowed = SIZE_MAX;
     png_read_end(png_, nullptr);
     return true;
   }
@@ -76,8 +93,10 @@ class PngReader {
   [[nodiscard]] std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
 
  private:
+  Source& source_;
   png_structp png_;
   png_infop info_;
+  int passes_ = 1;
 };
 
 }  // namespace
@@ -99,7 +118,7 @@ GreyImage decode_png(const std::string& bytes, const std::string& name) {
   std::vector<png_byte> pixels(reader.row_bytes() * reader.height());
   std::vector<png_bytep> rows(reader.height());
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels.data() + y * reader.row_bytes();
-  if (!reader.pixels(rows.data())) throw damaged();
+  if (!reader.pixels(rows)) throw damaged();
   if (source.left > 0) {
     throw Error{Fault::data, name + ": has " + std::to_string(source.left) +
                                  " bytes behind the end of its PNG image; it is damaged, or holds several images"};

@@ -11,6 +11,7 @@
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/image/capture_folder.hpp"
+#include "io/image/image_file.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/resumption.hpp"
@@ -155,6 +156,7 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   }
   if (!has_printer_section(text) && !path.ends_with(".toml")) {
     const std::string foreign = text.front() == '{' ? "" : foreign_format(text);
+    if (!fast && text.starts_with("\x89PNG\r\n")) require_png(text, name);
     return {{foreign.empty() ? "file of another kind" : foreign, require_text_seal(text, name), "", {}}};
   }
   const bool sealed = require_text_seal(text, name);

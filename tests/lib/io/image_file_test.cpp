@@ -14,6 +14,7 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
+#include "lib/io/cpu_time.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::GreyImage;
@@ -102,6 +103,48 @@ TEST_CASE("truncated, damaged and foreign images are errors") {
   const std::string tiff{std::istreambuf_iterator<char>(stream), {}};
   CHECK(refused(tiff.substr(0, tiff.size() / 2)) != "no error");
   error_of([&] { (void)read_image(folder / "none.png"); }, vam::Fault::no_input);
+}
+
+namespace {
+
+// A PNG of 8 x 8 grey pixels whose image data are `packed`.
+std::string png_of(const std::string& packed) {
+  std::string png = encode_png(GreyImage(8, 8, 8)).substr(0, 33);  // signature and IHDR
+  for (const std::string& chunk : {"IDAT" + packed, std::string("IEND")}) {
+    const auto big_endian = [&](std::size_t value) {
+      for (int shift = 24; shift >= 0; shift -= 8) png += static_cast<char>(value >> shift & 0xff);
+    };
+    big_endian(chunk.size() - 4);
+    png += chunk;
+    big_endian(crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size())));
+  }
+  return png;
+}
+
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string packed(size, '\0');
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  return packed.substr(0, size);
+}
+
+}  // namespace
+
+TEST_CASE("what follows the last row of a PNG is refused, and not unpacked") {
+  const scratch::Folder folder;
+  constexpr std::size_t rows = 8 * 9;
+  CHECK(read_image(folder.write("a.png", png_of(deflated(std::string(rows, '\0'))))).values.size() == 64);
+  const std::string packed = deflated(std::string(rows, '\0'));
+  for (const std::string& bad : {deflated(std::string(rows + 1, '\0')), deflated(std::string(1 << 20, '\0')),
+                                 packed + "more", packed.substr(0, packed.size() - 1) + "x"}) {
+    const std::string path = folder.write("bad.png", png_of(bad));
+    CHECK(has(error_of([&] { (void)read_image(path); }, vam::Fault::data), "bad.png: the PNG is damaged: IDAT"));
+  }
+  const std::string bomb = png_of(deflated(std::string(std::size_t{200} << 20, '\0')));
+  const double before = cpu_s();
+  const std::string line = error_of([&] { (void)read_image(folder.write("bomb.png", bomb)); }, vam::Fault::data);
+  CHECK(has(line, "IDAT: Too much image data"));
+  CHECK(cpu_s() - before < 0.15);  // unpacking it takes 0.4 s
 }
 
 namespace {
