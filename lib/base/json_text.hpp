@@ -9,12 +9,13 @@
 
 namespace vam {
 
-/// The value of a text; discarded (is_discarded()) where the text is no JSON, or nested deeper than 64 levels: what
-/// walks a value calls itself once a level, and a file of 100 kB could end it.
+/// The value of a text, in a time proportional to its length; discarded (is_discarded()) where the text is no JSON,
+/// nested deeper than 64 levels (what walks a value calls itself once a level, and a file of 100 kB could end it), or
+/// has an object of more than 1024 keys.
 [[nodiscard]] Json parse_json(std::string_view text);
 
 /// The same of what is evidence: throws Fault::data where an object has a key twice, of which only one would be
-/// believed. `name` begins the message.
+/// believed, or more than 1024 keys. `name` begins the message.
 [[nodiscard]] Json parse_distinct(std::string_view text, const std::string& name);
 
 /// What stands at a key, or `otherwise` where there is none or something of another type.

@@ -151,6 +151,8 @@ ok 'the layout of a report is not sealed' vam-check t.json
 sed 's/"voxel_mm": 0.3/"voxel_mm": 0.8, &/' r.json >twice.json
 fails 65 "twice.json: has the key 'voxel_mm' twice in one object, of which only one would count; write it again" vam-check twice.json
 fails 65 "twice.json: has the key 'voxel_mm' twice" vam-report part.vdb twice.json -o no.html
+python3 -c 'import json; json.dump({"schema": "vam-resin/1", "isovalue": 1, "x": " " * 2**20}, open("long.json", "w"))'
+fails 65 'long.json: has [0-9]* bytes; a calibration record has at most 1 MiB' vam-check long.json
 # Damage by which a file is no longer of its kind.
 for cut in 3 200; do
   head -c $cut r.json >cut.json

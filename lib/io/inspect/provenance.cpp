@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/inspect/provenance.hpp"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "base/error.hpp"
@@ -128,6 +130,15 @@ bool is_manifest(const std::string& path, const std::string& text) {
   return head.is_object() && head.value("schema", Json()) == "vam-capture/1";
 }
 
+// What the tools that use a record of a calibration would refuse.
+void require_record_size(const Json& json, const std::string& text, const std::string& name) {
+  constexpr std::array schemas{"vam-calibration/1", "vam-resin/1", "vam-working-curve/1"};
+  const Json schema = json.value("schema", Json());
+  if (text.size() <= most_record_bytes || std::find(schemas.begin(), schemas.end(), schema) == schemas.end()) return;
+  throw Error{Fault::data, name + ": has " + std::to_string(text.size()) +
+                               " bytes; a calibration record has at most 1 MiB; measure it again"};
+}
+
 std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
   const std::string name = input_name(path);
@@ -147,6 +158,7 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
     return inspect_capture(folder.empty() ? "." : folder, fast);
   }
   if (const Json json = parse_distinct(text, name); json.is_object()) {
+    require_record_size(json, text, name);
     ProvenanceEntry finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};

@@ -248,9 +248,8 @@ double CalibrationRecord::value(const std::string& name) const { return number_o
 double CalibrationRecord::sigma(const std::string& name) const { return number_of(*this, name, "sigma"); }
 
 CalibrationRecord read_record(const std::string& path) {
-  constexpr std::uint64_t limit = 1U << 20U;
-  CalibrationRecord record{path,
-                           std::make_shared<const Json>(parse_distinct(read_all(path, Content::text, limit), path))};
+  CalibrationRecord record{
+      path, std::make_shared<const Json>(parse_distinct(read_all(path, Content::text, most_record_bytes), path))};
   const Json& json = *record.json;
   const auto is_text = [&](const char* key) { return !json.contains(key) || json[key].is_string(); };
   const bool whole = json.is_object() && json.contains("scan") && json.contains("values") &&

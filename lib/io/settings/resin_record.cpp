@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/resin_record.hpp"
 
-#include <cstdint>
-
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
@@ -12,14 +10,10 @@
 
 namespace vam::io {
 
-namespace {
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
-}
-
 double gelation_isovalue(const std::string& path) {
   double isovalue = 0;
   try {
-    const Json record = parse_distinct(read_all(path, Content::text, most_bytes), path);
+    const Json record = parse_distinct(read_all(path, Content::text, most_record_bytes), path);
     if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
     if (record.at("schema") != "vam-resin/1" && record.at("schema") != "vam-working-curve/1")
       throw Error{Fault::data,
@@ -36,7 +30,7 @@ double gelation_isovalue(const std::string& path) {
 }
 
 Json sealed_record(const std::string& path, const std::string& schema) {
-  Json record = parse_distinct(read_all(path, Content::text, most_bytes), path);
+  Json record = parse_distinct(read_all(path, Content::text, most_record_bytes), path);
   if (!record.is_object() || record.value("schema", Json{}) != schema) {
     throw Error{Fault::data, path + ": not JSON of the schema " + schema};
   }

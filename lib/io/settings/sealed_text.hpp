@@ -2,11 +2,14 @@
 // Records and frozen printer files bear a seal, too: io/stream/seal.hpp. A text without one is taken as it is.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "base/json_fwd.hpp"
 
 namespace vam::io {
+
+inline constexpr std::uint64_t most_record_bytes = std::uint64_t{1} << 20;
 
 /// Adds the key `seal`: of all the others, whatever their order and the layout of the file.
 void seal_json(Json& object);

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <ctime>
 #include <string>
 
 #include "base/error.hpp"
@@ -43,6 +44,32 @@ TEST_CASE("a key that an object has twice is refused by name in what is evidence
   CHECK(refusal(R"({"a": [{"b": 1, "c": {"b": 2}}, {"b": 3, "d": 4}], "b": 6})").empty());
   CHECK(parse_distinct("no JSON", "r.json").is_discarded());
   CHECK(parse_distinct(R"({"a": 1})", "r.json")["a"] == 1);
+}
+
+TEST_CASE("the time that a text takes grows as its length") {
+  const auto objects = [](int count) {
+    std::string text = "[";
+    for (int i = 0; i < count; ++i) text += (i > 0 ? ",{\"k" : "{\"k") + std::to_string(i) + "\":1}";
+    return text + "]";
+  };
+  const auto seconds = [](const std::string& text) {
+    const std::clock_t before = std::clock();
+    CHECK(parse_distinct(text, "r.json").is_array());
+    return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+  };
+  CHECK(seconds(objects(100'000)) < 40 * seconds(objects(5'000)));  // it was 400 times as long
+
+  const auto keys = [](int count) {
+    std::string text = "{";
+    for (int i = 0; i < count; ++i) text += (i > 0 ? ",\"k" : "\"k") + std::to_string(i) + "\":1";
+    return text + "}";
+  };
+  CHECK(parse_json(keys(1024)).size() == 1024);
+  CHECK(parse_json(keys(1025)).is_discarded());
+  CHECK(parse_json("[" + keys(1000) + "," + keys(1000) + "]").is_array());
+  CHECK_THROWS_WITH_AS((void)parse_distinct(keys(1025), "r.json"),
+                       "r.json: has an object of more than 1024 keys, which none of these tools writes; write it again",
+                       Error);
 }
 
 TEST_CASE("a number or a text at a key, whatever else may stand there") {
