@@ -116,7 +116,10 @@ at = data.index(b'string', data.index(b'vam:stretch_z')) + 6
 size, = struct.unpack_from('<I', data, at)
 open('stretched.vdb', 'wb').write(data[:at + 4] + sys.argv[1].encode().rjust(size) + data[at + 4 + size:])
 PY
-  fails 65 "the file states vam:stretch_z ' *$stretch', which is not a factor of 0.1 to 10" vam-sdf stretched.vdb part.vdb --isovalue 0.5
+  for command in 'vam-sdf stretched.vdb part.vdb --isovalue 0.5' 'vam-check --fast stretched.vdb' 'vam-sinogram stretched.vdb -o x.exr' \
+    'vam-convert stretched.vdb -o x.npy' 'vam-optimize stretched.vdb --method fbp -o x.exr'; do
+    fails 65 "stretched.vdb: grid 'target' states vam:stretch_z ' *$stretch', which is not a factor of 0.1 to 10" $command
+  done
 done
 
 # ---- records, reports, printer files -------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ void declare_volume(cli::App& app, Options& options) {
   app.default_is("the only one; target");
   app.option("--origin", "X,Y,Z", options.origin_mm, 3, "Centre of the first voxel in mm; the axis is at x = y = 0.");
   app.default_is("that which puts the middle of the volume on the axis, at z = 0");
-  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{tool::least_stretch, tool::most_stretch},
+  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{model::least_stretch, model::most_stretch},
              "Interpolate the array along z to this multiple of its height, recorded as vam:stretch_z: for a target "
              "1/M_vp of the printer, as vam-slice has it.");
   app.default_is("1, with a warning if the print of a target will have another height than the array");

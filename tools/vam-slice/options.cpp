@@ -40,7 +40,7 @@ void declare_placement(cli::App& app, Options& options) {
   app.default_is("0, or the smallest offset at which the part lies within the image");
   app.flag("--any-height", options.any_height,
            "Allow a part that is taller than the projected image, for vam-optimize --helix or --poses.");
-  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{tool::least_stretch, tool::most_stretch},
+  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{model::least_stretch, model::most_stretch},
              "Stretch factor along z.");
   app.default_is("1/M_vp of the printer");
 }

@@ -17,6 +17,7 @@
 
 #include "base/text.hpp"
 #include "io/stream/seal.hpp"
+#include "model/stretch.hpp"
 
 namespace vam::io::exr {
 
@@ -193,6 +194,10 @@ StackInfo stack_info(const Imf::Header& header) {
                       name == poses_name || name == piece_name || is_seal_key(name);
     const bool standard = name == "name" || name == "type" || name == "view";
     if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
+  }
+  if (const auto stretch = info.extra.find(model::stretch_name); stretch != info.extra.end()) {
+    const std::string why = model::stretch_objection(stretch->second);
+    if (!why.empty()) throw std::runtime_error(why);
   }
   return info;
 }

@@ -12,6 +12,7 @@
 
 #include "base/index.hpp"
 #include "io/stream/seal.hpp"
+#include "model/stretch.hpp"
 
 namespace vam::io {
 
@@ -47,9 +48,18 @@ void set_transform(const FloatGrid& sparse, const Coord& first, model::Grid& gri
   if (!std::isfinite(origin.lengthSqr())) throw std::runtime_error(name + " lies at infinity");
 }
 
+void require_integers(const FloatGrid& sparse, const char* key) {
+  for (auto it = sparse.beginMeta(); it != sparse.endMeta(); ++it) {
+    if (it->first != key || it->second->typeName() == openvdb::Vec3IMetadata::staticTypeName()) continue;
+    throw std::runtime_error("grid '" + sparse.getName() + "' has " + key + " as " + it->second->typeName() +
+                             ", not as three integers (vec3i); mend it in the program that wrote it");
+  }
+}
+
 // The box written by these tools, widened where another program has added voxels beyond it; else the active box.
 CoordBBox box_of(const FloatGrid& sparse) {
   CoordBBox box = sparse.evalActiveVoxelBoundingBox();
+  for (const char* key : {shape_key, first_key}) require_integers(sparse, key);
   if (const auto shape = sparse.getMetadata<openvdb::Vec3IMetadata>(shape_key)) {
     const openvdb::Vec3i size = shape->value();
     const auto origin = sparse.getMetadata<openvdb::Vec3IMetadata>(first_key);
@@ -104,8 +114,17 @@ bool is_written_anew(const std::string& key) {
   return key.starts_with("file_") || is_seal_key(key) || std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
+void require_stretch(const FloatGrid& sparse, const openvdb::Metadata& stated) {
+  const bool is_text = stated.typeName() == openvdb::StringMetadata::staticTypeName();
+  const std::string why = is_text ? model::stretch_objection(stated.str())
+                                  : std::string("states ") + model::stretch_name + " as " + stated.typeName() +
+                                        ", not as text; slice it again";
+  if (!why.empty()) throw std::runtime_error("grid '" + sparse.getName() + "' " + why);
+}
+
 void take_metadata(const FloatGrid& sparse, VolumeFacts& facts) {
   for (auto it = sparse.beginMeta(); it != sparse.endMeta(); ++it) {
+    if (it->first == model::stretch_name) require_stretch(sparse, *it->second);
     if (it->second->typeName() != openvdb::StringMetadata::staticTypeName()) continue;
     const std::string value = it->second->str();
     if (it->first == history_key) {

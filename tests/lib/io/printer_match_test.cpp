@@ -30,7 +30,11 @@ TEST_CASE("the text of vam:printer gives the printer again") {
   CHECK(printer_toml(parse_settings(printer_settings(printer), "s")) == printer_toml(printer));
   CHECK(printer_toml(parse_settings("default", "s")) == printer_toml({}));
   CHECK(parse_settings("projector.max_led_current=3 vial.radius_mm=7", "s").vial.radius_mm == 7);
-  error_of([] { (void)parse_settings("vial.radius_mm=round", "s"); }, Fault::data);
+  for (const char* wrong : {"vial.radius_mm=round", "vial.radius_mm=nan", "vial.radius_mm=-1", "projector.columns=1e9",
+                            "projector.columns=1000000000", "resin.index=inf"}) {
+    CAPTURE(wrong);
+    CHECK(error_of([&] { (void)parse_settings(wrong, "s"); }, Fault::data).starts_with("s"));
+  }
 }
 
 TEST_CASE("printers differ where light for one is wrong in the other") {

@@ -77,6 +77,35 @@ TEST_CASE("a level set of another program is read as its active box, off the ind
   check(again);
 }
 
+TEST_CASE("metadata that the tools use, but of another type or beyond what they take, are refused") {
+  const scratch::Folder folder;
+  openvdb::initialize();
+  const auto refusal = [&](const char* key, const openvdb::Metadata& stated) {
+    const auto grid = openvdb::FloatGrid::create(0.0F);
+    grid->denseFill(openvdb::CoordBBox({0, 0, 0}, {3, 3, 3}), 1.0F);
+    grid->setName("target");
+    grid->insertMeta(key, stated);
+    write_by_openvdb(folder / "a.vdb", {grid});
+    std::string line;
+    CHECK(status([&] { by_blocks(folder / "a.vdb", "target"); }, &line) == 65);
+    CHECK(status([&] { read_volume(folder / "a.vdb", "target"); }, &line) == 65);
+    return line.substr(line.find("a.vdb: "));
+  };
+  using Text = openvdb::StringMetadata;
+  for (const char* factor : {"nan", "1e9", "0", "tall", "", "-1"}) {
+    CHECK(refusal("vam:stretch_z", Text(factor)) == std::string("a.vdb: grid 'target' states vam:stretch_z '") +
+                                                        factor +
+                                                        "', which is not a factor of 0.1 to 10; slice it again");
+  }
+  CHECK(refusal("vam:stretch_z", openvdb::DoubleMetadata(1)) ==
+        "a.vdb: grid 'target' states vam:stretch_z as double, not as text; slice it again");
+  for (const char* key : {"vam:shape", "vam:first_index"}) {
+    CHECK(refusal(key, Text("4 4 4")) == std::string("a.vdb: grid 'target' has ") + key +
+                                             " as string, not as three integers (vec3i); mend it in the program that "
+                                             "wrote it");
+  }
+}
+
 TEST_CASE("the farthest voxel is found whether it is active or not, in leaves and in tiles") {
   const scratch::Folder folder;
   openvdb::initialize();
