@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "model/mesh.hpp"
 #include "model/part_surface.hpp"
@@ -88,8 +89,8 @@ inline std::optional<double> stated_positive(const Facts& facts, const std::stri
   const auto value = parse_number(found->second);
   constexpr double most = 1e6;
   if (value && *value > 0 && *value <= most) return value;
-  throw Error{Fault::data, "the projections state " + name + " '" + found->second +
-                               "', which is not above 0 and at most 1e6; compute them again"};
+  throw Error{Fault::data, "the projections state " + name + " " + excerpt(found->second) +
+                               ", which is not above 0 and at most 1e6; compute them again"};
 }
 
 /// What a relative dose of 1 is, in mJ/cm3.

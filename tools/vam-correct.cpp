@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
@@ -110,8 +111,8 @@ void declare(cli::App& app, Options& o) {
 io::SparseVolume read_dose(const std::string& path) {
   io::SparseVolume dose = io::read_volume(path, "dose");
   if (dose.units == "mJ/cm3") return dose;
-  throw Error{Fault::data, path + ": the dose is in units of '" + dose.units +
-                               "', not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in vam-dose"};
+  throw Error{Fault::data, path + ": the dose is in units of " + excerpt(dose.units) +
+                               ", not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in vam-dose"};
 }
 
 /// A dose for one place of the axis, or for three; and the first one's facts.

@@ -57,13 +57,21 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
-std::string excerpt(std::string_view text) {
+namespace {
+
+std::string shortened_in(std::string_view text, const char* quote) {
   constexpr std::size_t most = 64;
-  if (text.size() <= most) return "'" + printable(text) + "'";
+  if (text.size() <= most) return quote + printable(text) + quote;
   std::size_t end = most;
   for (; end > most - 4 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80; --end) continue;  // whole characters
-  return "'" + printable(text.substr(0, end)) + "...' (" + std::to_string(text.size()) + " bytes)";
+  return quote + printable(text.substr(0, end)) + "..." + quote + " (" + std::to_string(text.size()) + " bytes)";
 }
+
+}  // namespace
+
+std::string excerpt(std::string_view text) { return shortened_in(text, "'"); }
+
+std::string briefly(std::string_view text) { return shortened_in(text, ""); }
 
 std::string page_text(std::string_view text) {
   std::string shown;

@@ -14,6 +14,9 @@ namespace vam {
 /// In quotes, for a message: 'text', printable(); of a longer one than 64 bytes its begin: 'text...' (200000 bytes).
 [[nodiscard]] std::string excerpt(std::string_view text);
 
+/// The same without quotes, for names in a list.
+[[nodiscard]] std::string briefly(std::string_view text);
+
 /// As text of a page, or as the quoted value of an attribute: printable(), with <, >, &, " and ' as entities.
 [[nodiscard]] std::string page_text(std::string_view text);
 

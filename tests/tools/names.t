@@ -50,4 +50,23 @@ make all 2>errors >.log/out; is 'a name that is too long when coded ends make' $
 ok 'with the reason' grep -qF '+C3+A4.stl: cannot be linked to from .parts; rename the mesh' errors
 cd ..
 
+# Of what a file holds at most 64 bytes are quoted, and a zero byte does not end a line.
+python3 - <<'PY'
+import json, struct, zipfile
+def npy(descr):
+    head = ("{'descr': '%s', 'fortran_order': False, 'shape': (2, 3, 4), }" % descr).encode() + b'\n'
+    return b'\x93NUMPY\1\0' + struct.pack('<H', len(head)) + head + bytes(96)
+open('long.npy', 'wb').write(npy('A' * 60000))
+with zipfile.ZipFile('long.npz', 'w') as archive:
+    for name in 'n' * 60000, 'b': archive.writestr(name + '.npy', npy('<f4'))
+json.dump({'schema': 's' * 9000}, open('long.json', 'w'))
+open('nul.csv', 'wb').write(b"a\0b,c\n")
+PY
+for file in long.npy long.npz; do
+  vam-convert $file --voxel 0.5 -o x.vdb 2>.log/err
+  holds "$file in $(wc -c <.log/err) bytes" "$(wc -c <.log/err) < 300 && $(grep -c '(60000 bytes)' .log/err) == 1"
+done
+is 'a schema that vam-check prints' "$(vam-check long.json)" "long.json: \"$(printf '%063d' 0 | tr 0 s)... (9002 bytes), unsealed"
+tiny_print light.exr
+fails 65 "nul.csv:1: 'a.x00b,c' is not the header" vam-project light.exr -o x.mkv --set projector.response=nul.csv
 done_testing

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "grey_target.hpp"
 #include "io/vdb/gate.hpp"
 
@@ -24,8 +25,8 @@ io::SparseVolume read_own(const std::string& path, const std::string& name) {
 io::SparseVolume read_dose(const std::string& path) {
   io::SparseVolume dose = read_own(path, "dose");
   if (dose.units == "mJ/cm3") return dose;
-  throw Error{Fault::data, path + ": the dose is in units of '" + dose.units +
-                               "', not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
+  throw Error{Fault::data, path + ": the dose is in units of " + excerpt(dose.units) +
+                               ", not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
                                "vam-dose"};
 }
 

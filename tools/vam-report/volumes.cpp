@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "facts.hpp"
 #include "io/vdb/gate.hpp"
 #include "plot/page.hpp"
@@ -34,7 +35,7 @@ std::string sections(const io::SparseVolume& volume, const std::string& file, co
   const plot::PlaneAxes axes = plot::plane_axes(plane);
   const std::string title = volume.name() + ", sections across " + axes.across;
   return series(title, frames_of(plot::view_volume(volume, within.target, options, within.insert)),
-                file + ": grid '" + volume.name() + "'.");
+                file + ": grid " + excerpt(volume.name()) + ".");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/grid_place.hpp"
@@ -20,7 +21,8 @@ double rms_of(const io::SparseVolume& volume, const std::string& path) {
     throw Error{Fault::data, path + ": has no RMS deviation (vam:rms_mm); give volumes of vam-sdf --volume"};
   }
   if (const auto rms_mm = parse_number(found->second)) return *rms_mm;
-  throw Error{Fault::data, path + ": vam:rms_mm is '" + found->second + "', not a number; write the volume anew"};
+  throw Error{Fault::data,
+              path + ": vam:rms_mm is " + excerpt(found->second) + ", not a number; write the volume anew"};
 }
 
 }  // namespace

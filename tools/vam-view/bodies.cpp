@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "model/dose_metrics.hpp"
@@ -56,7 +57,7 @@ plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, cons
                               const io::SparseVolume* insert) {
   plot::Body body{surface_of(volume, level, volume), {}};
   if (body.mesh.triangles.empty()) {
-    throw Error{Fault::data, view.name + ": grid '" + volume.name() + "' reaches " + format_number(level, 4) +
+    throw Error{Fault::data, view.name + ": grid " + excerpt(volume.name()) + " reaches " + format_number(level, 4) +
                                  " nowhere; choose another --threshold"};
   }
   return single(body, view, ": " + volume.name() + " at " + format_number(level, 4) + " " + volume.units,

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/printable.hpp"
+
 namespace vam::io::arrays {
 
 namespace {
@@ -58,8 +60,8 @@ class Literals {
         "holds Python objects (a pickle), which are never read, as they can run any code; save "
         "numbers: array.astype('f4')");
   }
-  throw std::runtime_error("has values of type '" + type +
-                           "'; whole numbers of 1, 2, 4 or 8 bytes, floats of 2, 4 or "
+  throw std::runtime_error("has values of type " + excerpt(type) +
+                           "; whole numbers of 1, 2, 4 or 8 bytes, floats of 2, 4 or "
                            "8 and truth are read: array.astype('f4')");
 }
 

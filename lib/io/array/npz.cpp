@@ -47,8 +47,10 @@ std::string chosen(const std::vector<std::string>& names, const std::string& nam
   require_distinct(names, file);
   if (name.empty() && names.size() == 1) return names.front();
   if (std::find(names.begin(), names.end(), name) != names.end()) return name;
-  const std::vector<std::string> some(names.begin(), names.begin() + std::min<std::ptrdiff_t>(std::ssize(names), 8));
-  const std::string has = "holds " + std::to_string(names.size()) + " arrays (" + printable(join(some, ", ")) + ")";
+  constexpr std::size_t most = 8;
+  std::vector<std::string> some;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) some.push_back(briefly(names[i]));
+  const std::string has = "holds " + std::to_string(names.size()) + " arrays (" + join(some, ", ") + ")";
   throw Error{Fault::usage,
               file + ": " + has + (name.empty() ? "; name one by --array" : ", but none is called " + printable(name))};
 }

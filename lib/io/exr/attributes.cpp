@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/seal.hpp"
 #include "model/stretch.hpp"
@@ -79,7 +80,7 @@ std::string checked_history(const std::string& text) {
 
 model::Piece checked_piece(const std::string& text) {
   if (const auto piece = model::parse_piece(text)) return *piece;
-  throw std::runtime_error(std::string(piece_name) + " is '" + text + "', not like '64:128 of 160'");
+  throw std::runtime_error(std::string(piece_name) + " is " + excerpt(text) + ", not like '64:128 of 160'");
 }
 
 }  // namespace
@@ -168,12 +169,12 @@ StackInfo stack_info(const Imf::Header& header) {
   const auto kind = text(header, "vam:kind");
   if (!kind) throw std::runtime_error("has no vam:kind, so it is not a stack that these tools wrote");
   const auto* same_kind = std::find_if(kinds.begin(), kinds.end(), [&](Kind k) { return kind_name(k) == *kind; });
-  if (same_kind == kinds.end()) throw std::runtime_error("vam:kind is '" + *kind + "', not sinogram or frames");
+  if (same_kind == kinds.end()) throw std::runtime_error("vam:kind is " + excerpt(*kind) + ", not sinogram or frames");
   info.kind = *same_kind;
   const auto space = text(header, "vam:space").value_or("");
   const auto* same_space = std::find_if(spaces.begin(), spaces.end(), [&](Space s) { return space_name(s) == space; });
   if (same_space == spaces.end()) {
-    throw std::runtime_error("vam:space is '" + space + "', not virtual, projector or camera");
+    throw std::runtime_error("vam:space is " + excerpt(space) + ", not virtual, projector or camera");
   }
   info.space = *same_space;
   info.count = static_cast<int>(number(header, "vam:count").value_or(0));
@@ -210,7 +211,7 @@ void require_alike(const Imf::Header& header, const StackInfo& first, const Stac
                              "; all of a stack have the same");
   };
   compare("vam:space", space_name(own.space), space_name(first.space));
-  compare("vam:units", "'" + own.units + "'", "'" + first.units + "'");
+  compare("vam:units", excerpt(own.units), excerpt(first.units));
   for (const auto& [name, member] : {std::pair{"vam:pixel_mm", &StackInfo::pixel_mm},
                                      {"vam:row_mm", &StackInfo::row_mm},
                                      {"vam:angle_start_deg", &StackInfo::angle_start_deg},

@@ -67,8 +67,8 @@ std::vector<double> angles_deg(hid_t file, const std::string& path, const std::s
   const std::string units = text_attribute(open_dataset(file, path).id(), "units");
   if (units.empty() || units == "°" || units.starts_with("deg")) return angles;
   if (units != "rad" && units != "radian" && units != "radians") {
-    throw Error{Fault::data, name + ": " + printable(path) + " has the unit '" + printable(units) +
-                                 "'; degrees and radians are read; give --view-step"};
+    throw Error{Fault::data, name + ": " + printable(path) + " has the unit " + excerpt(units) +
+                                 "; degrees and radians are read; give --view-step"};
   }
   for (double& angle : angles) angle *= deg_per_rad;
   return angles;

@@ -112,7 +112,7 @@ std::vector<model::ImageInfo> read_frame_index(const std::string& folder, const 
     }
     const int at = count_of(index);
     if (at == images.count() || cells[0] != std::filesystem::path(images.path(at)).filename()) {
-      throw damaged("'" + printable(cells[0]) + "' is not image " + std::to_string(at) + " of the folder");
+      throw damaged(excerpt(cells[0]) + " is not image " + std::to_string(at) + " of the folder");
     }
     model::ImageInfo& about = index.emplace_back();
     about.time_s = *time_s;

@@ -15,6 +15,7 @@
 #include "base/fingerprint.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/system_error.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/capture_manifest.hpp"
@@ -62,11 +63,11 @@ std::string difference(const Json& there, const Json& wanted) {
     const bool is_recent = key == "lag_ms" || key == "speed_deg_s";
     if (found == there.end() && is_recent) continue;
     if (found == there.end() || *found != value) {
-      return key + " " + (found == there.end() ? "unknown" : found->dump()) + ", not " + value.dump();
+      return key + " " + (found == there.end() ? "unknown" : briefly(found->dump())) + ", not " + briefly(value.dump());
     }
   }
   for (const auto& [key, value] : there.items()) {
-    if (key != manifest_seal_key && !wanted.contains(key)) return key + " " + value.dump() + ", not unknown";
+    if (key != manifest_seal_key && !wanted.contains(key)) return key + " " + briefly(value.dump()) + ", not unknown";
   }
   return "";
 }

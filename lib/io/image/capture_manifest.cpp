@@ -31,7 +31,7 @@ long number_of(const Json& value, const std::string& where) {
   constexpr long most = 1L << 48;
   const long number = value.is_number_integer() ? value.get<long>() : most + 1;
   if (number >= -most && number <= most) return number;
-  throw Error{Fault::data, where + ": " + value.dump() + " is not the number of a frame; remove the line"};
+  throw Error{Fault::data, where + ": " + briefly(value.dump()) + " is not the number of a frame; remove the line"};
 }
 
 // What stands at a key of a line that must have it, of the type that `example` has.

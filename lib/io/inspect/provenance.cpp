@@ -9,6 +9,7 @@
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
@@ -51,7 +52,7 @@ std::vector<ProvenanceEntry> inspect_stacks(const std::string& path, bool fast) 
 std::vector<ProvenanceEntry> inspect_volumes(const std::string& path, bool fast) {
   std::vector<ProvenanceEntry> findings;
   for (const auto& facts : check_volumes(path, fast)) {
-    findings.push_back({"grid '" + facts.name + "'", !facts.seal.empty(), facts.seal, facts.history});
+    findings.push_back({"grid " + excerpt(facts.name), !facts.seal.empty(), facts.seal, facts.history});
   }
   return findings;
 }
@@ -159,7 +160,8 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   }
   if (const Json json = parse_distinct(text, name); json.is_object()) {
     require_record_size(json, text, name);
-    ProvenanceEntry finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
+    ProvenanceEntry finding{
+        json.contains("schema") ? briefly(json["schema"].dump()) : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};
   }

@@ -7,6 +7,7 @@
 
 #include "base/index.hpp"
 #include "base/memory.hpp"
+#include "base/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/model_part.hpp"
 #include "io/mesh/private/zip_archive.hpp"
@@ -109,7 +110,7 @@ class Package {
     const Object3mf& made_of = object(name, instance.object);
     if (made_of.support) return count = {0, 0, 0, false};
     if (!made_of.unread.empty()) {
-      throw MeshProblem{which + " has a '" + made_of.unread + "', which is not read; export it as a plain mesh"};
+      throw MeshProblem{which + " has a " + excerpt(made_of.unread) + ", which is not read; export it as a plain mesh"};
     }
     count.triangles = made_of.triangles.size();
     count.points = made_of.points.size();

@@ -15,6 +15,7 @@
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "base/utc.hpp"
 #include "io/settings/private/printer_fields.hpp"
@@ -68,7 +69,7 @@ void require_file(const std::string& path) {
 std::string beside(const CalibrationRecord& record, const char* file) {
   const std::string name = record.json->at("files").at(file);
   if (name.empty() || name == ".." || name.find('/') != std::string::npos) {
-    throw Error{Fault::data, record.path + ": its file '" + name + "' is not beside it; run vam-calibrate"};
+    throw Error{Fault::data, record.path + ": its file " + excerpt(name) + " is not beside it; run vam-calibrate"};
   }
   std::string path = (fs::path(record.path).parent_path() / name).string();
   require_file(path);
@@ -96,7 +97,7 @@ double in_unit(const CalibrationRecord& record, const char* name, const char* un
     throw Error{Fault::data, record.path + ": " + name + " " + why + "; run vam-calibrate"};
   };
   if (entry.contains("unit") && entry["unit"] != unit) {
-    refuse("is in " + entry["unit"].dump().substr(0, 80) + ", not in " + unit);
+    refuse("is in " + briefly(entry["unit"].dump()) + ", not in " + unit);
   }
   const double sigma = number_at(entry, "sigma");
   if (!(sigma >= 0 && sigma <= most_sigma(unit))) {
@@ -297,19 +298,20 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
   const Json& json = *record.json;
   const std::string instrument = json.value("instrument", "");
   if (instrument != calibration.instrument) {
-    return "belongs to instrument '" + instrument + "', but calibration.instrument is '" + calibration.instrument +
-           "'; run vam-calibrate";
+    return "belongs to instrument " + excerpt(instrument) + ", but calibration.instrument is '" +
+           calibration.instrument + "'; run vam-calibrate";
   }
   const std::string name = json.value("scan", "");
   const std::string vial = json.value("vial", "");
   const bool of_vial = std::any_of(std::begin(scans), std::end(scans),
                                    [&](const ScanKind& scan) { return scan.of_vial && name == scan.name; });
   if (of_vial && vial != calibration.vial) {
-    return "belongs to vial '" + vial + "', but calibration.vial is '" + calibration.vial + "'; run vam-calibrate";
+    return "belongs to vial " + excerpt(vial) + ", but calibration.vial is '" + calibration.vial +
+           "'; run vam-calibrate";
   }
   const std::string status = json.value("status", "");
   if (status != "pass" && status != "warn" && status != "fail") {
-    return "has the status '" + status + "', not pass, warn or fail; run vam-calibrate";
+    return "has the status " + excerpt(status) + ", not pass, warn or fail; run vam-calibrate";
   }
   if (status == "fail") return "is the record of a failed scan; run vam-calibrate";
   const double made_s = parse_utc(json.value("utc", ""), record.path);

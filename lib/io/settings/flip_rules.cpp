@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 
 namespace vam::io {
@@ -31,8 +32,8 @@ std::int64_t whole(const Json& event, const char* key, std::int64_t least, const
   const bool fits =
       value.is_number_integer() && (!value.is_number_unsigned() || value.get<std::uint64_t>() <= INT64_MAX);
   if (fits && value.get<std::int64_t>() >= least && value.get<std::int64_t>() <= most) return value.get<std::int64_t>();
-  refuse(place, std::string(key) + " " + value.dump() + " is not a whole number from " + std::to_string(least) +
-                    " to " + std::to_string(most));
+  refuse(place, std::string(key) + " " + briefly(value.dump()) + " is not a whole number from " +
+                    std::to_string(least) + " to " + std::to_string(most));
 }
 
 }  // namespace

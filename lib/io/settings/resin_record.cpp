@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
@@ -17,7 +18,7 @@ double gelation_isovalue(const std::string& path) {
     if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
     if (record.at("schema") != "vam-resin/1" && record.at("schema") != "vam-working-curve/1")
       throw Error{Fault::data,
-                  path + ": not a record of vam-calibrate resin, its schema is " + record["schema"].dump()};
+                  path + ": not a record of vam-calibrate resin, its schema is " + briefly(record["schema"].dump())};
     require_seal(record, path);
     isovalue = record.at(record.contains("level") ? "level" : "isovalue").get<double>();  // level: until 0.1.0
   } catch (const Json::exception&) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/stream.hpp"
 
@@ -21,7 +22,7 @@ std::optional<double> cell(const std::string& text) {
 void require_header(const std::vector<std::string>& cells, const std::string& line, const std::string& place) {
   constexpr std::string_view around = " \t\"";
   if (cells.size() == 2 && trimmed(cells[0], around) == "grey" && trimmed(cells[1], around) == "intensity") return;
-  throw Error{Fault::data, place + ": '" + line.substr(0, 80) + "' is not the header 'grey,intensity' of a response"};
+  throw Error{Fault::data, place + ": " + excerpt(line) + " is not the header 'grey,intensity' of a response"};
 }
 
 void append(model::ResponseTable& table, double grey, double intensity, const std::string& place) {
@@ -63,7 +64,7 @@ model::ResponseTable read_response(const std::string& file) {
     const auto grey = cell(cells[0]);
     const auto intensity = cells.size() == 2 ? cell(cells[1]) : std::nullopt;
     if (!grey || !intensity) {
-      throw Error{Fault::data, place + ": '" + line.substr(0, 80) + "' is not two numbers 'grey,intensity'"};
+      throw Error{Fault::data, place + ": " + excerpt(line) + " is not two numbers 'grey,intensity'"};
     }
     append(table, *grey, *intensity, place);
   }

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/passage.hpp"
 #include "io/vdb/vdb.hpp"
@@ -69,7 +70,7 @@ void read_blocks(const std::string& path, const std::string& name,
         found = taker.found();
         names = taker.names();
       });
-  if (!found) throw Error{Fault::data, file.name() + ": has no grid '" + name + "'; choose one of " + names};
+  if (!found) throw Error{Fault::data, file.name() + ": has no grid '" + name + "'; choose one of " + briefly(names)};
 }
 
 }  // namespace vam::io

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "base/index.hpp"
+#include "base/printable.hpp"
 #include "io/stream/seal.hpp"
 #include "model/stretch.hpp"
 
@@ -29,7 +30,7 @@ constexpr std::int64_t max_slice = std::int64_t{1} << 28;  // voxels: 1 GiB as f
 
 // A uniform scale along the axes, and a shift: the only transform that a stack of square pixels can follow.
 void set_transform(const FloatGrid& sparse, const Coord& first, model::Grid& grid) {
-  const std::string name = "grid '" + sparse.getName() + "'";
+  const std::string name = "grid " + excerpt(sparse.getName());
   if (!sparse.transform().isLinear()) throw std::runtime_error(name + " has a transform that is not linear");
   const openvdb::Mat4d matrix = sparse.transform().baseMap()->getAffineMap()->getMat4();
   const double voxel = matrix(0, 0);
@@ -51,7 +52,7 @@ void set_transform(const FloatGrid& sparse, const Coord& first, model::Grid& gri
 void require_integers(const FloatGrid& sparse, const char* key) {
   for (auto it = sparse.beginMeta(); it != sparse.endMeta(); ++it) {
     if (it->first != key || it->second->typeName() == openvdb::Vec3IMetadata::staticTypeName()) continue;
-    throw std::runtime_error("grid '" + sparse.getName() + "' has " + key + " as " + it->second->typeName() +
+    throw std::runtime_error("grid " + excerpt(sparse.getName()) + " has " + key + " as " + it->second->typeName() +
                              ", not as three integers (vec3i); mend it in the program that wrote it");
   }
 }
@@ -68,15 +69,15 @@ CoordBBox box_of(const FloatGrid& sparse) {
     for (int axis = 0; axis < 3; ++axis) {
       sane = sane && size[axis] >= 1 && size[axis] <= max_side && std::abs(first[axis]) < (1 << 30);
     }
-    if (!sane) throw std::runtime_error("grid '" + sparse.getName() + "' has an impossible vam:shape");
+    if (!sane) throw std::runtime_error("grid " + excerpt(sparse.getName()) + " has an impossible vam:shape");
     box.expand(CoordBBox(Coord(first), Coord(first + size) - Coord(1)));
   }
-  if (box.empty()) throw std::runtime_error("grid '" + sparse.getName() + "' is empty");
+  if (box.empty()) throw std::runtime_error("grid " + excerpt(sparse.getName()) + " is empty");
   const auto side = [low = box.min().asVec3i(), high = box.max().asVec3i()](int axis) {
     return std::int64_t{high[axis]} - low[axis] + 1;
   };
   if (side(0) > max_side || side(1) > max_side || side(2) > max_side || side(0) * side(1) > max_slice) {
-    throw std::runtime_error("grid '" + sparse.getName() + "' spans " + std::to_string(side(0)) + " x " +
+    throw std::runtime_error("grid " + excerpt(sparse.getName()) + " spans " + std::to_string(side(0)) + " x " +
                              std::to_string(side(1)) + " x " + std::to_string(side(2)) +
                              " voxels; up to 65536 per axis and 2^28 a slice can be read");
   }
@@ -119,7 +120,7 @@ void require_stretch(const FloatGrid& sparse, const openvdb::Metadata& stated) {
   const std::string why = is_text ? model::stretch_objection(stated.str())
                                   : std::string("states ") + model::stretch_name + " as " + stated.typeName() +
                                         ", not as text; slice it again";
-  if (!why.empty()) throw std::runtime_error("grid '" + sparse.getName() + "' " + why);
+  if (!why.empty()) throw std::runtime_error("grid " + excerpt(sparse.getName()) + " " + why);
 }
 
 void take_metadata(const FloatGrid& sparse, VolumeFacts& facts) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/private/facts.hpp"
@@ -46,7 +47,7 @@ std::optional<Promise> promise_of(const std::string& name, TargetKind target) {
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& name, const std::string& why) {
-  throw Error{Fault::data, input_name(path) + ": grid '" + name + "' " + why};
+  throw Error{Fault::data, input_name(path) + ": grid " + excerpt(name) + " " + why};
 }
 
 void require_facts(const std::string& path, const VolumeFacts& facts) {

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/printable.hpp"
 #include "io/stream/finite.hpp"
 #include "io/vdb/private/archive.hpp"
 #include "io/vdb/private/facts.hpp"
@@ -89,14 +90,14 @@ class PassingGrid : public FloatGrid {
   // A grid that shares the voxels of another has seals of its own.
   void judge(const Digest& values) const {
     if (!seals_ || seals_->values == values) return;
-    throw std::runtime_error(mismatch("grid '" + getName() + "'", seals_->values, values));
+    throw std::runtime_error(mismatch("grid " + excerpt(getName()), seals_->values, values));
   }
   [[nodiscard]] const Digest& values() const { return values_; }
   [[nodiscard]] bool sealed() const { return seals_.has_value(); }
 
  private:
   [[noreturn]] void refuse(const std::string& what) const {
-    throw std::runtime_error("grid '" + getName() + "' has " + what +
+    throw std::runtime_error("grid " + excerpt(getName()) + " has " + what +
                              " that is not a finite number; mend it in the program that wrote it");
   }
   [[noreturn]] void refuse_voxel(const Coord& at) const {
@@ -176,8 +177,8 @@ class PassingArchive : public openvdb::io::Archive {
     grids[about.uniqueName()] = grid.get();
     grid->setSaveFloatAsHalf(about.saveFloatAsHalf());
     if (wanted_.name && about.isInstance() && about.gridName() == *wanted_.name) {
-      throw std::runtime_error("grid '" + *wanted_.name + "' shares the voxels of '" + about.instanceParentName() +
-                               "'; write it as a grid of its own");
+      throw std::runtime_error("grid " + excerpt(*wanted_.name) + " shares the voxels of " +
+                               excerpt(about.instanceParentName()) + "; write it as a grid of its own");
     }
     found_ = found_ || shown;
     const bool new_order = openvdb::io::getFormatVersion(stream) >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING;
@@ -196,7 +197,8 @@ class PassingArchive : public openvdb::io::Archive {
       out_.put(about.gridName());
     } else if (about.isInstance()) {
       const auto parent = grids.find(about.instanceParentName());
-      if (parent == grids.end()) throw std::runtime_error("grid '" + about.gridName() + "' shares unknown voxels");
+      if (parent == grids.end())
+        throw std::runtime_error("grid " + excerpt(about.gridName()) + " shares unknown voxels");
       grid->setTree(parent->second->treePtr());
       grid->judge(parent->second->values());
       grid->send(about.instanceParentName());
@@ -210,8 +212,8 @@ class PassingArchive : public openvdb::io::Archive {
     if (grid.sealed() == first_->sealed()) return;
     const PassingGrid& sealed = grid.sealed() ? grid : *first_;
     const PassingGrid& other = grid.sealed() ? *first_ : grid;
-    throw std::runtime_error("grid '" + sealed.getName() + "' is sealed, and grid '" + other.getName() +
-                             "' is not; make the file again");
+    throw std::runtime_error("grid " + excerpt(sealed.getName()) + " is sealed, and grid " + excerpt(other.getName()) +
+                             " is not; make the file again");
   }
 
   const WantedGrids& wanted_;

@@ -9,6 +9,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/printable.hpp"
 #include "io/vdb/private/facts.hpp"
 
 namespace vam::io {
@@ -90,7 +91,7 @@ std::optional<GridSeals> judged_seals(const openvdb::FloatGrid& sparse) {
   const std::string facts = text(sparse, facts_seal_key);
   const std::string values = text(sparse, values_seal_key);
   if (facts.empty() && values.empty()) return std::nullopt;
-  const std::string grid = "grid '" + sparse.getName() + "'";
+  const std::string grid = "grid " + excerpt(sparse.getName());
   GridSeals seals;
   if (!parse_seal(facts, seals.facts) || !parse_seal(values, seals.values)) {
     throw std::runtime_error(grid + " has a damaged seal; make the file again");

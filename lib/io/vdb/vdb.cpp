@@ -15,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/printable.hpp"
 #include "io/stream/finite.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/private/grid.hpp"
@@ -198,7 +199,7 @@ const model::Grid& SparseVolume::grid() const { return state_->grid; }
 void SparseVolume::extend_to(const model::Grid& grid, const std::string& file) {
   const auto place = model::place_in(grid, state_->grid);
   if (!place) {
-    throw Error{Fault::data, input_name(file) + ": the grid '" + state_->name + "' has " +
+    throw Error{Fault::data, input_name(file) + ": the grid " + excerpt(state_->name) + " has " +
                                  model::place_text(state_->grid) + ", which are not among the " +
                                  model::place_text(grid) + " it is compared with; make both from the same target"};
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/facts.hpp"
@@ -158,8 +159,9 @@ SparseVolume read_volume(const std::string& path, const std::string& name) {
     found = &volume;
   }
   if (found != nullptr) return std::move(*found);
-  if (name.empty()) throw Error{Fault::data, subject + ": holds several grids (" + names + "); choose one by name"};
-  throw Error{Fault::data, subject + ": has no grid '" + name + "'; choose one of " + names};
+  if (name.empty())
+    throw Error{Fault::data, subject + ": holds several grids (" + briefly(names) + "); choose one by name"};
+  throw Error{Fault::data, subject + ": has no grid '" + name + "'; choose one of " + briefly(names)};
 }
 
 }  // namespace vam::io

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "base/printable.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {
@@ -25,7 +26,7 @@ inline constexpr const char* first_key = "vam:first_index";  // of that box, whe
 
 /// The error of a name that two grids of a file have.
 [[nodiscard]] inline std::string occurs_twice(const std::string& name) {
-  return "grid '" + name + "' occurs twice; keep one of them, or rename it";
+  return "grid " + excerpt(name) + " occurs twice; keep one of them, or rename it";
 }
 
 }  // namespace vam::io
