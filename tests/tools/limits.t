@@ -243,6 +243,9 @@ done
 python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=22 row=99
 fails 65 'wrong.exr: vam:z_mm of image 21 is 2079, beyond 2000' vam-dose wrong.exr -o x.vdb
 tiny_print tiny.exr
+for files in 4 5 6; do
+  sanitized || fails 71 'Too many open files; raise the limit' sh -c "ulimit -n $files; exec vam-project -q tiny.exr --printer printer.toml -o few"
+done
 fails 66 '/dev/zero: is a device that never ends; name a file' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
 python3 "$VAM_SOURCE/tests/tools/exr.py" make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1
 fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam-dose far.exr --printer printer.toml -o x.vdb

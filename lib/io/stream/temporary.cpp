@@ -191,7 +191,16 @@ int create_temporary_folder(const std::string& target, std::string& name, int& s
   const int made = with_new_name(target, name, slot, [](const char* path) { return mkdir(path, 0777); });
   if (made < 0 || slot < 0) return made;
   const int folder = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) (void)flock(folder, LOCK_EX | LOCK_NB);
+  if (folder < 0) {  // and without a descriptor to give up, what is in the folder could not be removed
+    const int problem = errno;
+    (void)rmdir(name.c_str());
+    forget_temporary(slot);
+    slot = -1;
+    name.clear();
+    errno = problem;
+    return -1;
+  }
+  (void)flock(folder, LOCK_EX | LOCK_NB);
   list[slot].lock = folder;
   return made;
 }
