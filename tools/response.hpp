@@ -12,7 +12,7 @@ namespace vam::tool {
 /// does.
 inline resin::Response response_of(const model::Projector& projector) {
   if (projector.response.empty()) return resin::projector_response(projector);
-  return resin::Response(io::read_response(projector.response));
+  return resin::Response(io::read_response(projector.response, projector.bits));
 }
 
 }  // namespace vam::tool

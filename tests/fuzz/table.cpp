@@ -7,7 +7,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const fuzz::File file(fuzz::text_of(bytes, size));
-  fuzz::attempt([&] { (void)vam::io::read_response(file.path); });
+  fuzz::attempt([&] { (void)vam::io::read_response(file.path, 8); });
   fuzz::attempt([&] { (void)vam::io::read_poses(file.path); });
   return fuzz::attempt([&] {
     const vam::io::CsvTable table = vam::io::read_csv(file.path, {"grey", "intensity"});

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/stream.hpp"
@@ -38,13 +39,33 @@ void append(model::ResponseTable& table, double grey, double intensity, const st
                                  " is below " + format_number(table.intensity.empty() ? 0 : table.intensity.back()) +
                                  "; a response must be monotonic; measure it again or smooth it"};
   }
+  constexpr double most_intensity = 1e9;  // in any unit
+  if (intensity > most_intensity) {
+    throw Error{Fault::data, place + ": intensity " + format_number(intensity) +
+                                 " is more than 1e9, which is none in any unit; measure it again"};
+  }
   table.grey.push_back(grey);
   table.intensity.push_back(intensity);
 }
 
+// Greys of another scale, as of a table from 0 to 1, are warned of as well: whose light is at which is not known.
+void require_levels(const model::ResponseTable& table, int bits) {
+  const double last = table.grey.back();
+  const double full = std::ldexp(1.0, bits) - 1;
+  const std::string beside = "; projector.bits " + std::to_string(bits) + " end at " + format_number(full, 9);
+  if (last > full) {
+    throw Error{Fault::data, table.source + ": the greys end at " + format_number(last, 9) + beside +
+                                 "; measure the response with these bits"};
+  }
+  if (last < full) {
+    warn(table.source + ": the greys end at " + format_number(last, 9) + beside +
+         ": its last line is taken for full grey; the table may be cut");
+  }
+}
+
 }  // namespace
 
-model::ResponseTable read_response(const std::string& file) {
+model::ResponseTable read_response(const std::string& file, int bits) {
   constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
   model::ResponseTable table;
   table.source = file;
@@ -72,6 +93,7 @@ model::ResponseTable read_response(const std::string& file) {
     throw Error{Fault::data,
                 file + ": a response needs at least two lines 'grey,intensity' and a positive intensity at full grey"};
   }
+  require_levels(table, bits);
   return table;
 }
 

@@ -10,8 +10,9 @@
 namespace vam::io {
 
 /// Reads two comma-separated columns; lines that are empty or begin with # are skipped, a first line of words is the
-/// header. Any units: the last line is full grey. Throws Error: no_input, data (with file and line: not two numbers,
-/// grey not rising from 0, negative or falling intensity, fewer than two lines).
-[[nodiscard]] model::ResponseTable read_response(const std::string& file);
+/// header. Intensity in any unit: the last line is full grey. Warns where that is below 2^bits - 1. Throws Error:
+/// no_input, data (with file and line: not two numbers, grey not rising from 0, negative, falling or absurd intensity,
+/// fewer than two lines, greys above 2^bits - 1).
+[[nodiscard]] model::ResponseTable read_response(const std::string& file, int bits);
 
 }  // namespace vam::io

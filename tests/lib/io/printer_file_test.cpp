@@ -251,12 +251,12 @@ TEST_CASE("files that would fill the memory or the stack are refused in one line
 TEST_CASE("a response table is read by its header and refused with its line") {
   const scratch::Folder folder;
   const auto table =
-      vam::io::read_response(folder.write("r.csv", "# lamp 3\ngrey,intensity\n0,0.1\n128, 1.5\r\n255,4\n"));
+      vam::io::read_response(folder.write("r.csv", "# lamp 3\ngrey,intensity\n0,0.1\n128, 1.5\r\n255,4\n"), 8);
   CHECK(table.grey == std::vector<double>{0, 128, 255});
   CHECK(table.intensity == std::vector<double>{0.1, 1.5, 4});
   const auto refused = [&](const std::string& csv) {
     const std::string file = folder.write("bad.csv", csv);
-    return error_of([&] { (void)vam::io::read_response(file); }, Fault::data);
+    return error_of([&] { (void)vam::io::read_response(file, 8); }, Fault::data);
   };
   CHECK(has(refused("grey,intensity\n0,0\n10,2\n20,1\n"), "bad.csv:4: intensity 1 at grey 20 is below 2"));
   CHECK(has(refused("grey,intensity\n0,0\n10,2\n10,3\n"), "bad.csv:4: grey 10 does not rise"));
@@ -266,6 +266,9 @@ TEST_CASE("a response table is read by its header and refused with its line") {
   for (const std::string head : {"intensity,grey", "grey,intensity,grey", "grey;intensity", "0,0"}) {
     CHECK(has(refused(head + "\n0,0\n255,1\n"), "bad.csv:1: '" + head + "' is not the header 'grey,intensity'"));
   }
-  CHECK(vam::io::read_response(folder.write("r.csv", "\"grey\", \"intensity\"\r\n0,0\n255,1\n")).grey.size() == 2);
+  CHECK(vam::io::read_response(folder.write("r.csv", "\"grey\", \"intensity\"\r\n0,0\n255,1\n"), 8).grey.size() == 2);
   CHECK(has(refused("grey,intensity\n"), "at least two lines"));
+  CHECK(has(refused("grey,intensity\n0,0\n255,1e308\n"), "bad.csv:3: intensity 1e+308 is more than 1e9"));
+  CHECK(has(refused("grey,intensity\n0,0\n256,1\n"), "bad.csv: the greys end at 256; projector.bits 8 end at 255; "));
+  CHECK(vam::io::read_response(folder.write("cut.csv", "grey,intensity\n0,0\n200,1\n"), 8).grey.back() == 200);
 }
