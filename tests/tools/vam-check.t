@@ -161,6 +161,10 @@ for cut in 3 200; do
   head -c $cut r.json >cut.json
   fails 65 'cut.json: is damaged: no longer JSON' vam-check cut.json
 done
+for value in '[]' null 5; do
+  echo "$value" >value.json
+  fails 65 'value.json: holds JSON of the type (array|null|number), where records and reports are an object' vam-check value.json
+done
 fails 65 'stdin: is damaged: no longer JSON' sh -c 'head -c -9 r.json | vam-check'
 for file in part.vdb sino.exr; do
   flip $file 1 "lost.${file##*.}"

@@ -58,6 +58,10 @@ Head take_mrc_head(Bytes& bytes) {
     if (number(16 + axis) == axis) continue;
     bytes.fail("has axes in another order than x, y, z (MAPC, MAPR, MAPS); write it again in this order");
   }
+  for (std::uint32_t axis = 1; axis <= 3; ++axis) {
+    const auto size = static_cast<std::int32_t>(number(axis));
+    if (size < 0) bytes.fail("its header is damaged: " + std::to_string(size) + " values along an axis");
+  }
   set_shape(bytes, {number(3), number(2), number(1)}, head);
   constexpr std::uint32_t most_extended = 1U << 30;
   const std::uint32_t extended = number(24);

@@ -242,6 +242,11 @@ Head take_nrrd_head(Bytes& bytes, std::vector<double>& voxel_mm, bool ordered) {
   Head head;
   set_type(bytes, field(bytes, fields, "type"), head);
   const std::vector<std::uint64_t> shape = shape_of(bytes, field(bytes, fields, "sizes"));
+  const auto stated = fields.find("dimension");
+  if (stated != fields.end() && stated->second != std::to_string(shape.size())) {
+    bytes.fail("its header is damaged: dimension " + excerpt(stated->second) + ", but " + std::to_string(shape.size()) +
+               " sizes" + remedy);
+  }
   set_shape(bytes, shape, head);
   voxel_mm = stated_mm(fields, shape.size());
   head.big_endian = head.bytes > 1 && field(bytes, fields, "endian") == "big";

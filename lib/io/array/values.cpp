@@ -64,6 +64,8 @@ void real_to_floats(const Head& head, const char* bytes, std::size_t count, floa
 
 void to_floats(const Head& head, const char* bytes, std::size_t count, float* to) {
   if (head.kind == 'f') return real_to_floats(head, bytes, count, to);
+  if (head.kind == 'b')  // any byte but 0 is true, as in NumPy
+    return convert<std::uint8_t>(head, bytes, count, to, [](std::uint8_t byte) { return byte != 0 ? 1.0F : 0.0F; });
   if (head.bytes == 1) return whole_to_floats<std::uint8_t, std::int8_t>(head, bytes, count, to);
   if (head.bytes == 2) return whole_to_floats<std::uint16_t, std::int16_t>(head, bytes, count, to);
   if (head.bytes == 4) return whole_to_floats<std::uint32_t, std::int32_t>(head, bytes, count, to);

@@ -172,6 +172,10 @@ std::string chosen_path(hid_t file, const std::string& named, const std::string&
   }
   if (signals.size() == 1) return signals.front().path;
   if (volumes.size() == 1) return volumes.front().path;
+  if (all.empty()) {
+    throw Error{Fault::data, name + ": has no dataset in " + std::to_string(most_depth) +
+                                 " levels of groups with names below 1024 bytes; name one by --array"};
+  }
   if (volumes.empty()) {
     throw Error{Fault::data, name + ": has no array of 3 dimensions, but " + list_of(all)};
   }

@@ -158,12 +158,17 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
     const std::string folder = std::filesystem::path(path).parent_path().string();
     return inspect_capture(folder.empty() ? "." : folder, fast);
   }
-  if (const Json json = parse_distinct(text, name); json.is_object()) {
+  const Json json = parse_distinct(text, name);
+  if (json.is_object()) {
     require_record_size(json, text, name);
     ProvenanceEntry finding{
         json.contains("schema") ? briefly(json["schema"].dump()) : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};
+  }
+  if (path.ends_with(".json") && !json.is_discarded()) {
+    throw Error{Fault::data, name + ": holds JSON of the type " + json.type_name() +
+                                 ", where records and reports are an object; write it again"};
   }
   if (path.ends_with(".json") || (text.front() == '{' && text.find("\"seal\":") != std::string::npos)) {
     throw Error{Fault::data, name + ": is damaged: no longer JSON; write it again"};

@@ -53,6 +53,8 @@ std::string counted(int count) {
 
 TEST_CASE("values of every type are read as floats") {
   CHECK(value("|b1", "\1") == 1);
+  CHECK(value("|b1", "\2") == 1);
+  CHECK(value("|b1", std::string(1, '\0')) == 0);
   CHECK(value("|u1", "\xff") == 255);
   CHECK(value("|i1", "\xff") == -1);
   CHECK(value("<u2", "\1\2") == 0x201);

@@ -122,6 +122,9 @@ TEST_CASE("NRRD volumes of every type, byte order and packing") {
 }
 
 TEST_CASE("NRRD files that are not read are refused with a remedy") {
+  std::string other = nrrd("type: float\nencoding: raw\nendian: little\n", counted<float>());
+  other.replace(other.find("dimension: 3"), 12, "dimension: 99");
+  CHECK(has(array_refusal(other), "its header is damaged: dimension '99', but 3 sizes"));
   const std::string raw = "encoding: raw\nendian: little\n";
   CHECK(has(array_refusal(nrrd("type: float\nencoding: ascii\nendian: little\n", "1 2 3")),
             "raw and gzip are read; write it"));
@@ -176,6 +179,9 @@ TEST_CASE("MRC volumes of the modes that are numbers, with and without an extend
   CHECK(has(array_refusal(mrc(4, counted<double>())), "MRC mode 4"));
   CHECK(has(array_refusal(mrc(2, counted<float>(), 0, false, 2)), "axes in another order"));
   CHECK(has(array_refusal(mrc(2, counted<float>(), -5)), "header is damaged"));
+  std::string negative = mrc(2, counted<float>());
+  negative.replace(0, 4, "\xfc\xff\xff\xff");
+  CHECK(has(array_refusal(negative), "its header is damaged: -4 values along an axis"));
 }
 
 TEST_CASE("TIFF files of several pages, whole numbers and floats") {
