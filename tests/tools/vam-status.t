@@ -98,6 +98,7 @@ is '--fast looks for names only' "$(vam-check --fast part 2>&1 | grep -c 'part/'
 ok 'the line needs none of these' vam-status part
 spoil; echo '{"utc":"2026-11-27T10:00:00Z","resumed_by":"/prints/rest"}' >part/resumed.json
 ok 'that it was resumed is no damage' vam-check part
+ok 'and is said' sh -c "vam-status part | grep -q \"  resumed by '/prints/rest'\$\""
 for mark in '' '{}' '{"utc":"2026-11-27T10:00:00Z","resumed_by":""}' garbage; do
   printf %s "$mark" >part/resumed.json
   fails 65 'part/resumed.json: does not say when and by which print this one was resumed' vam-check part

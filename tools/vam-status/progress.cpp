@@ -102,6 +102,7 @@ void RunFolder::read() {
   read_flips();
   if (!settled_ && !progress_.outcome) io::require_run_settings(path_);
   look_for_end();
+  progress_.resumed_by = io::resumed_by(path_);
   read_records();
   each_line(file("ost.jsonl"), true, [&](const Json& line) {
     if (line.contains("missing_percent")) progress_.missing_percent = number_at(line, "missing_percent", 0);
@@ -260,6 +261,7 @@ std::string status_line(const PrintProgress& p, double speed_deg_s) {
     std::snprintf(text, sizeof text, "  %ld:%02ld left", seconds / 60, seconds % 60);
     line += text;
   }
+  if (!p.resumed_by.empty()) line += "  resumed by " + excerpt(p.resumed_by);
   return line;
 }
 

@@ -30,6 +30,7 @@ struct PrintProgress {
   std::optional<std::string> outcome;     // when it has ended
   int status = 0;
   double silent_s = 0;     // since the last entry of a log
+  std::string resumed_by;  // the print that shows the rest; empty: none
   bool abandoned = false;  // it is silent or at its planned end, and nobody writes: vam-print was killed
   std::vector<std::string> simulated;
   std::vector<RecordAge> records;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/resumption.hpp"
 
+#include <cstdint>
 #include <filesystem>
 
 #include "base/error.hpp"
@@ -17,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* mark_name = "resumed.json";
+constexpr std::uint64_t most_mark_bytes = std::uint64_t{1} << 20;
 
 // What the events of a run say of it and of others.
 struct Ties {
@@ -78,8 +80,8 @@ std::string mark_problem(const std::string& run, const std::string& path) {
   std::error_code ignored;
   if (fs::is_symlink(fs::symlink_status(path, ignored))) return path + ": is a link, which no print leaves";
   try {
-    constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
-    const Json mark = parse_distinct(has_regular_file(path) ? read_all(path, Content::text, most_bytes) : "", path);
+    const Json mark =
+        parse_distinct(has_regular_file(path) ? read_all(path, Content::text, most_mark_bytes) : "", path);
     const std::string by = text_at(mark, "resumed_by");
     if (!by.empty() && names_itself(by, run)) return path + ": names its own folder as the print that resumed it";
     if (!by.empty() && !text_at(mark, "utc").empty()) return "";
@@ -113,6 +115,12 @@ std::string resumption_problem(const std::string& run) {
     if (error.fault != Fault::data) throw;
     return is_there ? problem + remedy_of("") : error.what();
   }
+}
+
+std::string resumed_by(const std::string& run) {
+  const std::string path = (fs::path(run) / mark_name).string();
+  if (!has_regular_file(path)) return "";
+  return text_at(parse_distinct(read_all(path, Content::text, most_mark_bytes), path), "resumed_by");
 }
 
 void require_resumption(const std::string& run) {

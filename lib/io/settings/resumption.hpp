@@ -15,6 +15,9 @@ namespace vam::io {
 /// Throws Fault::data where there is one.
 void require_resumption(const std::string& run);
 
+/// The print that resumed this one, by its resumed.json; empty: none.
+[[nodiscard]] std::string resumed_by(const std::string& run);
+
 /// The folder that a run resumes, as vam-print was given it; empty: none.
 [[nodiscard]] std::string resumes_of(const std::string& run);
 
