@@ -68,5 +68,8 @@ for file in long.npy long.npz; do
 done
 is 'a schema that vam-check prints' "$(vam-check long.json)" "long.json: \"$(printf '%063d' 0 | tr 0 s)... (9002 bytes), unsealed"
 tiny_print light.exr
+echo '{"schema": "vam-resin/1", "isovalue": 1, "critical_dose_mj_cm3": -5}' >resin.json
+box 2 2 2 >sound.off; vam-slice sound.off --voxel 0.5 -o sound.vdb
+fails 65 'resin.json: critical_dose_mj_cm3 is -5; it must be above 0' vam-sdf sound.vdb sound.off --resin resin.json
 fails 65 "nul.csv:1: 'a.x00b,c' is not the header" vam-project light.exr -o x.mkv --set projector.response=nul.csv
 done_testing

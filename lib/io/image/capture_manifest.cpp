@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "base/printable.hpp"
+#include "base/text.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
@@ -53,6 +54,8 @@ CaptureRecord to_record(const Json& line, const std::string& where) {
   if (!line.contains("number")) throw Error{Fault::data, where + ": has no key 'number'" + remedy};
   record.place = number_of(line["frame"], where);
   record.number = number_of(line["number"], where);
+  if (record.place < 0)
+    throw Error{Fault::data, where + ": frame " + std::to_string(record.place) + " is before the first" + remedy};
   record.t_monotonic_s = needed(line, "t_monotonic_s", number, where).get<double>();
   record.time_sigma_s = optional_number(line, "time_sigma_s");
   record.device_s = optional_number(line, "device_s");
@@ -61,6 +64,25 @@ CaptureRecord to_record(const Json& line, const std::string& where) {
   record.complete = needed(line, "complete", truth, where).get<bool>();
   record.levels = needed(line, "levels", text, where).get<std::string>();
   return record;
+}
+
+// What no camera has; 0 where a number is not known.
+void require_head(const Json& line, const std::string& where) {
+  struct Bound {
+    const char* key;
+    double low, high;
+  };
+  for (const Bound& bound : {Bound{"columns", 1, 65536},
+                             {"rows", 1, 65536},
+                             {"bits", 1, 16},
+                             {"pixel_mm", 0, 100},
+                             {"fps", 0, 1e6},
+                             {"every_deg", 0, 1e6}}) {
+    const double value = number_at(line, bound.key, bound.low);
+    if (value >= bound.low && value <= bound.high) continue;
+    throw Error{Fault::data, where + ": " + bound.key + " is " + format_number(value) + ", not from " +
+                                 format_number(bound.low) + " to " + format_number(bound.high) + remedy};
+  }
 }
 
 void require_line_seal(CaptureManifest& manifest, const Json& line, const std::string& where) {
@@ -110,6 +132,7 @@ void add_line(CaptureManifest& manifest, const std::string& text, const std::str
   require_line_seal(manifest, line, where);
   manifest.ended = false;
   if (manifest.head.empty()) {
+    require_head(line, where);
     manifest.head = text;
   } else if (line.contains("dropped")) {
     take_dropped(manifest, line["dropped"], where);

@@ -13,6 +13,7 @@ namespace vam::io {
 
 double gelation_isovalue(const std::string& path) {
   double isovalue = 0;
+  double critical = 1;
   try {
     const Json record = parse_distinct(read_all(path, Content::text, most_record_bytes), path);
     if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
@@ -21,8 +22,13 @@ double gelation_isovalue(const std::string& path) {
                   path + ": not a record of vam-calibrate resin, its schema is " + briefly(record["schema"].dump())};
     require_seal(record, path);
     isovalue = record.at(record.contains("level") ? "level" : "isovalue").get<double>();  // level: until 0.1.0
+    critical = number_at(record, "critical_dose_mj_cm3", critical);
   } catch (const Json::exception&) {
     throw Error{Fault::data, path + ": not a record of vam-calibrate resin, which has schema and isovalue"};
+  }
+  if (!(critical > 0)) {
+    throw Error{Fault::data, path + ": critical_dose_mj_cm3 is " + format_number(critical) +
+                                 "; it must be above 0; measure it again"};
   }
   if (!(isovalue > 0)) {
     throw Error{Fault::data, path + ": isovalue is " + format_number(isovalue) + "; it must be above 0"};

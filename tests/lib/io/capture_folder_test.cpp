@@ -149,6 +149,25 @@ TEST_CASE("a manifest whose numbers are none of frames is damaged") {
   }
   CHECK(status("{}", line) == static_cast<int>(Fault::data));
   CHECK(status("{", line) == static_cast<int>(Fault::data));
+  for (const auto& [key, value] : {std::pair{"columns", 1e9},
+                                   {"columns", -90.0},
+                                   {"rows", 0.0},
+                                   {"bits", 99.0},
+                                   {"pixel_mm", -1.0},
+                                   {"fps", -1.0},
+                                   {"every_deg", 1e300}}) {
+    CAPTURE(key);
+    Json wrong{{"schema", "vam-capture/1"}};
+    wrong[key] = value;
+    (void)folder.write("manifest.jsonl", wrong.dump() + "\n");
+    CHECK_THROWS_WITH_AS((void)read_manifest(folder.path),
+                         doctest::Contains((std::string(": line 1: ") + key + " is ").c_str()), Error);
+  }
+  (void)folder.write("manifest.jsonl",
+                     R"({"schema":"vam-capture/1"}
+{"frame":-1,"number":0,"t_monotonic_s":1,"complete":true,"levels":""}
+)");
+  CHECK_THROWS_WITH_AS((void)read_manifest(folder.path), doctest::Contains("frame -1 is before the first"), Error);
   (void)folder.write("manifest.jsonl", "");
   CHECK_THROWS_WITH_AS((void)read_manifest(folder.path), doctest::Contains("is empty"), Error);
   (void)folder.write("manifest.jsonl", "{\"schema\": \"vam-resin/1\"}\n");
