@@ -47,7 +47,8 @@ std::vector<std::string> description() {
       "exceeds what chance does in one of 370 cases and most edges agree with it. Resin that absorbs the scattered "
       "light makes these pairs differ, too: an absorption that is not given and that they show is stated by a warning, "
       "and no run-out is removed; beside one that is given the run-out is fitted. Where these pairs do not determine "
-      "it, as with many bubbles or specks, a warning says so. Image rows run "
+      "it, as with many bubbles or specks, a warning says so. Cameras whose noise is cut off at 0 make prints smaller, "
+      "which a warning says, too: their black level must be above the noise. Image rows run "
       "downwards along the axis; z = 0 "
       "is the row at the height of the lens, camera.axis_row or the middle one.",
       "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "

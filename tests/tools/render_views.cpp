@@ -4,6 +4,8 @@
 //   columns rows pixel (mm): of the camera    angles: a turn    turns    noise: deviation, in the views' units
 //   offset (px) tilt (deg): of the axis       growth: share of the radius there at the first turn; all is at the last
 //   step (mm): of the sums along the rays    lost: views that are missing in the middle of the second turn
+//   clipped: 1 for a camera that reads 0 below 0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -17,7 +19,7 @@ int main(int argc, char** argv) try {
   using namespace vam;
   std::map<std::string, double> set{{"columns", 160}, {"rows", 64},  {"pixel", 0.12}, {"angles", 90},
                                     {"turns", 1},     {"noise", 0},  {"offset", 0},   {"tilt", 0},
-                                    {"growth", 1},    {"step", 0.1}, {"lost", 0}};
+                                    {"growth", 1},    {"step", 0.1}, {"lost", 0},     {"clipped", 0}};
   for (int i = 3; i < argc; ++i) {
     const std::string item = argv[i];
     const auto equals = item.find('=');
@@ -49,6 +51,9 @@ int main(int argc, char** argv) try {
       info.angle_deg = view.angle_deg + 360 * turn;
       info.time_s = static_cast<double>(about.size()) / 30;
       about.push_back(info);
+      for (float& value : view.image.values) {
+        if (set["clipped"] != 0) value = std::max(value, 0.0F);
+      }
       views.push_back(std::move(view));
     }
   }

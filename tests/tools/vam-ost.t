@@ -47,6 +47,9 @@ render=$VAM_BUILD/render_views
 "$render" boat:length=8,wall=0.6 boat.exr noise=0.2 offset=7.4 tilt=0.5 angles=60 columns=320 rows=128 pixel=0.06 step=0.15
 quiet 'traced views with noise' vam-ost boat.exr $glass --binning 2 -o boat.vdb --report boat.json
 holds 'the axis is off by 7.4 px of the camera' "$(json boat.json axis_column_px) > 166.7 && $(json boat.json axis_column_px) < 167.1"
+"$render" boat:length=8,wall=0.6 cut.exr noise=0.2 clipped=1 angles=60 columns=320 rows=128 pixel=0.06 step=0.15
+vam-ost cut.exr $glass --binning 2 -o cut.vdb 2>said
+ok 'a camera that cuts its noise off at 0 is a warning' grep -Eq "warning: [0-9.]+ % of the camera's readings are 0, with a background of .*; raise its black level" said
 quiet 'which can be given' vam-ost boat.exr $glass --binning 2 --axis-column "$(json boat.json axis_column_px)" -o said.vdb --report said.json
 is 'and is reported as it was said' "$(json said.json axis_column_px)" "$(json boat.json axis_column_px)"
 holds 'and leans by 0.5 deg' "$(json boat.json axis_tilt_deg) > 0.45 && $(json boat.json axis_tilt_deg) < 0.55"

@@ -37,7 +37,22 @@ Session::Session(const cli::App& app, const Options& options)
   (void)optics::camera_view(printer_);  // an impossible bench is no matter of the views
 }
 
+void Session::Readings::add(const Image& frame) {
+  zeros += static_cast<double>(std::count(frame.values.begin(), frame.values.end(), 0.0F));
+  all += static_cast<double>(frame.size());
+  if (!frame.values.empty()) most = std::max(most, *std::max_element(frame.values.begin(), frame.values.end()));
+}
+
+// Noise that is cut off below 0 leaves a background where nothing is, and none within the print. Without noise there
+// are readings of 0, too, but no background.
+bool Session::Readings::cut_noise(const metrology::Dirt& dirt) const {
+  constexpr double many = 0.1;
+  constexpr double seen = 0.002;  // of the brightest reading: less moves surfaces by less than 0.02 pixels
+  return zeros > many * all && dirt.has_background && dirt.background > seen * static_cast<double>(most);
+}
+
 metrology::CameraView Session::take(io::CameraFrame frame) {
+  readings_.add(frame.image);
   metrology::CameraView view{metrology::corrected(std::move(frame.image), fields_, options_.binning, frame.name),
                              frame.angle_deg, frame.time_s};
   if (width_ == 0) {
@@ -125,6 +140,14 @@ void Session::say_dirt() const {
   if (!words.empty()) {
     note("rays replaced by their reverse, half a turn later: " + words +
          (systematic ? "; without bubbles, the resin absorbs at this wavelength (camera.absorption_per_mm)" : ""));
+  }
+  if (readings_.cut_noise(dirt_)) {
+    const std::string line =
+        format_number(100 * readings_.zeros / readings_.all, 3) +
+        " % of the camera's readings are 0, with a background of " + format_number(dirt_.background, 2) +
+        " beside them: its noise is cut off, which makes prints smaller, by more than their uncertainty; raise its "
+        "black level";
+    options_.live ? note(line) : warn(line);
   }
   if (dirt_.bubbles_exceed_limit) {
     note("views are inconsistent in " + format_number(dirt_.bubble_percent, 2) +

@@ -52,6 +52,14 @@ class Session {
  private:
   [[nodiscard]] io::SparseVolume sparse(const std::string& name, const model::Volume& volume,
                                         const Origin& origin) const;
+  /// Of the camera, as they came.
+  struct Readings {
+    double zeros = 0;
+    double all = 0;
+    float most = 0;
+    void add(const Image& frame);
+    [[nodiscard]] bool cut_noise(const metrology::Dirt& dirt) const;
+  };
   void say_dirt() const;
   void say_axis() const;
   [[nodiscard]] metrology::AxisEstimate axis_of(std::span<const metrology::CameraView> views) const;
@@ -69,6 +77,7 @@ class Session {
   metrology::AxisEstimate axis_;
   metrology::RunOut run_out_;
   metrology::Dirt dirt_;
+  Readings readings_;
   std::unique_ptr<metrology::OstReconstructor> rig_;
   int width_ = 0;
   int height_ = 0;

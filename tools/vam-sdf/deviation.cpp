@@ -174,6 +174,12 @@ void deviation(const cli::App& app, const Options& options) {
   found.tolerance_mm = asked.tolerance_mm;
   found.pose = {options.align != "none", options.scale, 100 * (1 - 1 / alignment.transform.scale), options.datum};
   const metrology::SurfaceErrors errors = errors_of(options, surface, design, found.distances.largest_dimension_mm);
+  if (errors.resolution_mm == 0) {
+    note(
+        io::input_name(options.print) +
+        ": a mesh does not tell the resolution it was measured with, which the uncertainties lack; give the volume and "
+        "--uncertainty");
+  }
   Json figures = metrology::figures_json(found);
   const Json uncertainty = metrology::expanded_uncertainty(found, print, errors);
 
