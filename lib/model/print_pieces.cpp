@@ -35,6 +35,7 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
       print_(width, height, threshold, PrintPieces::least_voxels),
       of_part_(width, height, half_surface),
       of_print_(width, height, threshold),
+      of_smooth_(width, height, threshold),
       of_firm_(width, height, threshold),
       smooth_(width, height, threshold) {}
 
@@ -65,9 +66,10 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
   }
   of_part_.add(count, coverage);
   const std::vector<float> smoothed = smooth_.add(count, coverage, dose);
-  of_print_.add(static_cast<int>(smoothed.size() / size), smoothed.data());
+  of_print_.add(count, dose);
+  of_smooth_.add(static_cast<int>(smoothed.size() / size), smoothed.data());
   of_firm_.add(count, firm.data());
-  const std::array<TunnelCounter*, 3> tunnels{&of_part_, &of_print_, &of_firm_};
+  const std::array<TunnelCounter*, 4> tunnels{&of_part_, &of_print_, &of_smooth_, &of_firm_};
   const auto add_pieces = [&](FieldPieces& field, const float* values) {
     for (int k = 0; k < count; ++k) field.add({values + product(k, size), values + product(k + 1, size)});
   };
@@ -99,18 +101,20 @@ PrintPieces PrintPieceCounter::found() const {
     broken.add(top.part);
     shut.add(top.gap);
   }
-  TunnelCounter of_print = of_print_;
+  TunnelCounter of_smooth = of_smooth_;
   const std::vector<float> rest = smooth_.rest();
-  of_print.add(static_cast<int>(rest.size() / product(width_, height_)), rest.data());
-  of_print.connect();
-  const std::int64_t of_part = of_part_.tunnels();
+  of_smooth.add(static_cast<int>(rest.size() / product(width_, height_)), rest.data());
+  of_smooth.connect();
+  // A dose that is moved to void may open a hole that the print has not.
+  const std::int64_t holes = std::min(of_print_.tunnels(), of_smooth.tunnels()) - of_part_.tunnels();
+  const std::int64_t firm_holes = std::min(holes, of_firm_.tunnels() - of_part_.tunnels());
   return {.part = part_.count(),
           .part_at_half = part_at_half_.count(),
           .print = print_.count(),
           .broken = broken.voxels(),
           .shut = shut.voxels(),
-          .holes = of_print.tunnels() - of_part,
-          .firm_holes = of_firm_.tunnels() - of_part};
+          .holes = holes,
+          .firm_holes = firm_holes};
 }
 
 }  // namespace vam::model

@@ -21,7 +21,7 @@ struct PrintPieces {
   int print = 0;                // of the dose at the threshold
   std::int64_t broken = 0;      // voxels of torn sets of the part [TornSets]
   std::int64_t shut = 0;        // and of gaps
-  std::int64_t holes = 0;       // tunnels of the print [SmoothPrint] beyond those of the part
+  std::int64_t holes = 0;       // tunnels of the print, smooth ones [SmoothPrint], beyond those of the part
   std::int64_t firm_holes = 0;  // of these, on which 2 % of the dose do not decide [firm_dose]
   int solids = 0;               // of the part's own surface; 0: not known
   int specks = 0;               // of these, so small that they may not count
@@ -57,7 +57,7 @@ class PrintPieceCounter {
   double threshold_;
   PieceCounter part_;
   FieldPieces part_at_half_, print_;
-  TunnelCounter of_part_, of_print_, of_firm_;
+  TunnelCounter of_part_, of_print_, of_smooth_, of_firm_;
   SmoothPrint smooth_;
   std::vector<Slice> last_;                        // up to two
   TornSets broken_{Torn::part}, shut_{Torn::gap};  // in all but the last slice

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/verdict.hpp"
 
-#include <algorithm>
-
 #include "base/json.hpp"
 #include "base/text.hpp"
 
@@ -39,11 +37,11 @@ std::string pieces_text(const model::PrintPieces& pieces) {
     text +=
         "; gaps are shut: " + std::to_string(pieces.shut) + " voxels that the part fills by less than a quarter cure";
   }
-  if (pieces.may_have_holes() || pieces.has_holes()) {
-    const auto count = std::max(pieces.holes, pieces.firm_holes);
+  if (pieces.may_have_holes()) {
     text += std::string("; walls ") + (pieces.has_holes() ? "are" : "may be") +
-            " pierced or gaps bridged: the print has " + std::to_string(count) + (count == 1 ? " hole" : " holes") +
-            " that the part has not" + (pieces.has_holes() ? "" : ", on which 2 % of the dose decide");
+            " pierced or gaps bridged: the print has " + std::to_string(pieces.holes) +
+            (pieces.holes == 1 ? " hole" : " holes") + " that the part has not" +
+            (pieces.has_holes() ? "" : ", on which 2 % of the dose decide");
   }
   return text;
 }

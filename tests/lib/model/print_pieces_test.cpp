@@ -266,6 +266,28 @@ TEST_CASE("holes of a thin wall are holes, and no broken voxels") {
   CHECK(found(1).holes == 1);
 }
 
+TEST_CASE("a hole that only a dose moved to void would open is none") {
+  constexpr int size = 9;
+  const auto found = [&](float middle) {  // of a plate beside the part, with one row of another dose through it
+    vam::model::PrintPieceCounter counter(size, size, 0.5);
+    for (int k = 0; k < 5; ++k) {
+      const std::vector<float> coverage(size * size, 0);
+      std::vector<float> dose(size * size, 0);
+      for (int i = 0; i < size * size && k > 0 && k < 4; ++i) {
+        const int x = i % size;
+        const int y = i / size;
+        if (x > 0 && x < size - 1 && y > 0 && y < size - 1) dose[i] = x == 4 && y == 4 ? middle : 0.6F;
+      }
+      counter.add(1, coverage.data(), dose.data());
+    }
+    return counter.found();
+  };
+  CHECK(found(0.505F).holes == 0);
+  CHECK(found(0.505F).firm_holes == 0);
+  CHECK(found(0.1F).holes == 1);
+  CHECK(found(0.1F).firm_holes == 1);
+}
+
 TEST_CASE("a fin that loses its upper half is broken, a sharp edge that is rounded is not") {
   constexpr int size = 16;
   const auto broken = [&](int lost) {  // of the upper slices of a fin of 16 voxels on a block
