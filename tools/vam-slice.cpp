@@ -162,6 +162,7 @@ void run(const cli::App& app, Options& options) {
   solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject,
                           advice_for(app, options, printer, part, room));
   const model::Grid grid = grid_of(options, printer, part, insert, room);
+  if (insert && slice_tool::is_beyond(*insert, grid, options.placement.stretch_z)) insert.reset();
   solid::FillSummary content;
   std::optional<io::SparseVolume> opaque;
   solid::Part printed = part;

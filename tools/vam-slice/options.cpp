@@ -60,7 +60,8 @@ void declare_insert(cli::App& app, Options& options) {
              "Rotation angles of the insert, as --rotate, instead of those of PART.")
       .needs(either);
   app.option("--insert-at", "X,Y,Z", options.insert_at_mm, 3,
-             "Position of the centre of the insert's bounding box, in mm of the print; x = y = 0 is the axis.")
+             "Position of the centre of the insert's bounding box, in mm of the print, before --place moves it with "
+             "the part; x = y = 0 is the axis.")
       .needs(either);
   app.option("--cut-insert", "CLEARANCE_MM", options.clearance_mm, cli::non_negative,
              "Subtract the insert from the part, with this clearance all around.")

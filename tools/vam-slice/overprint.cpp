@@ -25,11 +25,15 @@ std::string size_text(const solid::Part& placed, double stretch_z) {
          " mm";
 }
 
+std::string miss_text(const solid::Part& placed, double stretch_z) {
+  return placed.subject + ": misses the part; it measures " + size_text(placed, stretch_z) + " and is centred at " +
+         mm(placed.extent.box.centre(), stretch_z) + " mm; check --insert-unit, --insert-scale and --insert-at";
+}
+
 void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Options& options) {
   const double stretch_z = options.placement.stretch_z;
   if (!fit.meets()) {
-    warn(placed.subject + ": misses the part; it measures " + size_text(placed, stretch_z) + " and is centred at " +
-         mm(placed.extent.box.centre(), stretch_z) + " mm; check --insert-unit, --insert-scale and --insert-at");
+    warn(miss_text(placed, stretch_z));
   } else if (!options.clearance_mm && fit.overlap()) {
     warn(placed.subject + ": overlaps the part by " + format_number(fit.shared_mm3(stretch_z), 3) +
          " mm3; --cut-insert subtracts it");
@@ -44,6 +48,13 @@ void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Optio
 }
 
 }  // namespace
+
+bool is_beyond(const solid::Part& placed, const model::Grid& grid, double stretch_z) {
+  const solid::Bounds& box = placed.extent.box;
+  if (box.high[2] > grid.z_mm(-0.5) && box.low[2] < grid.z_mm(grid.nz - 0.5)) return false;
+  warn(miss_text(placed, stretch_z) + "; no light passes it on its way to the part, and it is left out");
+  return true;
+}
 
 solid::Part around(const solid::Part& part, const io::SparseVolume& insert, const Options& options) {
   if (!options.clearance_mm) return part;

@@ -9,6 +9,9 @@
 
 namespace vam::slice_tool {
 
+/// Is the insert below or above all slices of the volume? Then says so.
+[[nodiscard]] bool is_beyond(const solid::Part& placed, const model::Grid& grid, double stretch_z);
+
 /// The part, without the insert with --cut-insert. The volume must outlive what is returned.
 [[nodiscard]] solid::Part around(const solid::Part& part, const io::SparseVolume& insert, const Options& options);
 

@@ -120,7 +120,8 @@ std::string gap_doubt(const std::string& subject, const model::Unresolved& unres
   if (!unresolved.shuts_gaps()) return "";
   const model::ThinPlaces* cause = cause_of(unresolved, &model::PartSurface::gaps);
   const double gap_mm = cause != nullptr ? cause->mm : grid.voxel_mm * static_cast<double>(lost.widest);
-  const double resolving = cause != nullptr ? resolving_mm(*cause) : 0.5 * gap_mm;
+  const double by_width = cause != nullptr ? resolving_mm(*cause) : 0.5 * gap_mm;
+  const double resolving = std::min(by_width, 0.75 * grid.voxel_mm);  // these voxels do not
   return subject + ": gaps of " + format_number(gap_mm, 2) +
          " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
          " no voxel of theirs is more than three quarters free, and they will be printed shut; voxels of " +
