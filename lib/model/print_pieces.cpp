@@ -33,6 +33,8 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
       part_(PrintPieces::least_voxels),
       part_at_half_(width, height, half_surface, PrintPieces::least_voxels),
       print_(width, height, threshold, PrintPieces::least_voxels),
+      print_of_less_(width, height, threshold, PrintPieces::least_voxels),
+      print_of_more_(width, height, threshold, PrintPieces::least_voxels),
       of_part_(width, height, half_surface),
       of_print_(width, height, threshold),
       of_smooth_(width, height, threshold),
@@ -42,12 +44,14 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
 void PrintPieceCounter::add(int count, const float* coverage, const float* dose) {
   const std::size_t size = product(width_, height_);
   std::vector<Slice> slices(count, Slice(size));
-  std::vector<float> firm(product(count, size));
+  std::vector<float> firm(product(count, size)), less(firm.size()), more(firm.size());
   parallel_for(count, [&](int k) {
     const std::size_t first = product(k, size);
     for (std::size_t i = 0; i < size; ++i) {
       slices[k][i] = printed_bits(coverage[first + i], static_cast<double>(dose[first + i]) >= threshold_);
       firm[first + i] = firm_dose(coverage[first + i], dose[first + i], threshold_);
+      less[first + i] = less_dose(coverage[first + i], dose[first + i], threshold_);
+      more[first + i] = more_dose(coverage[first + i], dose[first + i], threshold_);
     }
   });
   std::vector<const Slice*> all;
@@ -70,23 +74,19 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
   of_smooth_.add(static_cast<int>(smoothed.size() / size), smoothed.data());
   of_firm_.add(count, firm.data());
   const std::array<TunnelCounter*, 4> tunnels{&of_part_, &of_print_, &of_smooth_, &of_firm_};
-  const auto add_pieces = [&](FieldPieces& field, const float* values) {
-    for (int k = 0; k < count; ++k) field.add({values + product(k, size), values + product(k + 1, size)});
-  };
-  constexpr int others = 3;
-  parallel_for(others + count_of(tunnels), [&](int counter) {
-    if (counter == 0) {
-      for (const Slice& slice : slices) {
-        part_.add(runs_of(width_, height_, [&](std::size_t i) { return (slice[i] & printed::trace) != 0; }),
-                  at_corners);
-      }
-    } else if (counter == 1) {
-      add_pieces(part_at_half_, coverage);
-    } else if (counter == 2) {
-      add_pieces(print_, dose);
-    } else {
-      tunnels[counter - others]->connect();
+  using Field = std::pair<FieldPieces*, const float*>;
+  const std::array<Field, 4> fields{Field{&part_at_half_, coverage}, Field{&print_, dose},
+                                    Field{&print_of_less_, less.data()}, Field{&print_of_more_, more.data()}};
+  const auto add_part = [&] {
+    for (const Slice& slice : slices) {
+      part_.add(runs_of(width_, height_, [&](std::size_t i) { return (slice[i] & printed::trace) != 0; }), at_corners);
     }
+  };
+  parallel_for(1 + count_of(fields) + count_of(tunnels), [&](int n) {
+    if (n == 0) return add_part();
+    if (n > count_of(fields)) return tunnels[n - 1 - count_of(fields)]->connect();
+    const auto& [field, values] = fields[n - 1];
+    for (int k = 0; k < count; ++k) field->add({values + product(k, size), values + product(k + 1, size)});
   });
   std::vector<Slice> last;
   for (std::size_t k = all.size() - std::min<std::size_t>(all.size(), 2); k < all.size(); ++k) last.push_back(*all[k]);
@@ -106,15 +106,21 @@ PrintPieces PrintPieceCounter::found() const {
   of_smooth.add(static_cast<int>(rest.size() / product(width_, height_)), rest.data());
   of_smooth.connect();
   // A dose that is moved to void may open a hole that the print has not.
-  const std::int64_t holes = std::min(of_print_.tunnels(), of_smooth.tunnels()) - of_part_.tunnels();
-  const std::int64_t firm_holes = std::min(holes, of_firm_.tunnels() - of_part_.tunnels());
+  const auto beyond_part = [&](std::int64_t tunnels) {
+    return std::max(tunnels - of_part_.tunnels(), std::int64_t{0});
+  };
+  const std::int64_t holes = beyond_part(std::min(of_print_.tunnels(), of_smooth.tunnels()));
+  const int print = print_.count();
+  const auto [least, most] = std::minmax({print, print_of_less_.count(), print_of_more_.count()});
   return {.part = part_.count(),
           .part_at_half = part_at_half_.count(),
-          .print = print_.count(),
+          .print = print,
+          .print_fewer = print - least,
+          .print_more = most - print,
           .broken = broken.voxels(),
           .shut = shut.voxels(),
           .holes = holes,
-          .firm_holes = firm_holes};
+          .firm_holes = std::min(holes, beyond_part(of_firm_.tunnels()))};
 }
 
 }  // namespace vam::model

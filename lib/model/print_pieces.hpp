@@ -16,12 +16,14 @@ namespace vam::model {
 
 struct PrintPieces {
   static constexpr std::int64_t least_voxels = 8;  // of a piece: smaller ones are rounded tips and edges
-  int part = 0;                 // of voxels with a trace of it that share a corner: thin rods hold together
-  int part_at_half = 0;         // of the coverage at a half: narrow gaps part it
-  int print = 0;                // of the dose at the threshold
-  std::int64_t broken = 0;      // voxels of torn sets of the part [TornSets]
-  std::int64_t shut = 0;        // and of gaps
-  std::int64_t holes = 0;       // tunnels of the print, smooth ones [SmoothPrint], beyond those of the part
+  int part = 0;             // of voxels with a trace of it that share a corner: thin rods hold together
+  int part_at_half = 0;     // of the coverage at a half: narrow gaps part it
+  int print = 0;            // of the dose at the threshold
+  int print_fewer = 0;      // and by how many it is in fewer or more with up to 2 % less or more dose
+  int print_more = 0;       // [less_dose, more_dose]
+  std::int64_t broken = 0;  // voxels of torn sets of the part [TornSets]
+  std::int64_t shut = 0;    // and of gaps
+  std::int64_t holes = 0;  // tunnels of the print, smooth ones [SmoothPrint], beyond those of the part; not less than 0
   std::int64_t firm_holes = 0;  // of these, on which 2 % of the dose do not decide [firm_dose]
   int solids = 0;               // of the part's own surface; 0: not known
   int specks = 0;               // of these, so small that they may not count
@@ -34,8 +36,11 @@ struct PrintPieces {
   [[nodiscard]] int fewest() const { return solids > 0 ? solids - specks : std::min(part, part_at_half); }
   [[nodiscard]] int most() const { return solids > 0 ? solids : std::max(part, part_at_half); }
   [[nodiscard]] bool knows_pieces() const { return solids > 0 || part == part_at_half; }
-  [[nodiscard]] bool is_certain() const { return knows_pieces() && !may_have_holes(); }
   [[nodiscard]] bool is_in_other_pieces() const { return print < fewest() || print > most(); }
+  [[nodiscard]] int print_least() const { return print - print_fewer; }
+  [[nodiscard]] int print_most() const { return print + print_more; }
+  [[nodiscard]] bool may_be_in_other_pieces() const { return print_least() < fewest() || print_most() > most(); }
+  [[nodiscard]] bool is_certain() const { return knows_pieces() && !may_have_holes() && !may_be_in_other_pieces(); }
   [[nodiscard]] bool is_as_part() const {
     return !is_in_other_pieces() && !loses_walls() && !shuts_gaps() && !has_holes();
   }
@@ -56,7 +61,7 @@ class PrintPieceCounter {
   int width_, height_;
   double threshold_;
   PieceCounter part_;
-  FieldPieces part_at_half_, print_;
+  FieldPieces part_at_half_, print_, print_of_less_, print_of_more_;
   TunnelCounter of_part_, of_print_, of_smooth_, of_firm_;
   SmoothPrint smooth_;
   std::vector<Slice> last_;                        // up to two

@@ -12,7 +12,7 @@ namespace vam::model {
 
 namespace {
 
-constexpr double rough = 0.02;  // of the threshold
+constexpr double rough = 0.02;  // of the dose
 constexpr int thin = 2;         // voxels in a row
 constexpr int reach = thin;     // slices beyond which nothing is looked at
 
@@ -28,6 +28,18 @@ float firm_dose(float coverage, float dose, double threshold) {
   const auto most = static_cast<float>((1 + rough) * threshold);
   if (dose < least || dose > most) return dose;
   return coverage >= static_cast<float>(half_surface) ? most : least;
+}
+
+float less_dose(float coverage, float dose, double threshold) {
+  const float less = static_cast<float>(1 - rough) * dose;
+  const bool stays = coverage >= 1 && static_cast<double>(less) < threshold;
+  return stays ? dose : less;
+}
+
+float more_dose(float coverage, float dose, double threshold) {
+  const float more = static_cast<float>(1 + rough) * dose;
+  const bool stays = coverage <= 0 && static_cast<double>(more) >= threshold;
+  return stays ? dose : more;
 }
 
 /// Along the 13 lines through a voxel and its neighbours.

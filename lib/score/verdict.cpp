@@ -28,6 +28,9 @@ std::string pieces_text(const model::PrintPieces& pieces) {
     text += "; the print is in " + in_pieces(pieces.print) +
             ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) + " or " +
             std::to_string(pieces.part_at_half);
+  } else if (pieces.may_be_in_other_pieces()) {
+    text += "; the print is in " + in_pieces(pieces.print) + ", but with up to 2 % less or more dose in " +
+            std::to_string(pieces.print_least()) + " to " + std::to_string(pieces.print_most());
   }
   if (pieces.loses_walls()) {
     text += "; walls are cut or missing: " + std::to_string(pieces.broken) +
@@ -131,6 +134,8 @@ void add_to(Json& figures, const Verdict& verdict) {
   if (verdict.pieces->solids > 0) figures["solids"] = verdict.pieces->solids;
   figures["part_pieces_at_half"] = verdict.pieces->part_at_half;
   figures["print_pieces"] = verdict.pieces->print;
+  figures["print_pieces_least"] = verdict.pieces->print_least();
+  figures["print_pieces_most"] = verdict.pieces->print_most();
   figures["broken_voxels"] = verdict.pieces->broken;
   figures["shut_voxels"] = verdict.pieces->shut;
   figures["holes"] = verdict.pieces->holes;

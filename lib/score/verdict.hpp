@@ -28,7 +28,7 @@ enum class Answer {
   not_judged,       // no voxel is wholly inside the part
   no,               // neither the threshold, nor any where none is given, prints all voxels wholly in part or void
   not_as_designed,  // walls will be missing, cut off or joined, or gaps shut
-  unsure,           // too much is not judged, or the voxels do not tell in how many pieces the part is
+  unsure,           // too much is not judged, or neither voxels nor dose tell what hangs together
   yes
 };
 [[nodiscard]] Answer answer(const Verdict& verdict);

@@ -49,6 +49,9 @@ vam-sinogram fin.vdb --angles 30 --filter ram-lak --negative clip | vam-dose --l
 ok 'a page of a part with a fin' vam-report fin.vdb fin-dose.vdb -o fin.html
 is 'the design has the fin' "$(grep -o 'spans 4 x 4 x [0-9.]* mm' fin.html | grep -c 'x \(2.9\|3\)')" 1
 ok 'sections of what prints' grep -q 'Part as printed, sections across z' fin.html
+vam-slice --shape box:x=4,y=4,z=2 --insert-shape box:x=1,y=1,z=4 --voxel 0.25 --cut-insert -o held.vdb
+ok 'a page of a part with an insert' vam-report held.vdb -o held.html
+ok 'says that it is shown' grep -q 'The insert is green' held.html
 # A target that is a dose for every voxel, here met nowhere but in the void, and one beyond the coverage of a part.
 vam-score dose.vdb --target part.vdb --grey-target --band 0.2 >table.grey
 ok 'a page of a grey target' vam-report part.vdb dose.vdb --grey-target --band 0.2 -o grey.html
@@ -167,6 +170,20 @@ document.getElementById('judged').textContent =
 PAGE
 } >judged.html
 look --dump-dom "file://$PWD/judged.html" >dom.html
+{
+  sed 's/<meta http-equiv="Content-Security-Policy"[^>]*>//; s|</body></html>||' held.html
+  cat <<'PAGE'
+<p id="green"></p><script>
+const copy = document.createElement('canvas'), flat = copy.getContext('2d'), view = document.querySelector('canvas');
+copy.width = view.width; copy.height = view.height; flat.drawImage(view, 0, 0);
+const values = flat.getImageData(0, 0, copy.width, copy.height).data;
+let count = 0;
+for (let i = 0; i < values.length; i += 4) if (values[i + 1] > 2 * values[i] + 40) ++count;
+document.getElementById('green').textContent = count > 0.01 * copy.width * copy.height ? 'seen' : 'not seen';
+</script></body></html>
+PAGE
+} >green.html
+is 'the insert is drawn in green' "$(look --dump-dom "file://$PWD/green.html" | grep -o '<p id="green">[^<]*')" '<p id="green">seen'
 look --dump-dom "file://$PWD/inspection.html" >/dev/null
 is 'no message on the console for an inspection' "$(grep -c CONSOLE .log/browser.err)" 0
 is 'the slider moves; both bodies are drawn and rotate' "$(grep -o '<p id="judged">[^<]*' dom.html)" \

@@ -132,19 +132,33 @@ std::vector<Layer> layers_of(const io::SparseVolume& target, const std::optional
 
 std::size_t vertices(const std::vector<Layer>& layers) {
   std::size_t most = 0;
-  for (const Layer& layer : layers) most = std::max(most, layer.mesh.points.size());
+  for (const Layer& layer : layers) most = std::max(most, layer.mesh.points.size() + layer.beside.points.size());
   return most;
+}
+
+void add_insert(std::vector<Layer>& layers, const io::SparseVolume* insert, int by) {
+  if (insert == nullptr) return;
+  const model::TriangleSoup body = solid::isosurface(averaged(*insert, by), model::half_surface);
+  for (Layer& layer : layers) layer.beside = body;
 }
 
 }  // namespace
 
-std::string body_view(const io::SparseVolume& target, const std::optional<PrintedDose>& print) {
+std::string body_view(const io::SparseVolume& target, const std::optional<PrintedDose>& print,
+                      const io::SparseVolume* insert) {
   int by = 1;
   while (target.grid().size() / static_cast<std::size_t>(by * by * by) > most_voxels) ++by;
-  std::vector<Layer> layers = layers_of(target, print, by);
-  while (vertices(layers) > most_vertices) layers = layers_of(target, print, ++by);
+  std::vector<Layer> layers;
+  for (;; ++by) {
+    layers = layers_of(target, print, by);
+    add_insert(layers, insert, by);
+    if (vertices(layers) <= most_vertices) break;
+  }
   if (layers[0].mesh.triangles.empty()) return "";
-  for (Layer& layer : layers) tool::unstretch(layer.mesh, target.metadata);
+  for (Layer& layer : layers) {
+    tool::unstretch(layer.mesh, target.metadata);
+    tool::unstretch(layer.beside, target.metadata);
+  }
   const solid::Bounds design = solid::bounding_box(layers[0].mesh);
   const Vector3 size = design.high - design.low;
   const std::string mm =
@@ -156,7 +170,8 @@ std::string body_view(const io::SparseVolume& target, const std::optional<Printe
           voxel + " are half covered, spans " + mm +
           " along x, y and z, as it is to be printed, to within such a voxel." +
           (layers.size() > 1 ? " The print's is where the dose, averaged over such voxels, reaches the threshold."
-                             : ""));
+                             : "") +
+          (layers[0].beside.triangles.empty() ? "" : " The insert is green."));
 }
 
 }  // namespace vam::report_tool

@@ -16,8 +16,9 @@ struct PrintedDose {
 };
 
 /// HTML: the design's surface, with a dose coloured by the margin of the dose there, and the print's, coloured by its
-/// signed distance from the design. Surfaces are made on voxels averaged until they have less than 60,000 vertices;
-/// both lie in the part's frame, heights without the stretch of the printer.
-[[nodiscard]] std::string body_view(const io::SparseVolume& target, const std::optional<PrintedDose>& print);
+/// signed distance from the design. An insert is seen with both. Surfaces are made on voxels averaged until they have
+/// less than 60,000 vertices; both lie in the part's frame, heights without the stretch of the printer.
+[[nodiscard]] std::string body_view(const io::SparseVolume& target, const std::optional<PrintedDose>& print,
+                                    const io::SparseVolume* insert);
 
 }  // namespace vam::report_tool

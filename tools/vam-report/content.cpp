@@ -81,7 +81,7 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
   if (const io::SparseVolume* target = volumes.find("target"); target != nullptr && !wanted.grey.is_target) {
     std::optional<PrintedDose> print;
     if (judged) print = {volumes.find("dose"), judged->score.print_threshold()};
-    made += body_view(*target, print);
+    made += body_view(*target, print, volumes.find("insert"));
   }
   progress.tick();
   if (!sources.meshes.empty()) {

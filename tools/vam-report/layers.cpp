@@ -32,20 +32,40 @@ Rgb colour_of(const Layer& layer, std::size_t vertex) {
   return plot::colour(plot::ColourMap::diverging, 0.5 + 0.5 * layer.values[vertex] / layer.limit);
 }
 
-Json packed(const Layer& layer, const solid::Bounds& box) {
-  std::vector<std::uint16_t> positions;
-  std::vector<std::uint8_t> colours;
-  std::vector<std::uint32_t> triangles;
-  for (std::size_t n = 0; n < layer.mesh.points.size(); ++n) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double place = (layer.mesh.points[n][axis] - box.low[axis]) / (box.high[axis] - box.low[axis]);
-      positions.push_back(static_cast<std::uint16_t>(std::lround(65535 * std::clamp(place, 0.0, 1.0))));
+/// What WebGL takes of bodies in one box.
+class Packing {
+ public:
+  explicit Packing(const solid::Bounds& box) : box_(box) {}
+  /// colour(vertex)
+  template <class Colour>
+  void add(const model::TriangleSoup& mesh, const Colour& colour) {
+    const auto first = static_cast<std::uint32_t>(positions_.size() / 3);
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double place = (mesh.points[n][axis] - box_.low[axis]) / (box_.high[axis] - box_.low[axis]);
+        positions_.push_back(static_cast<std::uint16_t>(std::lround(65535 * std::clamp(place, 0.0, 1.0))));
+      }
+      const Rgb paint = colour(n);
+      colours_.insert(colours_.end(), paint.begin(), paint.end());
     }
-    const Rgb colour = colour_of(layer, n);
-    colours.insert(colours.end(), colour.begin(), colour.end());
+    for (const auto& triangle : mesh.triangles) {
+      for (const auto corner : triangle) corners_.push_back(first + static_cast<std::uint32_t>(corner));
+    }
   }
-  for (const auto& triangle : layer.mesh.triangles) triangles.insert(triangles.end(), triangle.begin(), triangle.end());
-  return Json::array({encoded(positions), encoded(colours), encoded(triangles)});
+  [[nodiscard]] Json packed() const { return Json::array({encoded(positions_), encoded(colours_), encoded(corners_)}); }
+
+ private:
+  solid::Bounds box_;
+  std::vector<std::uint16_t> positions_;
+  std::vector<std::uint8_t> colours_;
+  std::vector<std::uint32_t> corners_;
+};
+
+Json packed(const Layer& layer, const solid::Bounds& box) {
+  Packing packing(box);
+  packing.add(layer.mesh, [&](std::size_t vertex) { return colour_of(layer, vertex); });
+  packing.add(layer.beside, [](std::size_t) { return plot::paint::green; });
+  return packing.packed();
 }
 
 std::string scale(const Layer& layer, bool hidden) {
@@ -76,6 +96,7 @@ solid::Bounds box_of(const std::vector<Layer>& layers) {
   solid::Bounds box = solid::bounding_box(layers[0].mesh);
   for (const Layer& layer : layers) {
     box.join(solid::bounding_box(layer.mesh));
+    if (!layer.beside.points.empty()) box.join(solid::bounding_box(layer.beside));
   }
   return box;
 }

@@ -18,6 +18,7 @@ struct Layer {
   std::string unit;
   std::string meaning;
   std::vector<Rgb> colours = {};
+  model::TriangleSoup beside = {};  // a body that is seen with it, in green
 };
 
 /// HTML: a view of the layers with their scales; a choice where there are more than one, told from others by `group`.

@@ -473,3 +473,28 @@ TEST_CASE("torn sets are those of the whole volume, at every density and height 
   }
   CHECK(some > 100);
 }
+
+TEST_CASE("a rod at the threshold, or a gap just below it, leaves the number of pieces open") {
+  const auto found = [](float covered, float dose) {  // between two blocks
+    constexpr int width = 11;
+    constexpr int height = 5;
+    model::PrintPieceCounter counter(width, height, 0.8);
+    const auto slice = [&](float block, float between) {
+      std::vector<float> values;
+      for (int i = 0; i < width * height; ++i) values.push_back(i % width == width / 2 ? between : block);
+      return values;
+    };
+    for (int k = 0; k < height; ++k) counter.add(1, slice(1, covered).data(), slice(1, dose).data());
+    return counter.found();
+  };
+  const auto range = [&](float covered, float dose) {
+    const model::PrintPieces pieces = found(covered, dose);
+    return std::array<int, 3>{pieces.print_least(), pieces.print, pieces.print_most()};
+  };
+  CHECK(range(0.6F, 0.81F) == std::array{1, 1, 2});
+  CHECK(range(0.4F, 0.79F) == std::array{1, 2, 2});
+  CHECK(range(0.6F, 0.83F) == std::array{1, 1, 1});
+  CHECK(range(1, 0.81F) == std::array{1, 1, 1});  // the process window tells of it
+  CHECK(found(0.6F, 0.81F).may_be_in_other_pieces());
+  CHECK(!found(0.6F, 0.83F).may_be_in_other_pieces());
+}

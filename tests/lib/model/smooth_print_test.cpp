@@ -85,3 +85,12 @@ TEST_CASE("a firm dose is as the part has it within 2 % of the threshold") {
   CHECK(vam::model::firm_dose(1, 0.48F, threshold) == 0.48F);
   CHECK(vam::model::firm_dose(0, 0.52F, threshold) == 0.52F);
 }
+
+TEST_CASE("2 % of the dose decide on no voxel wholly in part or void") {
+  CHECK(same(vam::model::less_dose(0.3F, 0.505F, threshold), 0.4949));
+  CHECK(same(vam::model::less_dose(1, 0.6F, threshold), 0.588));
+  CHECK(vam::model::less_dose(1, 0.505F, threshold) == 0.505F);
+  CHECK(same(vam::model::more_dose(0.3F, 0.495F, threshold), 0.5049));
+  CHECK(same(vam::model::more_dose(0, 0.4F, threshold), 0.408));
+  CHECK(vam::model::more_dose(0, 0.495F, threshold) == 0.495F);
+}
