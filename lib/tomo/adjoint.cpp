@@ -16,7 +16,6 @@ namespace {
 constexpr int tile = 64;    // pixels, both ways
 constexpr int window = 97;  // bins that a tile can see: 63 * sqrt(2) + 1.42 + 1, the taps, rounding up
 constexpr int taps = 3;
-constexpr auto rows = static_cast<std::size_t>(gather_rows);
 
 /// e^{-alpha (x - axis) sin} and e^{alpha (y - axis) cos} as [block of eight angles][pixel][angle].
 struct Factors {
@@ -25,14 +24,14 @@ struct Factors {
 };
 
 std::size_t factor_at(std::size_t block, int pixel, int pixels) {
-  return (block * static_cast<std::size_t>(pixels) + pixel) * rows;
+  return (block * static_cast<std::size_t>(pixels) + pixel) * kernel_rows;
 }
 
 /// Eight angles as one tile sees them.
 struct Stretch {
   GatherRows from{};
-  std::array<int, rows> origin{};  // the bin in element 0
-  std::array<int, rows> skip{};    // elements before the detector begins
+  std::array<int, kernel_rows> origin{};  // the bin in element 0
+  std::array<int, kernel_rows> skip{};    // elements before the detector begins
 };
 
 class Adjoint {
@@ -44,7 +43,7 @@ class Adjoint {
         plan_(make_plan(geometry, images, sinograms)),
         groups_(make_groups(images.size())),
         kernels_(radon_kernels(level)),
-        footprints_((plan_.rays.size() + rows - 1) / rows) {
+        footprints_((plan_.rays.size() + kernel_rows - 1) / kernel_rows) {
     make_footprints();
     if (geometry.alpha_per_px != 0) make_factors();
   }
@@ -60,12 +59,13 @@ class Adjoint {
 
  private:
   void make_footprints() {
-    for (std::size_t a = 0; a < footprints_.size() * rows; ++a) {
+    for (std::size_t a = 0; a < footprints_.size() * kernel_rows; ++a) {
       const bool there = a < plan_.rays.size();  // the last block's other rows weigh nothing
       const Ray ray = there ? plan_.rays[a] : Ray{1, 0, 0};
       const double c = std::abs(ray.cosine);
       const double s = std::abs(ray.sine);
-      set_footprint(footprints_[a / rows], a % rows, std::max(c, s), std::min(c, s), there ? 1 : 0, ray.cosine);
+      set_footprint(footprints_[a / kernel_rows], a % kernel_rows, std::max(c, s), std::min(c, s), there ? 1 : 0,
+                    ray.cosine);
     }
   }
 
@@ -78,11 +78,11 @@ class Adjoint {
       const auto a = static_cast<std::size_t>(angle);
       const Ray& ray = plan_.rays[a];
       for (int i = 0; i < width; ++i) {
-        factors_.x[factor_at(a / rows, i, width) + a % rows] =
+        factors_.x[factor_at(a / kernel_rows, i, width) + a % kernel_rows] =
             static_cast<float>(std::exp(-alpha * (i - geometry_.axis_x) * ray.sine));
       }
       for (int j = 0; j < geometry_.ny; ++j) {
-        factors_.y[factor_at(a / rows, j, geometry_.ny) + a % rows] =
+        factors_.y[factor_at(a / kernel_rows, j, geometry_.ny) + a % kernel_rows] =
             static_cast<float>(std::exp(alpha * (j - geometry_.axis_y) * ray.cosine));
       }
     });
@@ -90,7 +90,7 @@ class Adjoint {
 
   void work_out_tile(const SlabGroup& group, int x0, int y0) const {
     const std::ptrdiff_t pitch = group.pitch();
-    float* bins = scratch(0, rows * window * group_lanes);
+    float* bins = scratch(0, kernel_rows * window * group_lanes);
     float* pixels = scratch(1, std::size_t{tile} * tile * group_lanes);
     std::fill_n(pixels, std::ptrdiff_t{tile} * tile * pitch, 0.0F);
     const int x1 = std::min(x0 + tile, geometry_.nx);
@@ -127,12 +127,12 @@ class Adjoint {
   /// Where the bins of a block's angles lie that the tile sees, opposite angles to be added when the plan is folded.
   [[nodiscard]] Stretch find(const SlabGroup& group, std::size_t block, int x0, int y0) const {
     Stretch stretch;
-    for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t r = 0; r < kernel_rows; ++r) {
       Interleave& job = stretch.from[r];
       job.slabs = static_cast<int>(group.slabs);
       job.from_step = lanes;
       job.plus_step = -lanes;
-      const std::size_t a = block * rows + r;
+      const std::size_t a = block * kernel_rows + r;
       if (a >= plan_.rays.size()) continue;
       const Ray& ray = plan_.rays[a];
       const double left = std::min(0.0, ray.cosine * (tile - 1)) + std::min(0.0, ray.sine * (tile - 1));
@@ -154,7 +154,7 @@ class Adjoint {
 
   /// Copies them side by side, zero where there is no detector.
   void copy(const Stretch& stretch, float* bins, std::ptrdiff_t pitch) const {
-    for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t r = 0; r < kernel_rows; ++r) {
       Interleave job = stretch.from[r];
       const std::ptrdiff_t first = stretch.skip[r];
       const std::ptrdiff_t last = first + job.count;
@@ -168,14 +168,14 @@ class Adjoint {
 
   /// The job's first pixel is (x, y).
   void place(Gather& job, std::size_t block, const Stretch& stretch, int x, int y) const {
-    for (std::size_t r = 0; r < rows; ++r) {
-      const Ray& ray = plan_.rays[std::min(block * rows + r, plan_.rays.size() - 1)];
+    for (std::size_t r = 0; r < kernel_rows; ++r) {
+      const Ray& ray = plan_.rays[std::min(block * kernel_rows + r, plan_.rays.size() - 1)];
       set_first(job, r, x * ray.cosine + y * ray.sine + ray.offset - stretch.origin[r]);
     }
     if (geometry_.alpha_per_px == 0) return;
     job.factor = factors_.x.data() + factor_at(block, x, geometry_.nx + 1);
     const float* along_y = factors_.y.data() + factor_at(block, y, geometry_.ny);
-    for (std::size_t e = 0; e < pair_entries; ++e) job.row_factor[e] = along_y[e % rows];
+    for (std::size_t e = 0; e < pair_entries; ++e) job.row_factor[e] = along_y[e % kernel_rows];
   }
 
   void put(const SlabGroup& group, const float* pixels, int x0, int x1, int y) const {

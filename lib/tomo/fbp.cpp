@@ -15,7 +15,7 @@ namespace vam::tomo {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 void scale(Slab& slab, float factor) {
   const std::size_t row = product(slab.width, lanes);

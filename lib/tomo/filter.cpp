@@ -15,7 +15,7 @@ namespace vam::tomo {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double nyquist = 0.5;  // cycles per column
 
 using Row = std::vector<std::complex<float>, CacheAligned<std::complex<float>>>;

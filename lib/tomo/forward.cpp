@@ -18,7 +18,6 @@ constexpr std::size_t most_angles = 32;  // angles that pass over a band while i
 constexpr int band = 128;                // pixels along the rows; a band has eight rows
 constexpr int pad = 4;                   // zeros on both sides: bins see at most 4 pixels of a row
 constexpr int row_elements = band + 2 * pad;
-constexpr std::size_t rows = gather_rows;
 
 /// One angle: t = p * cp + q * cq + offset, p along the rows, q across them; e^{alpha u} = major[p] * minor[q].
 struct AngleView {
@@ -89,7 +88,7 @@ class Forward {
     view.cq = block.x_major ? ray.sine : ray.cosine;
     view.offset = ray.offset;
     const double wide = 1 / std::abs(view.cp);
-    for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t r = 0; r < kernel_rows; ++r) {
       set_footprint(view.footprints, r, wide, std::abs(view.cq) * wide, wide, 1 / view.cp);
     }
     if (geometry_.alpha_per_px != 0) set_factors(view, block, ray);
@@ -111,7 +110,7 @@ class Forward {
     view.minor = block.x_major ? y : x;
     view.major.insert(view.major.begin(), pad, 0.0F);
     view.major.resize(view.major.size() + band + pad);
-    view.minor.resize(view.minor.size() + rows);
+    view.minor.resize(view.minor.size() + kernel_rows);
   }
 
   void work_out_block(const SlabGroup& group, const AngleBlock& block) const {
@@ -124,7 +123,7 @@ class Forward {
     }
     const int np = major_size(block);
     const int nq = minor_size(block);
-    float* pixels = scratch(0, rows * row_elements * group_lanes);
+    float* pixels = scratch(0, kernel_rows * row_elements * group_lanes);
     GatherRows next = find(group, block, 0, 0);
     for (int q = 0; q < nq; q += gather_rows) {
       for (int p = 0; p < np; p += band) {
@@ -174,7 +173,7 @@ class Forward {
     job.outputs = bins.last - bins.first;
     job.output_step = lanes;
     const double per_bin = 1 / view.cp;
-    for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t r = 0; r < kernel_rows; ++r) {
       set_first(job, r, (bins.first - t0 - static_cast<double>(r) * view.cq) * per_bin + pad);
     }
     for (int e = 0; e < pair_entries; ++e) {
@@ -186,7 +185,7 @@ class Forward {
     if (attenuated) {
       job.factor = view.major.data() + p0;
       const float* across = view.minor.data() + q0;
-      for (std::size_t e = 0; e < pair_entries; ++e) job.row_factor[e] = across[e % rows];
+      for (std::size_t e = 0; e < pair_entries; ++e) job.row_factor[e] = across[e % kernel_rows];
     }
     kernels_.gather[group.log2()][block.taps - 3][attenuated ? by_element : plain](job);
   }

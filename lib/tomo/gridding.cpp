@@ -11,7 +11,7 @@ namespace vam::tomo {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double oversampling = 1.3;
 constexpr double half_width = 0.5 * grid_taps;
 // 0.98 of what puts the transform's first zero at the nearest alias of the image's edge: least error (RMS), by search.

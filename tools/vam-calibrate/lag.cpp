@@ -19,7 +19,7 @@ namespace vam::calibrate_tool {
 
 namespace {
 
-constexpr double margin_s = 0.1;  // of the samples before the first and after the last frame
+constexpr double before_s = 0.1;  // of the samples before the first and after the last frame
 
 struct MeasuredTurn {
   metrology::CameraAxis axis;
@@ -44,7 +44,7 @@ metrology::StageCourse course_of(const std::vector<metrology::StagePoint>& point
   const double last_s = *std::max_element(time_s.begin(), time_s.end());
   std::vector<metrology::StagePoint> during;
   std::copy_if(points.begin(), points.end(), std::back_inserter(during), [&](const metrology::StagePoint& point) {
-    return point.t_s >= first_s - margin_s && point.t_s <= last_s + margin_s;
+    return point.t_s >= first_s - before_s && point.t_s <= last_s + before_s;
   });
   return metrology::StageCourse(during);
 }

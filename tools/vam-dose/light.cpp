@@ -64,7 +64,7 @@ void require_alike(const model::StackInfo& first, const model::StackInfo& info, 
 }
 
 /// By what is in them, as the log knows them.
-void require_distinct(const std::vector<std::string>& paths) {
+void require_distinct_light(const std::vector<std::string>& paths) {
   std::set<std::string> hashes;
   for (const std::string& path : paths) {
     if (path == "-") throw Error{Fault::usage, "SINOGRAM: of several each is a file, whose hash is in the log"};
@@ -89,7 +89,7 @@ Light::Light(io::StackReader& first, const model::StackInfo& info, const Options
   if (options.inputs.size() > 1 && options.shown.empty()) {
     throw Error{Fault::usage, "SINOGRAM: several add up only as a print showed them; give its --shown, or one of them"};
   }
-  if (options.inputs.size() > 1) require_distinct(options.inputs);
+  if (options.inputs.size() > 1) require_distinct_light(options.inputs);
   const bool projector = info.space == model::Space::projector;
   for (const std::string& path : options.inputs) {
     std::unique_ptr<io::StackReader> own;

@@ -32,7 +32,7 @@ fs::path log_of(const std::string& run) {
   return fs::weakly_canonical(fs::is_directory(run) ? fs::path(run) / "flips.jsonl" : fs::path(run));
 }
 
-void require_distinct(const std::vector<std::string>& runs) {
+void require_distinct_runs(const std::vector<std::string>& runs) {
   std::set<fs::path> logs;
   for (const std::string& run : runs) {
     if (logs.insert(log_of(run)).second) continue;
@@ -159,7 +159,7 @@ std::vector<double> shown_turns(const Options& options, const std::string& sinog
   if (info.space != model::Space::projector) {
     throw Error{Fault::usage, "--shown: applies to projector sinograms"};
   }
-  require_distinct(options.shown);
+  require_distinct_runs(options.shown);
   const io::StageRows rows{info.height, info.angle_start_deg, info.angle_step_deg};
   if (std::abs(std::abs(rows.step_deg) * rows.count - 360) > 0.01 * std::abs(rows.step_deg)) {
     throw Error{Fault::data, sinogram + ": covers " + format_number(std::abs(rows.step_deg) * rows.count) +

@@ -22,7 +22,7 @@ std::string element(const std::string& name, const std::string& attributes, cons
   return "<" + name + " " + attributes + ">" + content + "</" + name + ">";
 }
 
-std::string text_at(double x, double y, const std::string& attributes, const std::string& words) {
+std::string label_at(double x, double y, const std::string& attributes, const std::string& words) {
   return element("text", "x=\"" + mm(x) + "\" y=\"" + mm(y) + "\" " + attributes, page_text(words));
 }
 
@@ -34,12 +34,12 @@ std::string axes(double half, double size) {
     const std::string label = plot::tick_label(at);
     drawn += element("path", "d=\"M" + mm(at) + " " + mm(half) + "v" + mm(0.3 * size) + "M" + mm(-half) + " " +
                                  mm(-at) + "h" + mm(-0.3 * size) + "\" class=\"line\"");
-    drawn += text_at(at, half + 1.4 * size, "text-anchor=\"middle\"", label);
-    drawn += text_at(-half - 0.5 * size, -at + 0.35 * size, "text-anchor=\"end\"", label);
+    drawn += label_at(at, half + 1.4 * size, "text-anchor=\"middle\"", label);
+    drawn += label_at(-half - 0.5 * size, -at + 0.35 * size, "text-anchor=\"end\"", label);
   }
-  drawn += text_at(0, half + 2.9 * size, "text-anchor=\"middle\"", "x (mm)");
+  drawn += label_at(0, half + 2.9 * size, "text-anchor=\"middle\"", "x (mm)");
   return drawn + element("g", "transform=\"translate(" + mm(-half - 2.7 * size) + ",0) rotate(-90)\"",
-                         text_at(0, 0, "text-anchor=\"middle\"", "y (mm)"));
+                         label_at(0, 0, "text-anchor=\"middle\"", "y (mm)"));
 }
 
 // The middle row of the image as a profile at the lower edge, as high as it is bright.
@@ -99,7 +99,7 @@ std::string drawing_of(const RunFolder& run, const LightView& light, bool lit, d
     drawing += beam_profile(light.beam(progress.angle_deg), light.half_width_mm(), half, 0.28 * vial);
     for (const double x : {-0.3, 0.0, 0.3}) drawing += arrow(x * vial, half - 0.02 * vial, 1.06 * vial, size);
   }
-  drawing += text_at(0, -half + 1.2 * size, "text-anchor=\"middle\"", lit ? "light comes from below" : "no light");
+  drawing += label_at(0, -half + 1.2 * size, "text-anchor=\"middle\"", lit ? "light comes from below" : "no light");
   const double left = half + 4 * size;
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"" + mm(-left) + " " + mm(-half - 0.5 * size) + " " +
          mm(left + half + 0.5 * size) + " " + mm(2 * half + 4 * size) +

@@ -8,6 +8,9 @@
 
 namespace vam::stats {
 
+/// Standard deviations in the median of the magnitudes of normal deviates.
+inline constexpr double sigmas_per_median = 1 / 0.6745;
+
 /// Of an even count the upper of the two in the middle. There must be one.
 template <class Number>
 [[nodiscard]] double median(std::vector<Number> values) {

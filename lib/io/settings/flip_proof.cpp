@@ -24,11 +24,9 @@ constexpr double most_unsealed_s = 5;
 // log by then, so that a kill loses none; a power failure loses those since the log was last brought to the disk, which
 // vam-print does every second, if the disk is not busy.
 constexpr double most_unwatched_s = 5;
-constexpr double same_deg = 1e-3;   // vam-print states four digits
-constexpr double early_deg = 1;     // of the first image, at an angle that is predicted
-constexpr double most_turns = 1e6;  // as stage.turns
-constexpr double most_deg = 360 * most_turns;
-constexpr double most_s = 1e9;  // since the machine started
+constexpr double same_deg = 1e-3;  // vam-print states four digits
+constexpr double early_deg = 1;    // of the first image, at an angle that is predicted
+constexpr double most_deg = 360 * FlipRules::most_turns;
 constexpr double most_bytes = 1e15;
 constexpr const char* changed = "; the log was changed; restore it";
 
@@ -88,7 +86,7 @@ void FlipProof::read_events() {
 }
 
 void FlipProof::take_armed(const Json& event, const std::string& place) {
-  turns_ = number_of(event, "turns", 1, most_turns, place);
+  turns_ = number_of(event, "turns", 1, FlipRules::most_turns, place);
   from_deg_ = number_of(event, "from_deg", 0, 360 * turns_, place);
   sinogram_sha256_ = text_at(event, "sinogram_sha256");
 }
@@ -122,7 +120,7 @@ void FlipProof::read_angles() {
   for (std::string text; angles_->next(text);) {
     const std::string place = beside(log_, "angles.jsonl") + ":" + std::to_string(++angle_);
     const Json line = entry_of(text, place);
-    last_s_ = number_of(line, "t_monotonic_s", 0, most_s, place);
+    last_s_ = number_of(line, "t_monotonic_s", 0, FlipRules::most_s, place);
     last_deg_ = number_of(line, "angle_deg", -most_deg, most_deg, place);
     if (!began_s_ && last_deg_ >= from_deg_.value_or(0)) began_s_ = last_s_;
   }

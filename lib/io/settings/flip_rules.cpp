@@ -14,12 +14,10 @@ namespace vam::io {
 
 namespace {
 
-constexpr double most_s = 1e9;            // 30 years since the machine started
 constexpr std::int64_t most = 100000000;  // frames, and blanks of 100 Hz in 11 days
-constexpr double most_turns = 1e6;
-constexpr double rounding_s = 1e-5;   // of times that vam-print logs
-constexpr double most_back_deg = 45;  // what a predicted angle takes back of a stage that stops
-constexpr double most_lit_s = 10;     // vam-print ends a print whose images stand still within 3 s
+constexpr double rounding_s = 1e-5;       // of times that vam-print logs
+constexpr double most_back_deg = 45;      // what a predicted angle takes back of a stage that stops
+constexpr double most_lit_s = 10;         // vam-print ends a print whose images stand still within 3 s
 
 constexpr const char* remedy = "; the log was changed; restore it";
 
@@ -61,17 +59,17 @@ LoggedFlip FlipRules::take(const Json& event, const std::string& place) {
 }
 
 void FlipRules::require_possible(const LoggedFlip& flip, const std::string& place) const {
-  if (!(flip.t_s >= 0 && flip.t_s <= most_s)) {
-    refuse(place, "time " + format_number(flip.t_s) + " s is not between 0 and " + format_number(most_s) +
+  if (!(flip.t_s >= 0 && flip.t_s <= FlipRules::most_s)) {
+    refuse(place, "time " + format_number(flip.t_s) + " s is not between 0 and " + format_number(FlipRules::most_s) +
                       " s since the machine started");
   }
   if (frames_ > 0 && flip.frame >= frames_)
     refuse(place,
            "frame " + std::to_string(flip.frame) + " is none of the " + std::to_string(frames_) + " of the print");
   const bool lit = flip.frame >= 0;
-  const double turns = turns_ > 0 ? turns_ : most_turns;
-  const double least_deg = lit ? 0 : -360 * most_turns;
-  const double most_deg = 360 * (lit ? turns : most_turns);
+  const double turns = turns_ > 0 ? turns_ : FlipRules::most_turns;
+  const double least_deg = lit ? 0 : -360 * FlipRules::most_turns;
+  const double most_deg = 360 * (lit ? turns : FlipRules::most_turns);
   if (flip.angle_deg >= least_deg && flip.angle_deg <= most_deg) return;
   refuse(place, "angle " + format_number(flip.angle_deg) + " deg is not between " + format_number(least_deg) + " and " +
                     format_number(most_deg) + " deg" + (lit ? ", where images are shown" : ""));

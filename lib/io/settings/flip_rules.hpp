@@ -22,6 +22,8 @@ struct LoggedFlip {
 /// log states, a lit image is shown at 0 deg or later, within the turns that it states.
 class FlipRules {
  public:
+  static constexpr double most_s = 1e9;      // 30 years since the machine started
+  static constexpr double most_turns = 1e6;  // as of stage.turns
   enum class Order { required, free };
   /// free: of a log that is held to its hash; which flips follow each other is not judged.
   explicit FlipRules(Order order) : ordered_(order == Order::required) {}

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "light/rays/private/skew_ray_dose.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 constexpr int directions = 360;
 constexpr double rows_per_reach = 24;
-constexpr double turn_rad = 2 * std::numbers::pi;
 
 using NodeValues = std::array<float, DisplacedVial::floats>;
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/constants.hpp"
 #include "base/index.hpp"
 #include "light/rays/private/chief_ray_dose.hpp"
 #include "light/rays/private/ray_table.hpp"
@@ -15,7 +16,6 @@ namespace vam::light {
 
 namespace {
 
-constexpr double turn_rad = 2 * std::numbers::pi;
 constexpr int samples_per_step = 8;  // rays per step of alpha where the map folds
 
 /// What was counted for a direction: sums over rays, weighted by their strength.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/simd.hpp"
@@ -20,8 +21,6 @@
 namespace vam::light {
 
 namespace {
-
-constexpr double turn_rad = 2 * std::numbers::pi;
 
 double farthest_mm(const VialSetup& setup) {
   const model::Grid& grid = setup.grid;

@@ -17,8 +17,6 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr double sigmas_per_median = 1 / 0.6745;  // of |normal|
-
 // Median of |value| over a part of all rays, of those that are not 0: empty rays of ideal views are.
 double typical_difference(const std::vector<Image>& sinograms) {
   std::vector<float> differences;
@@ -42,7 +40,7 @@ float brightest(const std::vector<Image>& sinograms) {
 // What a ray must be brighter by than the other end of its line: above the noise and a share of the contrast.
 float bubble_contrast(const std::vector<Image>& sinograms) {
   const float most = brightest(sinograms);
-  const double noise = typical_difference(sinograms) * sigmas_per_median / std::sqrt(2.0);
+  const double noise = typical_difference(sinograms) * stats::sigmas_per_median / std::sqrt(2.0);
   return static_cast<float>(6 * noise + 0.03 * most);
 }
 

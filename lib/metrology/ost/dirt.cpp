@@ -15,8 +15,6 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr double sigmas_per_median = 1 / 0.6745;  // of |normal|
-
 // Mean over the angles: one row a height.
 Image mean_over_angles(const std::vector<Image>& sinograms) {
   Image mean(sinograms.front().width, count_of(sinograms));
@@ -109,7 +107,7 @@ std::vector<char> speck_rays(const std::vector<Image>& sinograms) {
   for (std::size_t i = 0; i < departure.size(); i += 7) {
     if (departure.values[i] > 0) some.push_back(departure.values[i]);
   }
-  const double noise = some.empty() ? 0.0 : stats::median(some) * sigmas_per_median;
+  const double noise = some.empty() ? 0.0 : stats::median(some) * stats::sigmas_per_median;
   const auto least = static_cast<float>(8 * noise + 0.02 * most);
   for (int k = 0; k < mean.height; ++k) {
     for (int t = 0; t < mean.width; ++t) {

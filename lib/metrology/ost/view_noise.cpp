@@ -64,7 +64,6 @@ ViewNoise view_noise(std::span<const CameraView> views) {
   constexpr std::size_t most_views = 24;
   constexpr std::size_t fewest = 300;  // pixels of a bin
   constexpr double gain = 36;          // of the variance: the kernel's sum of squares
-  constexpr double sigmas_per_median = 1 / 0.6745;
   const Brightness range = brightness_of(views);
   Binned binned;
   const std::size_t step = views.size() / most_views + 1;
@@ -73,7 +72,7 @@ ViewNoise view_noise(std::span<const CameraView> views) {
   std::vector<double> ones;
   for (std::size_t b = 0; b < bins; ++b) {
     if (binned[b].size() < fewest) continue;
-    const double variance = std::pow(stats::median(binned[b]) * sigmas_per_median, 2) / gain;
+    const double variance = std::pow(stats::median(binned[b]) * stats::sigmas_per_median, 2) / gain;
     const double value = range.low + (static_cast<double>(b) + 0.5) * (range.high - range.low) / bins;
     const double relative = std::max(variance, 1e-12 * range.high * range.high);  // errors of variances are relative
     rows.insert(rows.end(), {1 / relative, value / relative});

@@ -10,7 +10,7 @@ namespace vam::optimize {
 
 namespace {
 
-constexpr float shorter = 0.5F;
+constexpr float cal_shorter = 0.5F;
 constexpr float longer = 1.1F;
 
 class Cal final : public Method {
@@ -57,8 +57,9 @@ class Cal final : public Method {
     std::swap(iterate.dose, before_.dose);
     light.adjoint(iterate.g, iterate.dose);
     const PerSlice back = go_back(iterate, before_, loss_, losses(problem, light, iterate));
-    for_slices(back,
-               [&](std::size_t s, std::size_t lane) { length_[s][lane] *= back[s][lane] != 0.0F ? shorter : longer; });
+    for_slices(back, [&](std::size_t s, std::size_t lane) {
+      length_[s][lane] *= back[s][lane] != 0.0F ? cal_shorter : longer;
+    });
   }
 
   void exchange(Archive& archive) override {

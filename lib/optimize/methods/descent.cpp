@@ -8,7 +8,7 @@
 namespace vam::optimize {
 
 namespace {
-constexpr float shorter = 0.3F;
+constexpr float descent_shorter = 0.3F;
 
 PerSlice squares(const std::vector<Slab>& a) {
   return summed(a, [&](std::size_t s, std::size_t i) { return a[s].values[i] * a[s].values[i]; });
@@ -98,7 +98,7 @@ void Descent::judge(const Problem& problem, const light::Operator& light, Iterat
   const PerSlice next = ratio(pooled(moved, light), pooled(bent, light), length_);
   const PerSlice back = go_back(iterate, before_, loss_, losses(problem, light, iterate.dose));
   for_slices(back, [&](std::size_t s, std::size_t lane) {
-    length_[s][lane] = back[s][lane] != 0.0F ? length_[s][lane] * shorter : next[s][lane];
+    length_[s][lane] = back[s][lane] != 0.0F ? length_[s][lane] * descent_shorter : next[s][lane];
   });
 }
 

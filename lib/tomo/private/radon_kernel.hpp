@@ -4,12 +4,15 @@
 // pixel. Plain structs and pointers only: this header is compiled once per instruction set.
 #pragma once
 
+#include <cstddef>
+
 #include "base/slab_lanes.hpp"
 #include "tomo/footprint.hpp"
 
 namespace vam::tomo {
 
-inline constexpr int gather_rows = 8;                 // input rows reduced by one call
+inline constexpr int gather_rows = 8;  // input rows reduced by one call
+inline constexpr std::size_t kernel_rows = gather_rows;
 inline constexpr int pair_entries = 2 * gather_rows;  // two outputs at once: one vector of 16 table entries
 inline constexpr int group_slabs = 4;                 // slabs that share one table of weights
 inline constexpr int group_lanes = group_slabs * lanes;
