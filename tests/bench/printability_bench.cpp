@@ -58,8 +58,12 @@ void target(const std::string& method) {
   const auto slice = vam::oracle::resolution_target(size);
   for (const auto& budget : budgets()) {
     if (!method.empty() && method != budget.method) continue;
+    optimize::Demands demands;
+    demands.curve =
+        optimize::CureCurve::logistic(demands.window.threshold(), optimize::method_entry(budget.method).softness);
     model::DoseMetrics m;
-    const double time = seconds([&] { m = parts::run({slice}, size, 360, budget.method, {}, budget.iterations)[0]; });
+    const double time =
+        seconds([&] { m = parts::run({slice}, size, 360, budget.method, {}, budget.iterations, demands)[0]; });
     print("resolution 512 x 512", budget, m, time, 1);
   }
 }

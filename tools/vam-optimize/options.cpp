@@ -28,6 +28,18 @@ std::string default_iterations() {
   return join(texts, ", ");
 }
 
+/// "0.03 (cal), 0.05 (bclp, --grey-target)"
+std::string default_softness() {
+  std::map<double, std::vector<std::string>> names;
+  for (const auto& entry : optimize::method_table()) {
+    if (optimize::reads(entry, "--softness")) names[entry.softness].push_back(entry.name);
+  }
+  names[optimize::usual_softness].emplace_back("--grey-target");
+  std::vector<std::string> texts;
+  for (const auto& [width, methods] : names) texts.push_back(format_number(width) + " (" + join(methods, ", ") + ")");
+  return join(texts, ", ");
+}
+
 void declare_poses(cli::App& app, Options& options) {
   app.group("Poses of vial and part");
   app.option("--poses", "FILE", options.poses,
@@ -89,6 +101,7 @@ void declare_constraints(cli::App& app, Options& options) {
                  "CSV file with columns dose,response, which also sets LOW and HIGH.");
   app.default_is("logistic; linear with --grey-target").was("--response");
   app.option("--softness", "GAMMA", options.softness, cli::positive, "Width of the logistic response, as a dose.");
+  app.default_is(default_softness());
 }
 
 void declare_stopping(cli::App& app, Options& options) {

@@ -32,7 +32,7 @@ struct Options {
   std::string void_rule = "met";
   double void_weight = 1;
   std::optional<double> void_band;
-  double softness = 0.05;
+  std::optional<double> softness;
   std::optional<int> iterations;  // stopping criteria
   optimize::Limits limits;
   std::string until;

@@ -305,7 +305,8 @@ void settle_response(const cli::App& app, Options& options) {
   } else if (options.response == "step") {
     demands.curve = optimize::CureCurve::step(window.low, window.high);
   } else if (options.response == "logistic") {
-    demands.curve = optimize::CureCurve::logistic(window.threshold(), options.softness);
+    demands.curve = optimize::CureCurve::logistic(
+        window.threshold(), options.softness.value_or(optimize::method_entry(options.method).softness));
   } else {
     const std::vector<std::string> names{"linear", "step", "logistic"};
     if (options.response != "-" && !std::filesystem::exists(options.response)) {

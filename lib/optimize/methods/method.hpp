@@ -87,6 +87,7 @@ struct MethodEntry {
   std::vector<std::string> options;  // of vam-optimize that not every method reads
   std::unique_ptr<Method> (*make)(const MethodOptions&);
   std::unique_ptr<Method> (*make_robust)(const MethodOptions&) = nullptr;  // that faces scenarios, where it can
+  double softness = usual_softness;                                        // default width of the logistic response
 };
 
 [[nodiscard]] bool reads(const MethodEntry& method, const std::string& option);

@@ -24,13 +24,17 @@ struct DoseWindow {
   [[nodiscard]] double threshold() const { return 0.5 * (low + high); }
 };
 
+/// Width of the logistic response, as a dose, unless a method has another.
+inline constexpr double usual_softness = 0.05;
+
 /// The demands on all slices.
 struct Demands {
   DoseWindow window;
   bool free_surface = false;  // the dose at the part's surface need not be the threshold
   bool surface = false;       // voxels on the surface are constrained too: part from half coverage on, else void
   bool grey = false;          // the target is a response for every voxel, to be met within its tolerance
-  CureCurve curve = CureCurve::logistic(DoseWindow{}.threshold(), 0.05);  // of the losses that look at the response
+  // of the losses that look at the response
+  CureCurve curve = CureCurve::logistic(DoseWindow{}.threshold(), usual_softness);
   double band = 0.1;  // epsilon: how far the response may be from the target, where no tolerance is given
 };
 

@@ -58,6 +58,19 @@ TEST_CASE("CAL19 fig S7: the resin's threshold in the loop") {
   }
 }
 
+TEST_CASE("cal: a sharper response than that of other methods opens the gaps of a resolution target") {
+  const auto target = vam::oracle::resolution_target(size);
+  const auto with = [&](double softness) {
+    Demands demands;
+    demands.curve = CureCurve::logistic(demands.window.threshold(), softness);
+    return parts::run({target}, size, 360, "cal", {}, 59, demands)[0];
+  };
+  const auto own = with(method_entry("cal").softness);
+  const auto usual = with(usual_softness);
+  CHECK(own.ver == 0);
+  CHECK(own.pw > usual.pw + 0.05);
+}
+
 TEST_CASE("apg: a binary resolution target prints exactly within 120 projections, with room to spare") {
   const auto target = vam::oracle::resolution_target(size);
   // 6 projections for the start, 12 for the step length, 2 an iteration.
