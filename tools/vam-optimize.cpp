@@ -32,16 +32,18 @@ using optimize_tool::Options;
 using optimize_tool::Scene;
 
 /// Three slices (four with --delivered) and four sinograms for each slice (five where the best light is kept, six with
-/// --robust), of all slices where they are one pass; and images on their way out. Those are not kept in scratch files.
+/// --robust) and what the method has beside, of all slices where they are one pass; and images on their way out. Those
+/// are not kept in scratch files.
 void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, const light::Operator& light,
-                        const std::string& subject) {
+                        const optimize::MethodEntry& method, const std::string& subject) {
   const bool robust = task.scenarios != nullptr;
   const bool whole = optimize::takes_whole(task, light);
   const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
   const int slices = (count + lanes - 1) / lanes * lanes;
   const auto pixels = [](light::Shape shape) { return static_cast<double>(shape.width) * shape.height; };
-  const double sinograms = robust ? 6 : task.limits.patience > 0 ? 5 : 4;
-  const double arrays = (task.source.delivered ? 4 : 3) * pixels(light.object()) + sinograms * pixels(light.sinogram());
+  const double slice_arrays = (task.source.delivered ? 4 : 3) + method.more_slices;
+  const double sinograms = (robust ? 6 : task.limits.patience > 0 ? 5 : 4) + method.more_sinograms;
+  const double arrays = slice_arrays * pixels(light.object()) + sinograms * pixels(light.sinogram());
   const double images = sizeof(float) * pixels(light.image()) * 3 * std::min(lanes, count);
   const double bytes = sizeof(float) * slices * arrays + images;
   const std::string what = subject + ": " + model::size_text(scene.grid);
@@ -80,7 +82,7 @@ void run(const cli::App& app, Options& options) {
   };
 
   const std::string subject = io::input_name(options.input);
-  require_memory_for(scene, task, *light, subject);
+  require_memory_for(scene, task, *light, optimize::method_entry(options.method), subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
   beginning.begin(task, in, scene, *light, options);
   if (device::interrupted()) return;

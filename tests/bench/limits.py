@@ -23,7 +23,7 @@ PARTS = {
     "hollow cylinder": ["--shape", "hollow-cylinder"],
     "disc grid": ["--shape", "disc-grid"],
 }
-METHODS = ["cal", "osmo", "pm", "bclp", "apg"]
+METHODS = ["cal", "osmo", "pm", "bclp", "apg", "minimax"]
 ALLOWED = 0.003
 
 

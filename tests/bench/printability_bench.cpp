@@ -35,7 +35,7 @@ struct Budget {
 const std::vector<Budget>& budgets() {
   static const std::vector<Budget> all = [] {
     const std::vector<Budget> known{{"fbp", 0, 2},   {"dose-norm", 1, 4}, {"cal", 59, 120}, {"osmo", 29, 119},
-                                    {"pm", 58, 120}, {"bclp", 58, 120},   {"apg", 51, 120}};
+                                    {"pm", 58, 120}, {"bclp", 58, 120},   {"apg", 51, 120}, {"minimax", 34, 118}};
     std::vector<Budget> budgets;
     for (const auto& entry : optimize::method_table()) {
       const auto there =

@@ -65,12 +65,12 @@ finds 'the key "paint_mm" is not defined' '  finding.value("paint_mm", found, "m
 finds '"Kelvin, 1887" is to be cited by its key' '// cells of even faces (Kelvin, 1887)'
 finds '"Kelvin et al" is to be cited by its key' '// cells of even faces, Kelvin et al.'
 all_found
-sed -i 's/^MethodEntry apg_method();/MethodEntry apg();/' tree/lib/optimize/methods/methods.cpp
+sed -i 's/^MethodEntry minimax_method();/MethodEntry minimax();/' tree/lib/optimize/methods/methods.cpp
 rm -r tree/lib/resin tree/lib/base/cited.hpp tree/scripts/update-man
 check tree >faults
 grep -q 'nothing in lib cites .CURE19 eq 5.' faults
 report $? 'found: an equation that no source cites'
-grep -q 'a recipe changes "MethodEntry apg_method();"' faults
+grep -q 'a recipe changes "MethodEntry minimax_method();"' faults
 report $? 'found: a recipe that does not apply'
 grep -q 'CONTRIBUTING.md: there is no scripts/update-man' faults
 report $? 'found: a path that is not there'

@@ -272,6 +272,10 @@ holds "no light is better than the bound" "$(value proved.json certificate.least
   $(value proved.json certificate.least_void_over_part) <= $(value proved.json certificate.unlimited_void_over_part) &&
   $(value proved.json certificate.least_void_over_part) <= $(value proved.json certificate.void_over_part)"
 ok "its weights are a volume to look at" vam-view proof.vdb -o proof.png
+quiet "the widest window of limited light" vam-optimize --method minimax --iterations 80 --patience 0 --angles 24 \
+  --report widest.json small.vdb -o widest.exr
+holds "the window is within its bound" "$(value widest.json least_void_over_part) > 0.3 &&
+  $(value widest.json least_void_over_part) <= $(value widest.json max_void) / $(value widest.json min_part)"
 fails 65 "certificate" vam-optimize --weights proof.vdb part.vdb -o out.exr
 fails 64 "vam-optimize --help=all lists all" vam-optimize --threshold 3 part.vdb
 is 'the help fits on a screen, with a dozen options' \

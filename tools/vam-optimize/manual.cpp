@@ -183,7 +183,8 @@ std::vector<std::string> notes() {
       "gyroid and of a boat that were optimised apart (osmo, pm, apg; 8 iterations) differs from that of the whole by "
       "0.09 to 1 of the peak (largest value; RMS 0.0007 to 0.03), with 32 slices of the other half around each by 0.1 "
       "to 1 (RMS 0.001 to 0.03). --slices is therefore refused there.",
-      "Memory: three arrays of a slice and three of a sinogram's lit columns each (apg: seven and three), with "
+      "Memory: three arrays of a slice and three of a sinogram's lit columns each (apg: seven and three; minimax: "
+      "eight and ten), with "
       "--patience one more of the latter, 4 bytes per "
       "value, of all slices if they are coupled, else of 64 slices at a time, plus the target as stored in its file, "
       "0.5 kB for each slice, 0.2 GiB and at most 512 MiB for "

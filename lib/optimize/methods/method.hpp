@@ -71,6 +71,8 @@ class Method {
   [[nodiscard]] virtual bool asks_more(const Problem& /*problem*/) const { return false; }
   /// MethodOptions::eigenvalue of a method that has computed it; of coarser voxels it is the same within 5 %.
   [[nodiscard]] virtual double eigenvalue() const { return 0; }
+  /// max_V x / min_G x of no light within the limit is less, with the threshold in the middle; 0: not known.
+  [[nodiscard]] virtual double provable_ratio() const { return 0; }
 
  protected:
   MethodOptions options_;
@@ -88,6 +90,7 @@ struct MethodEntry {
   std::unique_ptr<Method> (*make)(const MethodOptions&);
   std::unique_ptr<Method> (*make_robust)(const MethodOptions&) = nullptr;  // that faces scenarios, where it can
   double softness = usual_softness;                                        // default width of the logistic response
+  int more_slices = 0, more_sinograms = 0;  // arrays of them that it keeps beside those of every method
 };
 
 [[nodiscard]] bool reads(const MethodEntry& method, const std::string& option);

@@ -16,10 +16,12 @@ MethodEntry osmo_method();
 MethodEntry pm_method();
 MethodEntry bclp_method();
 MethodEntry apg_method();
+MethodEntry minimax_method();
 
 const std::vector<MethodEntry>& method_table() {
   static const std::vector<MethodEntry> all{
-      fbp_method(), dose_norm_method(), cal_method(), osmo_method(), pm_method(), bclp_method(), apg_method(),
+      fbp_method(), dose_norm_method(), cal_method(), osmo_method(),
+      pm_method(),  bclp_method(),      apg_method(), minimax_method(),
   };
   return all;
 }

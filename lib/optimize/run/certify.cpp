@@ -8,8 +8,8 @@
 
 #include "base/progress.hpp"
 #include "optimize/methods/metrics.hpp"
+#include "optimize/methods/saddle.hpp"
 #include "optimize/methods/step_length.hpp"
-#include "optimize/run/private/saddle.hpp"
 
 namespace vam::optimize {
 
@@ -36,12 +36,13 @@ double total(std::span<const Slab> images, const Value& value) {
   return sum;
 }
 
-/// The light whose least part dose is 1.
+/// The light in the middle of whose window is 1.
 std::vector<Slab> at_one(const Problem& problem, const light::Operator& light, std::vector<Slab> g) {
   std::vector<Slab> dose = slabs(g.size(), light.object().width, light.object().height);
   light.adjoint(g, dose);
-  const double least = body_metrics(dose, problem).min_part;
-  if (least > 0) scale(g, filled(g.size(), static_cast<float>(1 / least)));
+  const model::DoseMetrics m = body_metrics(dose, problem);
+  const double middle = 0.5 * (m.min_part + m.max_void);
+  if (middle > 0) scale(g, filled(g.size(), static_cast<float>(1 / middle)));
   return g;
 }
 
@@ -199,11 +200,12 @@ Certificate certify(const Problem& problem, const light::Operator& given, std::v
   const light::Operator& light = quicker ? *quicker : given;
   if (quicker) iterations *= 2;  // in less time
   Prover prover(problem, light);
-  Saddle saddle(light, prover.sign(), at_one(problem, light, std::move(g)), largest_eigenvalue(light, problem));
-  double reached = prover.ratio_of(saddle.point());
+  Saddle saddle(light, prover.sign(), largest_eigenvalue(light, problem));
+  SaddleState state = saddle.begin(at_one(problem, light, std::move(g)));
+  double reached = prover.ratio_of(state.now);
   Progress progress("proving", iterations);
   for (int i = 1; i <= iterations; ++i, progress.tick()) {
-    saddle.step();
+    saddle.step(state, {});
     if (i % look_every != 0 && i != iterations) continue;
     const double ratio = prover.ratio_of(saddle.point());
     if (ratio > 0 && (reached == 0 || ratio < reached)) reached = ratio;

@@ -178,6 +178,7 @@ class VolumeRun {
     work.search.standing.best_light = {};
     ledger_.end(outcome);
     outcome_.eigenvalue = work.method->eigenvalue();
+    outcome_.least_ratio = std::max(outcome_.least_ratio, work.method->provable_ratio());
     outcome_.max_intensity = std::max(outcome_.max_intensity, most);  // the brightest pass sets the duration
     if (task_.certify > 0) outcome_.certificate = certify(input.problem, light.blurred(), work.state.g, task_.certify);
     finish(input.problem, work, pass, light.sharp(), most, faced);
@@ -289,6 +290,7 @@ class VolumeRun {
     archive(outcome_.even.largest);
     archive(first_limit_);
     archive(outcome_.max_intensity);
+    archive(outcome_.least_ratio);
     exchange(archive, outcome_.front);
     work.search.exchange(archive);
     if (!work.method) work.method = task_.make(work.search.max_intensity);

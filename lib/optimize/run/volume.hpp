@@ -80,6 +80,7 @@ struct VolumeOutcome {
   std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
   std::optional<SurfaceMiss> surface;        // where slices share light
   double eigenvalue = 0;                     // Method::eigenvalue() of the last pass
+  double least_ratio = 0;                    // Method::provable_ratio(), the largest of all passes
   double efficiency = 0;
   double max_intensity = 0;                // the limit, as raised; 0: none
   EvenDose even;                           // where the limit asked for it, else 0

@@ -47,14 +47,10 @@ double checked(const Case& it, const Certificate& proof) {
     if (weight < 0 && label != Label::part) return -1;
     (weight > 0 ? z : y) += std::abs(weight);
   }
-  const light::Shape rays = it.light->sinogram();
-  for (int ray = 0; ray < rays.width * rays.height; ++ray) {
-    Slab g(rays.width, rays.height), dose(it.size, it.size);
-    g.values[static_cast<std::size_t>(ray) * lanes] = 1;
-    it.light->adjoint({&g, 1}, {&dose, 1});
+  for (const auto& dose : parts::ray_doses(*it.light)) {
     double balance = 0;
-    for (std::size_t i = 0; i < dose.values.size(); i += lanes) {
-      balance += static_cast<double>(dose.values[i]) * static_cast<double>(proof.weights[0].values[i]);
+    for (std::size_t i = 0; i < dose.size(); ++i) {
+      balance += dose[i] * static_cast<double>(proof.weights[0].values[i * lanes]);
     }
     if (balance < -1e-7) return -1;  // rounding of weights around 1e-2
   }
@@ -64,26 +60,18 @@ double checked(const Case& it, const Certificate& proof) {
 /// max t: D_part >= t, D_void <= 1, g >= 0, by the dense simplex; 1 / t. Bounds differ by up to 1e-5, so that no two
 /// of them meet in one corner.
 double exact(const Case& it) {
-  const light::Shape rays = it.light->sinogram();
-  const int unknowns = rays.width * rays.height;
+  const auto doses = parts::ray_doses(*it.light);
   oracle::LinearProgram program;
-  program.cost.assign(static_cast<std::size_t>(unknowns) + 1, 0.0);
+  program.cost.assign(doses.size() + 1, 0.0);
   program.cost.back() = -1;
-  std::vector<std::vector<float>> doses;
-  for (int ray = 0; ray < unknowns; ++ray) {
-    Slab g(rays.width, rays.height), dose(it.size, it.size);
-    g.values[static_cast<std::size_t>(ray) * lanes] = 1;
-    it.light->adjoint({&g, 1}, {&dose, 1});
-    doses.emplace_back(dose.values.begin(), dose.values.end());
-  }
-  for (std::size_t i = 0; i < doses[0].size(); i += lanes) {
-    const Label label = it.problem.labels[0][i];
+  for (std::size_t i = 0; i < doses[0].size(); ++i) {
+    const Label label = it.problem.labels[0][i * lanes];
     if (!is_constrained(label)) continue;
     const double sign = label == Label::part ? -1 : 1;
     std::vector<double>& row = program.a.emplace_back();
-    for (const auto& dose : doses) row.push_back(sign * static_cast<double>(dose[i]));
+    for (const auto& dose : doses) row.push_back(sign * dose[i]);
     row.push_back(label == Label::part ? 1 : 0);
-    const double aside = 1e-5 * static_cast<double>(i / lanes * 37 % 101) / 101;
+    const double aside = 1e-5 * static_cast<double>(i * 37 % 101) / 101;
     program.b.push_back((label == Label::part ? 0 : 1) + aside);
   }
   const auto optimum = oracle::minimise(program);

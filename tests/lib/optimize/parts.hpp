@@ -66,6 +66,21 @@ inline std::vector<float> stacked(const std::vector<std::vector<float>>& slices)
   return all;
 }
 
+/// The dose of each ray alone, of a single slice: [ray][voxel].
+inline std::vector<std::vector<double>> ray_doses(const vam::light::Operator& light) {
+  const auto rays = light.sinogram();
+  const auto voxels = light.object();
+  std::vector<std::vector<double>> doses;
+  for (int ray = 0; ray < rays.width * rays.height; ++ray) {
+    vam::Slab g(rays.width, rays.height), dose(voxels.width, voxels.height);
+    g.values[static_cast<std::size_t>(ray) * vam::lanes] = 1;
+    light.adjoint({&g, 1}, {&dose, 1});
+    std::vector<double>& row = doses.emplace_back();
+    for (std::size_t i = 0; i < dose.values.size(); i += vam::lanes) row.push_back(dose.values[i]);
+  }
+  return doses;
+}
+
 /// Figures of each slice after so many iterations; nothing stops them early.
 inline std::vector<vam::model::DoseMetrics> run(const std::vector<std::vector<float>>& slices, int size, int angles,
                                                 const std::string& name, const vam::optimize::MethodOptions& options,
