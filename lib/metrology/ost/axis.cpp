@@ -75,17 +75,30 @@ double at(const float* row, int width, double x) {
 using Pull = std::array<double, 2>;  // on column and tilt
 constexpr int ranges = 16;
 
+/// What residuals count: beyond a bound the less the farther they are, as dirt passes there.
+struct Bound {
+  double residual = 1e300;
+  [[nodiscard]] bool holds(double r) const { return std::abs(r) <= residual; }
+  [[nodiscard]] double weight(double r) const { return holds(r) ? 1.0 : std::pow(residual / r, 2); }
+  /// By how much the pull of a residual grows with it: beyond the bound it falls.
+  [[nodiscard]] double stiffness(double r) const { return holds(r) ? 1.0 : -weight(r); }
+};
+
 // Normal equations of the residuals r = M(c + x, y) - M(c - x, y) in column and tilt. A change of the tilt moves the
 // point (x, y) by (y, -x): without the second part a wide body would seem to lean the other way.
 struct Normal {
   double cc = 0, ct = 0, tt = 0;
   double cr = 0, tr = 0, rr = 0;
+  double stiff_cc = 0, stiff_tt = 0;  // by how much the pulls change with column and tilt
   double noise_cc = 0, noise_tt = 0;  // what slopes of variance 1 add to cc and tt
   long count = 0;
   std::vector<std::array<double, 2>> lines;              // what each sees of the column, squared, and its residual
   std::array<std::array<Pull, ranges>, ranges> pulls{};  // of the ranges of rows and of offsets
 
-  void add(double by_column, double by_tilt, double r, double weight, Pull& pull) {
+  void add(double by_column, double by_tilt, double r, const Bound& bound, Pull& pull) {
+    const double weight = bound.weight(r);
+    stiff_cc += bound.stiffness(r) * by_column * by_column;
+    stiff_tt += bound.stiffness(r) * by_tilt * by_tilt;
     cc += weight * by_column * by_column;
     ct += weight * by_column * by_tilt;
     tt += weight * by_tilt * by_tilt;
@@ -97,7 +110,7 @@ struct Normal {
   }
 };
 
-Normal normal_of(const Image& image, double column, double bound) {
+Normal normal_of(const Image& image, double column, const Bound& bound) {
   Normal normal;
   const double reach = std::min(column, image.width - 1 - column) - 3 * blur_px;
   const double middle = 0.5 * (image.height - 1);
@@ -113,7 +126,7 @@ Normal normal_of(const Image& image, double column, double bound) {
       const double r = m(1, right) - m(1, left);
       const double by_column = 0.5 * (m(1, right + 1) - m(1, right - 1)) - 0.5 * (m(1, left + 1) - m(1, left - 1));
       const double by_row = 0.5 * (m(2, right) - m(0, right)) + 0.5 * (m(2, left) - m(0, left));
-      normal.add(by_column, along * by_column - x * by_row, r, std::min(1.0, bound / (std::abs(r) + 1e-300)),
+      normal.add(by_column, along * by_column - x * by_row, r, bound,
                  pulls[std::min(ranges - 1, static_cast<int>(ranges * x / reach))]);
       normal.noise_cc += 1;
       normal.noise_tt += along * along + x * x;
@@ -192,6 +205,13 @@ Pull disagreement(const Normal& n, double cc, double tt, double left) {
   return most;
 }
 
+// By how much residuals that hardly count, but were thought to hold, make deviations larger. Of blurred noise, which
+// neighbours share, it is never more than 2.45.
+double softness(double stiff, double thought) {
+  constexpr double most = 2.45;
+  return stiff * most > thought ? thought / stiff : most;
+}
+
 // Nothing where the image is not symmetric about a column.
 std::optional<AxisEstimate> axis_of(const Image& view) {
   if (view.width < 20 || view.height < 3) return std::nullopt;
@@ -202,7 +222,8 @@ std::optional<AxisEstimate> axis_of(const Image& view) {
   const Image smooth = blurred(view);
   constexpr int steps = 60;
   constexpr double farthest_rad = 30 * rad_per_deg;
-  double bound = 1e300;
+  constexpr double few = 0.35;  // deviations of the edges: trails of bubbles are among them, and widen these
+  Bound bound;
   for (int step = 0; step < steps; ++step) {
     const Normal n = normal_of(straightened(smooth, pose), pose.column, bound);
     constexpr double more_than_noise = 1.5;
@@ -214,15 +235,17 @@ std::optional<AxisEstimate> axis_of(const Image& view) {
     pose.column += column;
     pose.tilt_rad += tilt;
     if (std::abs(pose.tilt_rad) > farthest_rad) return std::nullopt;
-    bound = 2.5 * edge_deviation(n) + 1e-30;  // Huber: dirt pulls with constant force
+    bound.residual = std::min(bound.residual, few * edge_deviation(n) + 1e-30);
     // The slopes of the noise are no knowledge of the axis, and blurred pixels do not err one by one.
     const double cc = n.cc - noise2 * n.noise_cc;
     const double tt = std::max(n.tt - noise2 * n.noise_tt, 1e-6 * n.tt);
     const double left = std::max(cc * tt - n.ct * n.ct, 1e-6 * cc * tt);
     const double variance = 4 * std::numbers::pi * blur_px * blur_px * n.rr / static_cast<double>(n.count);
     const Pull ranges_say = disagreement(n, cc, tt, left);
-    estimate.column_sigma = std::sqrt(std::max(variance * tt / left, ranges_say[0]));
-    estimate.tilt_sigma_rad = std::sqrt(std::max(variance * cc / left, ranges_say[1]));
+    estimate.column_sigma =
+        std::sqrt(std::max(variance * tt / left, std::pow(softness(n.stiff_cc, n.cc), 2) * ranges_say[0]));
+    estimate.tilt_sigma_rad =
+        std::sqrt(std::max(variance * cc / left, std::pow(softness(n.stiff_tt, n.tt), 2) * ranges_say[1]));
     if (std::abs(column) < 1e-3 && std::abs(tilt) < 1e-5) break;
   }
   return estimate;

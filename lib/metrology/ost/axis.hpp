@@ -17,8 +17,8 @@ struct AxisEstimate {
 
 /// The mean of evenly spaced views over a full turn is its own mirror image about the axis: P(t, theta + pi) = P(-t,
 /// theta), and refraction and perspective map columns oddly about the axis, so they keep the symmetry. Column and tilt
-/// minimise the difference of the two halves (Gauss-Newton from the centre of mass, far differences weighted down
-/// [HUB64; physics §8]).
+/// minimise the difference of the two halves (Gauss-Newton from the centre of mass, far differences hardly
+/// counted [physics §8]).
 /// Nothing needs to be known of the optics, and an even background does no harm.
 /// Throws Fault::data when the view has no contrast beyond its noise, or the axis leans by more than 30 degrees.
 [[nodiscard]] AxisEstimate find_axis(const Image& mean_view);
