@@ -56,6 +56,34 @@ void blur_columns(std::vector<Image>& level) {
   });
 }
 
+// Neighbouring columns see lines of other directions, by `lean` a column: a blur along the columns is wider before the
+// axis than behind it, or the other way round, and draws edges there, so that the two ends of a line do not see it
+// alike. Gives columns what a blur along parallel lines has, to the first order in their lean: less lean sigma^2 d2/(dx
+// dphi).
+std::vector<Image> along_parallel_lines(const std::vector<Image>& blurred, const PairBasis& basis, double sigma) {
+  constexpr double widest_rad = 0.5;  // between the views before and after
+  constexpr double least_rad = 1e-3;
+  const auto views = count_of(blurred);
+  std::vector<Image> out = blurred;
+  parallel_for(views, [&](int i) {
+    const int before = (i + views - 1) % views;
+    const int after = (i + 1) % views;
+    const double turned = std::remainder(basis.angle_rad[after] - basis.angle_rad[before], 2 * std::numbers::pi);
+    if (std::abs(turned) < least_rad || std::abs(turned) > widest_rad) return;
+    const int width = out[i].width;
+    std::vector<float> factor(width);
+    for (int x = 0; x < width; ++x) factor[x] = static_cast<float>(basis.lean[x] * sigma * sigma / (2 * turned));
+    for (int k = 0; k < out[i].height; ++k) {
+      const float* low = blurred[before].row(k);
+      const float* high = blurred[after].row(k);
+      float* to = out[i].row(k);
+      for (int x = 1; x + 1 < width; ++x)
+        to[x] -= factor[x] * ((high[x + 1] - high[x - 1]) - (low[x + 1] - low[x - 1]));
+    }
+  });
+  return out;
+}
+
 // Slopes along the columns, times the motion that one unit makes.
 std::vector<Image> slopes(const std::vector<Image>& level, const std::vector<ColumnMotion>& motion,
                           double axis_column) {
@@ -206,7 +234,8 @@ Vector times(const Matrix& m, const Vector& v) {
 }
 
 // Variances by how much ranges of lines, `merged` of them together, disagree: those of angle, and those of offset, as
-// structures that turn with the part err alike over a whole range. Both, less what both count; wider where few pull.
+// structures that turn with the part err alike over a whole range. Both, less what both count; wider where few of the
+// narrow ones pull.
 Vector variances(const Sums& sums, const Matrix& inverse, int merged) {
   std::array<Vector, offset_ranges> by_offset{};
   std::array<std::vector<double>, unknowns> single;
@@ -239,7 +268,7 @@ Vector variances(const Sums& sums, const Matrix& inverse, int merged) {
   Vector out{};
   for (int i = 0; i < unknowns; ++i) {
     const double all = std::max({angle[i] + offset[i] - both[i], angle[i], offset[i]});
-    out[i] = std::pow(stats::few_parts_factor(single[i]), 2) * all;
+    out[i] = merged == 1 ? std::pow(stats::few_parts_factor(single[i]), 2) * all : all;
   }
   return out;
 }
@@ -358,6 +387,7 @@ class MovedViews {
         blurred_(level),
         hidden_(hidden_lines(sinograms_of(level), blur_of(level))) {
     blur_columns(blurred_);
+    blurred_ = along_parallel_lines(blurred_, basis, blur_of(blurred_));
   }
   [[nodiscard]] Lines lines(const Vector& value) const {
     std::vector<Image> moved = blurred_;

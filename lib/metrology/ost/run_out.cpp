@@ -37,11 +37,24 @@ std::vector<ColumnMotion> OstReconstructor::State::motion(std::span<const double
   const double m = optics::impact_mm(eye.view, near_mm) / near_mm;
   const double reach_mm = eye.view.lens_mm ? m * eye.view.bath_index * *eye.view.lens_mm : 0.0;
   std::vector<ColumnMotion> all;
-  for (const double angle : angles_deg) {
-    const double phi = direction * angle * rad_per_deg + azimuth_rad;
+  for (const double phi : part_angles_rad(angles_deg)) {
     const double across_mm = std::cos(phi) * x_mm + std::sin(phi) * y_mm;
     const double away_mm = std::cos(phi) * y_mm - std::sin(phi) * x_mm;
     all.push_back({across_mm / (m * eye.camera.pixel_mm), reach_mm > 0 ? -away_mm / reach_mm : 0.0});
+  }
+  return all;
+}
+
+std::vector<double> OstReconstructor::State::part_angles_rad(std::span<const double> angles_deg) const {
+  std::vector<double> all;
+  for (const double angle : angles_deg) all.push_back(direction * angle * rad_per_deg + azimuth_rad);
+  return all;
+}
+
+std::vector<double> OstReconstructor::State::lean_rad() const {
+  std::vector<double> all;
+  for (int x = 0; x < eye.camera.columns; ++x) {
+    all.push_back(optics::chief_ray(eye.view, eye.camera.x_mm(x)).delta_rate * eye.camera.pixel_mm);
   }
   return all;
 }
@@ -67,6 +80,8 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   const PairBasis basis{{std::vector<ColumnMotion>(views.size(), {1, 0}), s.motion(angles_deg, unit_mm, 0),
                          s.motion(angles_deg, 0, unit_mm)},
                         s.axis.column,
+                        s.part_angles_rad(angles_deg),
+                        s.lean_rad(),
                         !light.intensity.empty()};
   const SinogramsOf sinograms_of = [&](const std::vector<Image>& moved) {
     return s.virtual_sinograms(camera_sinograms(moved, turns), heights_mm);
@@ -76,10 +91,12 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   found.determined = fit.converged;
   found.mm = {s.options.run_out_mm[0] + fit.value[1] * unit_mm, s.options.run_out_mm[1] + fit.value[2] * unit_mm};
   // Both are seen by the same lines; what these say of one alone is little for a standard deviation.
-  // Absorption is fitted to the first order, which leaves up to 0.015 mm at 0.1 per mm.
+  // Absorption is fitted to the first order, which leaves up to 0.015 mm at 0.1 per mm; what is interpolated between
+  // columns and angles, up to 0.025 columns of ideal views.
   constexpr double left_mm2 = 0.1;
+  constexpr double left_columns = 0.02;
   const double sigma_mm = std::hypot(unit_mm * std::hypot(fit.sigma[1], fit.sigma[2]) / std::numbers::sqrt2,
-                                     left_mm2 * s.absorption_per_mm);
+                                     left_mm2 * s.absorption_per_mm, left_columns * unit_mm);
   found.sigma_mm = {sigma_mm, sigma_mm};
   found.column = s.axis.column + fit.value[0];
   found.column_sigma = fit.sigma[0];

@@ -20,7 +20,9 @@ using PairVector = std::array<double, pair_unknowns>;
 struct PairBasis {
   std::array<std::vector<ColumnMotion>, pair_motions> motion;
   double axis_column = 0;
-  bool even_light = false;  // the views were divided by their intensities
+  std::vector<double> angle_rad;  // of the part, of each view
+  std::vector<double> lean;       // of each column's line from its neighbour's, in that sense, rad
+  bool even_light = false;        // the views were divided by their intensities
 };
 
 /// Takes views to virtual sinograms, linearly, the axis in their middle.

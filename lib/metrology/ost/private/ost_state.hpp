@@ -47,6 +47,9 @@ struct OstReconstructor::State {
                                 std::span<const double> angles_deg, double background) const;
   /// What a run-out of (x, y) mm in the frame of the part does to the columns of views at these stage angles.
   [[nodiscard]] std::vector<ColumnMotion> motion(std::span<const double> angles_deg, double x_mm, double y_mm) const;
+  [[nodiscard]] std::vector<double> part_angles_rad(std::span<const double> angles_deg) const;
+  /// By how much the line of each camera column turns from one column to the next.
+  [[nodiscard]] std::vector<double> lean_rad() const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
   [[nodiscard]] int half_width(double voxel_mm) const;
   void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part, Dirt& found) const;
