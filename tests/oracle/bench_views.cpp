@@ -201,7 +201,7 @@ std::vector<std::vector<float>> bench_views(const ViewBench& bench, const std::v
 
 void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<float>>& views) {
   const auto peak = static_cast<double>(brightest(views));
-  std::mt19937 random(3);
+  std::mt19937 random(dirt.draw);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<double> gain(views.front().size(), 1.0);
   std::vector<double> plus(views.front().size(), dirt.background * peak);

@@ -58,6 +58,7 @@ struct Dirt {
   double background = 0;  // everywhere
   double flicker = 0;     // deviation of each view's light, of the view itself
   int specks = 0;         // bright or dark spots of 1 to 3 pixels that stay where they are
+  unsigned draw = 3;      // of specks and noise
 };
 void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<float>>& views);
 

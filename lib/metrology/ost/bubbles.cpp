@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -12,6 +13,7 @@
 #include "metrology/ost/private/line_ends.hpp"
 #include "metrology/ost/private/one_density_body.hpp"
 #include "metrology/ost/private/ray_mask.hpp"
+#include "metrology/ost/private/specks.hpp"
 
 namespace vam::metrology {
 
@@ -37,11 +39,37 @@ float brightest(const std::vector<Image>& sinograms) {
   return most;
 }
 
-// What a ray must be brighter by than the other end of its line: above the noise and a share of the contrast.
-float bubble_contrast(const std::vector<Image>& sinograms) {
-  const float most = brightest(sinograms);
-  const double noise = typical_difference(sinograms) * stats::sigmas_per_median / std::sqrt(2.0);
-  return static_cast<float>(6 * noise + 0.03 * most);
+/// Noise of a ray and the contrast that a bubble must have beside it.
+struct Contrast {
+  float noise;
+  float share;
+  [[nodiscard]] float least(float sigmas) const { return sigmas * noise + share; }
+};
+
+Contrast bubble_contrast(const std::vector<Image>& sinograms) {
+  constexpr float part = 0.03F;
+  const auto noise = static_cast<float>(typical_difference(sinograms) * stats::sigmas_per_median / std::sqrt(2.0));
+  return {noise, part * brightest(sinograms)};
+}
+
+// Means of 3 x 3 rays of a view: bubbles are wider.
+std::vector<Image> smoothed(const std::vector<Image>& sinograms) {
+  const auto heights = count_of(sinograms);
+  std::vector<Image> out(sinograms.size());
+  parallel_for(heights, [&](int k) {
+    const Image& below = sinograms[std::max(0, k - 1)];
+    const Image& above = sinograms[std::min(heights - 1, k + 1)];
+    const Image& s = sinograms[k];
+    out[k] = Image(s.width, s.height);
+    std::vector<float> sum(s.width);
+    for (int a = 0; a < s.height; ++a) {
+      for (int t = 0; t < s.width; ++t) sum[t] = (below(t, a) + s(t, a) + above(t, a)) / 9;
+      for (int t = 0; t < s.width; ++t) {
+        out[k](t, a) = sum[std::max(0, t - 1)] + sum[t] + sum[std::min(s.width - 1, t + 1)];
+      }
+    }
+  });
+  return out;
 }
 
 // Gives marked rays the value of the darker end of their line. marked: one mask an angle.
@@ -89,9 +117,20 @@ std::vector<RayMask> mirrored(const std::vector<RayMask>& rays, int width) {
   return out;
 }
 
-// Rays whose line is near bubbles at both ends.
-std::vector<RayMask> suspect_rays(const std::vector<RayMask>& marked, int width, int heights) {
+void add(const std::vector<RayMask>& more, std::vector<RayMask>& masks) {
+  for (std::size_t a = 0; a < masks.size(); ++a) {
+    if (masks[a].empty()) masks[a].resize(more[a].size(), 0);
+    for (std::size_t i = 0; i < more[a].size(); ++i) masks[a][i] = static_cast<char>(masks[a][i] | more[a][i]);
+  }
+}
+
+// Rays whose line is near a bubble, or hidden by a speck, at both ends.
+std::vector<RayMask> suspect_rays(const std::vector<RayMask>& marked, const RayMask& specks, int width, int heights) {
   std::vector<RayMask> suspect = surroundings(marked, width, heights);
+  if (share_of(specks) > 0) {
+    spread_behind(specks, width, suspect);
+    add(std::vector<RayMask>(marked.size(), specks), suspect);
+  }
   const std::vector<RayMask> far = mirrored(suspect, width);
   for (std::size_t a = 0; a < far.size(); ++a) {
     if (far[a].empty()) suspect[a].clear();
@@ -100,26 +139,22 @@ std::vector<RayMask> suspect_rays(const std::vector<RayMask>& marked, int width,
   return suspect;
 }
 
-void add(const std::vector<RayMask>& more, std::vector<RayMask>& masks) {
-  for (std::size_t a = 0; a < masks.size(); ++a) {
-    if (masks[a].empty()) masks[a].resize(more[a].size(), 0);
-    for (std::size_t i = 0; i < more[a].size(); ++i) masks[a][i] = static_cast<char>(masks[a][i] | more[a][i]);
-  }
-}
-
 }  // namespace
 
-double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, std::vector<Image>& sinograms,
-                      std::span<const int> rows) {
+double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, const RayMask& specks,
+                      std::vector<Image>& sinograms, std::span<const int> rows) {
   const int width = sinograms.front().width;
   const int angles = sinograms.front().height;
   const auto heights = count_of(sinograms);
   if (brightest(sinograms) <= 0) return 0;  // beside the print
-  const float least = bubble_contrast(sinograms);
-  restore_dark_rays(sinograms, rows, least);
+  const Contrast of_rays = bubble_contrast(sinograms);
+  restore_dark_rays(sinograms, rows, of_rays.least(6));
+  const bool is_noisy = 6 * of_rays.noise > of_rays.share;
+  const std::vector<Image> smooth = is_noisy ? smoothed(sinograms) : std::vector<Image>{};
+  const float least = is_noisy ? bubble_contrast(smooth).least(6) : of_rays.least(6);
   std::vector<RayMask> marked(angles);
   parallel_for(angles, [&](int a) {
-    marked[a] = bright_rays(sinograms, rows, a, least);
+    marked[a] = bright_rays(is_noisy ? smooth : sinograms, rows, a, least);
     if (!marked[a].empty()) marked[a] = grown(marked[a], width, heights, 3);
   });
   std::ptrdiff_t count = 0;
@@ -127,19 +162,22 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, std::ve
   const double share = static_cast<double>(count) / (static_cast<double>(width) * angles * heights);
   if (count == 0 || share > most_bubbles) return share;
   take_darker_ends(sinograms, marked);
-  std::vector<RayMask> hidden = suspect_rays(marked, width, heights);
+  std::vector<RayMask> hidden = suspect_rays(marked, specks, width, heights);
   const std::vector<Image> seen = sinograms;
   constexpr int rounds = 2;  // restored rays show the bodies better
+  float farthest = std::numeric_limits<float>::infinity();
   for (int round = 0; round < rounds; ++round) {
-    const BodyPaths bodies(rays, one_density_body(rays, grid, sinograms, 0.5F * least));
+    const BodyPaths bodies(rays, one_density_body(rays, grid, sinograms, 0.5F * of_rays.least(6)));
     if (round == 0) {
       // Bubbles are seldom alike at both ends of a line: more rays than this are bodies of another density. Twice the
       // contrast, as the bodies are known to a few per cent.
-      const std::vector<RayMask> above = rays_above(bodies, seen, hidden, count / 4, 2 * least);
-      add(above, hidden);
-      add(mirrored(above, width), hidden);
+      if (const auto above = rays_above(bodies, is_noisy ? smoothed(seen) : seen, hidden, count / 4, 2 * least)) {
+        add(*above, hidden);
+        add(mirrored(*above, width), hidden);
+        farthest = of_rays.least(6);  // rays that differ by more are bubbles that were not seen
+      }
     }
-    limit_to_bodies(bodies, hidden, least, seen, sinograms);
+    limit_to_bodies(bodies, hidden, of_rays.least(3), farthest, seen, sinograms);  // 3, as a bubble is near
   }
   return share;
 }

@@ -2,72 +2,11 @@
 #include "metrology/ost/dirt.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
-#include "base/index.hpp"
 #include "base/json.hpp"
-#include "base/parallel.hpp"
-#include "base/stats/median.hpp"
-#include "metrology/ost/private/ray_mask.hpp"
 
 namespace vam::metrology {
-
-namespace {
-
-// Mean over the angles: one row a height.
-Image mean_over_angles(const std::vector<Image>& sinograms) {
-  Image mean(sinograms.front().width, count_of(sinograms));
-  parallel_for(mean.height, [&](int k) {
-    const Image& sinogram = sinograms[k];
-    float* out = mean.row(k);
-    const float share = 1.0F / static_cast<float>(sinogram.height);
-    for (int a = 0; a < sinogram.height; ++a) {
-      const float* in = sinogram.row(a);
-      for (int t = 0; t < mean.width; ++t) out[t] += share * in[t];
-    }
-  });
-  return mean;
-}
-
-// What departs from the median of its row's neighbourhood, less the same on the other side of the axis: both the
-// edges of a turning body and its faces drop out.
-Image departures(const Image& mean) {
-  constexpr int beside = 9;
-  Image local(mean.width, mean.height);
-  parallel_for(mean.height, [&](int k) {
-    const float* in = mean.row(k);
-    for (int t = 0; t < mean.width; ++t) {
-      const int first = std::max(0, t - beside);
-      const int last = std::min(mean.width, t + beside + 1);
-      local(t, k) = in[t] - static_cast<float>(stats::median(std::vector<float>(in + first, in + last)));
-    }
-  });
-  Image out(mean.width, mean.height);
-  for (int k = 0; k < mean.height; ++k) {
-    for (int t = 0; t < mean.width; ++t) {
-      const float here = local(t, k);
-      const float there = local(mean.width - 1 - t, k);
-      out(t, k) = std::abs(here) > std::abs(there) ? std::abs(here - there) : 0.0F;
-    }
-  }
-  return out;
-}
-
-// Does a column differ from the other end of its lines at a third of the angles, always with the same sign? What passes
-// does so for less of a turn.
-bool stays(const Image& s, int t, float least) {
-  int above = 0;
-  int below = 0;
-  for (int a = 0; a < s.height; ++a) {
-    const float difference = s(t, a) - s(s.width - 1 - t, opposite(s, a));
-    above += difference > least ? 1 : 0;
-    below += difference < -least ? 1 : 0;
-  }
-  return 3 * std::max(above, below) >= s.height;
-}
-
-}  // namespace
 
 Dirt even_background(const Image& mean_view) {
   std::vector<float> sorted = mean_view.values;
@@ -95,43 +34,6 @@ Dirt even_background(const Image& mean_view) {
   found.background = level;
   found.has_background = true;
   return found;
-}
-
-std::vector<char> speck_rays(const std::vector<Image>& sinograms) {
-  const Image mean = mean_over_angles(sinograms);
-  const double most = *std::max_element(mean.values.begin(), mean.values.end());
-  RayMask marked(mean.size());
-  if (most <= 0) return marked;  // beside the print, where rounding leaves the background a little above the light
-  const Image departure = departures(mean);
-  std::vector<float> some;
-  for (std::size_t i = 0; i < departure.size(); i += 7) {
-    if (departure.values[i] > 0) some.push_back(departure.values[i]);
-  }
-  const double noise = some.empty() ? 0.0 : stats::median(some) * stats::sigmas_per_median;
-  const auto least = static_cast<float>(8 * noise + 0.02 * most);
-  for (int k = 0; k < mean.height; ++k) {
-    for (int t = 0; t < mean.width; ++t) {
-      const std::size_t i = mean.index(t, k);
-      marked[i] = departure.values[i] > least && stays(sinograms[k], t, 0.5F * least) ? 1 : 0;
-    }
-  }
-  return grown(marked, mean.width, mean.height, 2);
-}
-
-double remove_specks(std::vector<Image>& sinograms) {
-  const RayMask marked = speck_rays(sinograms);
-  const auto count = std::count(marked.begin(), marked.end(), char{1});
-  if (count == 0) return 0;
-  parallel_for(count_of(sinograms), [&](int k) {
-    Image& s = sinograms[k];
-    const char* row = marked.data() + product(k, s.width);
-    for (int t = 0; t < s.width; ++t) {
-      const int mirror = s.width - 1 - t;
-      if (row[t] == 0 || row[mirror] != 0) continue;
-      for (int a = 0; a < s.height; ++a) s(t, a) = s(mirror, opposite(s, a));
-    }
-  });
-  return static_cast<double>(count) / static_cast<double>(marked.size());
 }
 
 Json to_json(const Dirt& dirt) {

@@ -3,8 +3,6 @@
 // are, bubbles that pass.
 #pragma once
 
-#include <vector>
-
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
 
@@ -23,13 +21,6 @@ struct Dirt {
 /// The level of the emptiest tenth of a mean view, when hardly a pixel is darker: the shortest interval that holds a
 /// tenth of the pixels, refined to a mean. Dirt::has_background is false where there is no such plateau.
 [[nodiscard]] Dirt even_background(const Image& mean_view);
-
-/// Sinograms of one stretch of heights, columns x an even number of angles over a turn, axis in the middle. A pixel of
-/// their mean over the angles that departs from its row and has no mirror image about the axis is a speck: it and two
-/// pixels around it are 1, [height][column].
-[[nodiscard]] std::vector<char> speck_rays(const std::vector<Image>& sinograms);
-/// Replaces them by the line seen from the other end. Returns the share of the rays.
-double remove_specks(std::vector<Image>& sinograms);
 
 [[nodiscard]] Json to_json(const Dirt& dirt);
 

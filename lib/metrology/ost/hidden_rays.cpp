@@ -98,8 +98,8 @@ std::vector<Image> passed_by(const BodyPaths& bodies, const std::vector<RayMask>
 
 }  // namespace
 
-std::vector<RayMask> rays_above(const BodyPaths& bodies, const std::vector<Image>& sinograms,
-                                const std::vector<RayMask>& known, std::ptrdiff_t most, float least) {
+std::optional<std::vector<RayMask>> rays_above(const BodyPaths& bodies, const std::vector<Image>& sinograms,
+                                               const std::vector<RayMask>& known, std::ptrdiff_t most, float least) {
   constexpr int around = pitch / 2 + 3;  // up to the next column that is looked at, and the rim of the bubble
   const auto heights = count_of(sinograms);
   const int width = sinograms.front().width;
@@ -119,11 +119,11 @@ std::vector<RayMask> rays_above(const BodyPaths& bodies, const std::vector<Image
     }
     if (found[a] > 0) above[a] = grown(mask, width, heights, around);
   });
-  if (std::accumulate(found.begin(), found.end(), std::ptrdiff_t{0}) > most) return std::vector<RayMask>(known.size());
+  if (std::accumulate(found.begin(), found.end(), std::ptrdiff_t{0}) > most) return std::nullopt;
   return above;
 }
 
-void limit_to_bodies(const BodyPaths& bodies, const std::vector<RayMask>& hidden, float least,
+void limit_to_bodies(const BodyPaths& bodies, const std::vector<RayMask>& hidden, float least, float farthest,
                      const std::vector<Image>& seen, std::vector<Image>& sinograms) {
   const int width = seen.front().width;
   const auto passed = passed_by(bodies, hidden, width, count_of(seen));
@@ -149,8 +149,8 @@ void limit_to_bodies(const BodyPaths& bodies, const std::vector<RayMask>& hidden
       for (int a = first + 1; a <= first + n && first < n; ++a) {
         if (is_in(hidden, a % n, i)) continue;
         for (int b = last + 1; b < a; ++b) {
-          const float low = s(t, last % n) - passed[last % n](t, k);
-          const float high = s(t, a % n) - passed[a % n](t, k);
+          const float low = std::min(s(t, last % n) - passed[last % n](t, k), farthest);
+          const float high = std::min(s(t, a % n) - passed[a % n](t, k), farthest);
           const float part = static_cast<float>(b - last) / static_cast<float>(a - last);
           limit(b % n, std::max(0.0F, passed[b % n](t, k) + low + part * (high - low)));
         }

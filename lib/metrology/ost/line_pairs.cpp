@@ -11,8 +11,8 @@
 #include "base/parallel.hpp"
 #include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
-#include "metrology/ost/dirt.hpp"
 #include "metrology/ost/private/ray_mask.hpp"
+#include "metrology/ost/private/specks.hpp"
 
 namespace vam::metrology {
 

@@ -18,6 +18,7 @@
 #include "metrology/ost/private/camera_sinograms.hpp"
 #include "metrology/ost/private/mlem.hpp"
 #include "metrology/ost/private/ost_state.hpp"
+#include "metrology/ost/private/specks.hpp"
 #include "model/circle.hpp"
 #include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"
@@ -137,7 +138,9 @@ ClimbingRays OstReconstructor::State::rays(int angles) const {
 // Specks and bubbles; `part` of the volume is made from these heights, and their shares count by it.
 void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part,
                                     Dirt& found) const {
-  found.speck_percent += 100 * part * remove_specks(sinograms);
+  const RayMask specks = speck_rays(sinograms);
+  replace_specks(specks, sinograms);
+  found.speck_percent += 100 * part * share_of(specks);
   const bool same_from_both_ends = !(absorption_per_mm > 0);
   if (!same_from_both_ends) return;  // bubbles are told by their lines' other ends
   // From its other end a line climbs the other way: over 2 x it is twice its climb away, in rows of the volume.
@@ -149,7 +152,7 @@ void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<con
   model::Grid stretch = grid;
   stretch.nz = count_of(sinograms);
   stretch.origin_mm[2] = heights_mm.front();
-  const double share = remove_bubbles(this->rays(sinograms.front().height), stretch, sinograms, rows);
+  const double share = remove_bubbles(this->rays(sinograms.front().height), stretch, specks, sinograms, rows);
   found.bubbles_exceed_limit = found.bubbles_exceed_limit || share > most_bubbles;
   found.bubble_percent += 100 * part * share;
 }

@@ -7,6 +7,11 @@
 
 namespace vam::metrology {
 
+double share_of(const RayMask& marked) {
+  const auto count = std::count(marked.begin(), marked.end(), char{1});
+  return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, marked.size()));
+}
+
 RayMask grown(const RayMask& marked, int width, int height, int by) {
   RayMask out(marked.size(), 0);
   for (int y = 0; y < height; ++y) {

@@ -11,6 +11,9 @@ namespace vam::metrology {
 /// The rays of one angle, [height][column]: 1 where marked. Empty: none.
 using RayMask = std::vector<char>;
 
+/// Of all its rays, those that are marked.
+[[nodiscard]] double share_of(const RayMask& marked);
+
 /// Marked places and those at most `by` pixels beside them.
 [[nodiscard]] RayMask grown(const RayMask& marked, int width, int height, int by);
 
