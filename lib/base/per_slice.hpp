@@ -92,6 +92,24 @@ template <class Value>
   return sum_of_rows(rows, images.size());
 }
 
+/// Of all slices.
+template <class Value>
+[[nodiscard]] double total(std::span<const Slab> images, const Value& value) {
+  double sum = 0;
+  for (const auto& lane : summed(images, value)) {
+    for (const float part : lane) sum += static_cast<double>(part);
+  }
+  return sum;
+}
+
+/// images[slab].values[index] = value(slab, index).
+template <class Value>
+void fill(std::span<Slab> images, const Value& value) {
+  for_values(images, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) images[s].values[i] = value(s, i);
+  });
+}
+
 /// a = max(a, b), for reduce.
 inline constexpr auto larger = [](float& a, float b) { a = std::max(a, b); };
 

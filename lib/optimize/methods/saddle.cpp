@@ -7,25 +7,11 @@
 #include <span>
 #include <utility>
 
+#include "base/per_slice.hpp"
+
 namespace vam::optimize {
 
 namespace {
-
-template <class Value>
-double total(std::span<const Slab> images, const Value& value) {
-  double sum = 0;
-  for (const auto& lane : summed(images, value)) {
-    for (const float part : lane) sum += static_cast<double>(part);
-  }
-  return sum;
-}
-
-template <class Value>
-void fill(std::span<Slab> images, const Value& value) {
-  for_values(images, [&](std::size_t s, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) images[s].values[i] = value(s, i);
-  });
-}
 
 // Of the step: such a fall of the change moves the anchor, at once or where it rises again; and so many steps do.
 constexpr double enough_fall = 0.2, some_fall = 0.8, long_share = 0.36;

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 
+#include "base/per_slice.hpp"
 #include "base/progress.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/saddle.hpp"
@@ -21,20 +21,6 @@ constexpr int few_rounds = 4;
 constexpr int most_rounds = 12;
 
 constexpr std::array even_shares{0.003, 0.03, 0.3, 1.0};
-
-template <class Value>
-void fill(std::span<Slab> images, const Value& value) {
-  for_values(images, [&](std::size_t s, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) images[s].values[i] = value(s, i);
-  });
-}
-
-template <class Value>
-double total(std::span<const Slab> images, const Value& value) {
-  double sum = 0;
-  for (const auto& lane : summed(images, value)) sum = std::accumulate(lane.begin(), lane.end(), sum);
-  return sum;
-}
 
 /// The light in the middle of whose window is 1.
 std::vector<Slab> at_one(const Problem& problem, const light::Operator& light, std::vector<Slab> g) {
