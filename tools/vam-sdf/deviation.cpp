@@ -133,7 +133,10 @@ metrology::SurfaceErrors errors_of(const Options& options, const PrintSurface& p
     errors = {print.bodies ? "volume" : "mesh", print.uncertainty_mm, metrology::mean_edge_mm(print.mesh)};
   }
   const bool is_mesh = !print.bodies && print.uncertainty_mm.empty();  // its edges say nothing of voxels
-  if (!is_mesh) errors.resolution_mm = metrology::resolved_cells * errors.cell_mm;
+  if (!is_mesh) {
+    errors.resolution_mm = metrology::resolved_cells * errors.cell_mm;
+    errors.extreme_mm = metrology::extreme_cells * errors.cell_mm;
+  }
   errors.common_mm = print.mm_per_isovalue * options.isovalue_uncertainty;
   errors.scale = 0.01 * options.scale_uncertainty_percent;
   return errors;

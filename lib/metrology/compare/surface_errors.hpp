@@ -18,10 +18,15 @@ struct SurfaceErrors {
   double common_mm = 0;      // of the whole surface at once: that of the isovalue
   double scale = 0;          // relative: that of the camera's pixel pitch
   double resolution_mm = 0;  // of the whole surface at once: what voxels, columns and angles leave
+  double extreme_mm = 0;     // of the places that err most, by which an extreme differs
 };
 
 /// Of the cells of a volume's surface, as a standard uncertainty, measured on cylinders [physics §8].
 inline constexpr double resolved_cells = 0.04;
+
+/// And of the extremes, where a face and its rim ripple: of noise-free views flatness and cylindricity are up to 0.8
+/// cells too large.
+inline constexpr double extreme_cells = 0.4;
 
 /// From the mesh alone: how the distances of neighbouring vertices differ, 1.4826 times the median magnitude over
 /// sqrt(2), for edges shorter than 2 % of the design. What neighbours have in common is not seen.

@@ -224,25 +224,33 @@ bool is_exact(const std::string& name) {
   return name == "samples" || name == "largest_dimension_mm" || name.starts_with("design_");
 }
 
+/// What the places that err most add to an extreme: in mm, and in % of the largest dimension.
+struct Places {
+  double mm, percent;
+};
+
 /// Twice the combined standard deviation and mean departure of the trials from a number.
-double expanded_number(const std::string& key, double figure, const std::vector<const Json*>& tried) {
+double expanded_number(const std::string& key, double figure, const std::vector<const Json*>& tried,
+                       const Places& worst) {
   const auto n = static_cast<double>(tried.size());
   double mean = 0;
   for (const Json* one : tried) mean += (one->get<double>() - figure) / n;
   double squares = 0;
   for (const Json* one : tried) squares += std::pow(one->get<double>() - figure - mean, 2) / n;
-  const double again = is_extreme(key) ? 1 / (std::numbers::sqrt2 - 1) : 1.0;
-  return coverage * std::hypot(std::sqrt(squares), again * mean);
+  if (!is_extreme(key)) return coverage * std::hypot(std::sqrt(squares), mean);
+  return coverage * std::hypot(std::sqrt(squares), mean / (std::numbers::sqrt2 - 1),
+                               key.ends_with("_percent") ? worst.percent : worst.mm);
 }
 
 /// Objects and lists in their own shape.
-Json expanded(const std::string& name, const Json& figures, const std::vector<const Json*>& tried) {
-  if (tried.front()->is_number()) return expanded_number(name, figures.get<double>(), tried);
+Json expanded(const std::string& name, const Json& figures, const std::vector<const Json*>& tried,
+              const Places& worst) {
+  if (tried.front()->is_number()) return expanded_number(name, figures.get<double>(), tried, worst);
   Json out;
   const auto add = [&](const auto& key, const std::string& inner_name, Json& place) {
     std::vector<const Json*> inner;
     for (const Json* one : tried) inner.push_back(&one->at(key));
-    place = expanded(inner_name, figures.at(key), inner);
+    place = expanded(inner_name, figures.at(key), inner, worst);
   };
   if (tried.front()->is_array()) {
     for (std::size_t i = 0; i < tried.front()->size(); ++i) add(i, name, out.emplace_back());
@@ -264,6 +272,7 @@ Json to_json(const SurfaceErrors& errors) {
           {"cell_mm", errors.cell_mm},
           {"isovalue_mm", errors.common_mm},
           {"resolution_mm", errors.resolution_mm},
+          {"extreme_mm", errors.extreme_mm},
           {"scale_percent", 100 * errors.scale},
           {"coverage_factor", coverage},
           {"trials", trials}};
@@ -282,7 +291,8 @@ Json expanded_uncertainty(const Inspection& inspection, const model::TriangleSou
   });
   std::vector<const Json*> all;
   for (const Json& one : tried) all.push_back(&one);
-  return expanded("", figures_json(inspection), all);
+  return expanded("", figures_json(inspection), all,
+                  {errors.extreme_mm, 100 * errors.extreme_mm / inspection.distances.largest_dimension_mm});
 }
 
 }  // namespace vam::metrology

@@ -241,6 +241,18 @@ TEST_CASE("an uncertain isovalue and the resolution move the mean, an uncertain 
   CHECK(stated(0, 0.01) == doctest::Approx(2 * 0.01 * 5).epsilon(0.4));
 }
 
+TEST_CASE("what single places err is in the uncertainty of extremes, and of no others") {
+  const auto design = test::sphere({0, 0, 0}, 5, 60);
+  const Inspection found = inspect(design, design, solid::Surface(design), 20000, {});
+  SurfaceErrors errors{"volume", std::vector<float>(design.points.size(), 0.0F), 0.2, 0, 0};
+  errors.extreme_mm = 0.05;
+  const Json stated = expanded_uncertainty(found, design, errors);
+  CHECK(stated["print_to_design"]["max_mm"].get<double>() == doctest::Approx(0.1).epsilon(0.01));
+  CHECK(stated["hausdorff_mm"].get<double>() == doctest::Approx(0.1).epsilon(0.01));
+  CHECK(stated["hausdorff_percent"].get<double>() == doctest::Approx(100 * 0.1 / 10).epsilon(0.01));
+  CHECK(stated["print_to_design"]["rms_mm"].get<double>() < 1e-4);
+}
+
 TEST_CASE("regions that cannot be measured are refused") {
   CHECK_THROWS_WITH_AS((void)parse_region("plane:0,0,0,1,1,1"), doctest::Contains("must begin with a name"), Error);
   CHECK_THROWS_WITH_AS((void)parse_region("a=cone:0,0,0,1,1,1"), doctest::Contains("not one of surface"), Error);
