@@ -10,6 +10,7 @@
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "io/settings/flip_rules.hpp"
 
 namespace vam::io {
 
