@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -53,15 +53,17 @@ class Pieces {
   Pieces(const SurfaceTree& surface, std::vector<int> piece_of) : surface_(surface), piece_of_(std::move(piece_of)) {}
   /// By a triangle of the mesh.
   [[nodiscard]] int piece(int triangle) const { return piece_of_[surface_.mesh.triangles[triangle][0]]; }
-  /// A triangle of another piece on this way, none or one.
-  [[nodiscard]] std::optional<int> other_on(int own, const Vector3& from, const Vector3& to) const {
+  /// Adds triangles on this way: one of each other piece that `found` has none of.
+  void add_others(int own, const Vector3& from, const Vector3& to, std::vector<int>& found) const {
     const Vector3 way = to - from;
     const double far = length(way);
-    if (!(far > 0)) return std::nullopt;
-    const auto is_other = [&](int triangle) { return piece(surface_.place(triangle)) != own; };
-    const auto hit = surface_.tree->first_hit(from, (1 / far) * way, 0, far, is_other);
-    if (!hit) return std::nullopt;
-    return surface_.place(hit->triangle);
+    if (!(far > 0)) return;
+    const auto is_new = [&](int triangle) {
+      const int other = piece(surface_.place(triangle));
+      return other != own && std::none_of(found.begin(), found.end(), [&](int one) { return piece(one) == other; });
+    };
+    while (const auto hit = surface_.tree->first_hit(from, (1 / far) * way, 0, far, is_new))
+      found.push_back(surface_.place(hit->triangle));
   }
 
  private:
@@ -69,9 +71,9 @@ class Pieces {
   std::vector<int> piece_of_;  // of each point
 };
 
-/// Of each triangle in the box one of another piece that its edges cross.
-std::vector<std::optional<int>> crossed(const model::TriangleSoup& mesh, const Pieces& pieces, const Bounds& box) {
-  std::vector<std::optional<int>> found(mesh.triangles.size());
+/// Of each triangle in the box those of other pieces that its edges cross, one of each.
+std::vector<std::vector<int>> crossed(const model::TriangleSoup& mesh, const Pieces& pieces, const Bounds& box) {
+  std::vector<std::vector<int>> found(mesh.triangles.size());
   constexpr int at_once = 1000;
   const int count = count_of(mesh.triangles);
   parallel_for((count + at_once - 1) / at_once, [&](int block) {
@@ -82,8 +84,8 @@ std::vector<std::optional<int>> crossed(const model::TriangleSoup& mesh, const P
       bool apart = false;
       for (std::size_t axis = 0; axis < 3; ++axis)
         apart = apart || own.low[axis] > box.high[axis] || own.high[axis] < box.low[axis];
-      for (std::size_t side = 0; side < 3 && !apart && !found[t]; ++side)
-        found[t] = pieces.other_on(pieces.piece(t), c[side], c[(side + 1) % 3]);
+      for (std::size_t side = 0; side < 3 && !apart; ++side)
+        pieces.add_others(pieces.piece(t), c[side], c[(side + 1) % 3], found[t]);
     }
   });
   return found;
@@ -105,21 +107,21 @@ void SeparateSolids::find(const SurfaceTree& surface, const Bounds& shared, cons
   ConnectedPoints connected(mesh_);
   const auto point_of = [&](int triangle) { return mesh_.triangles[triangle][0]; };
   const Pieces pieces_alone(surface, connected.roots());
-  const std::vector<std::optional<int>> crossing = crossed(mesh_, pieces_alone, shared);
-  std::vector<std::optional<int>> touching(samples.size());
+  const std::vector<std::vector<int>> crossing = crossed(mesh_, pieces_alone, shared);
+  std::vector<std::vector<int>> touching(samples.size());
   constexpr int at_once = 1000;
   const int count = count_of(samples);
   parallel_for((count + at_once - 1) / at_once, [&](int block) {
     for (int i = block * at_once; i < std::min(count, (block + 1) * at_once); ++i) {
       const Vector3 near = near_mm * samples[i].normal;
-      touching[i] = pieces_alone.other_on(pieces_alone.piece(samples[i].triangle), samples[i].point - near,
-                                          samples[i].point + near);
+      pieces_alone.add_others(pieces_alone.piece(samples[i].triangle), samples[i].point - near, samples[i].point + near,
+                              touching[i]);
     }
   });
   for (int t = 0; t < count_of(crossing); ++t)
-    if (crossing[t]) connected.join(point_of(t), point_of(*crossing[t]));
+    for (const int other : crossing[t]) connected.join(point_of(t), point_of(other));
   for (int i = 0; i < count; ++i)
-    if (touching[i]) connected.join(point_of(samples[i].triangle), point_of(*touching[i]));
+    for (const int other : touching[i]) connected.join(point_of(samples[i].triangle), point_of(other));
 
   solid_ = connected.roots();
   std::map<int, Piece> pieces;

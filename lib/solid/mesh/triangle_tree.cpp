@@ -125,13 +125,15 @@ double distance2(const TriangleNode& node, const Vector3& p) {
   return sum;
 }
 
-/// How far along a ray its triangle is; none where it passes by, or is parallel [MT97].
+/// How far along a ray its triangle is; none where it passes by, or is parallel [MT97], as along the faces of solids in
+/// a row, where a determinant that is rounded leaves any number.
 std::optional<double> distance_to(const TriangleCorners& triangle, const Vector3& from, const Vector3& along) {
   const Vector3 ab = triangle[1] - triangle[0];
   const Vector3 ac = triangle[2] - triangle[0];
   const Vector3 p = cross(along, ac);
   const double determinant = dot(ab, p);
-  if (determinant == 0) return std::nullopt;
+  constexpr double parallel = 1e-9;  // sine
+  if (std::abs(determinant) <= parallel * length(ab) * length(ac)) return std::nullopt;
   const Vector3 way = from - triangle[0];
   const double u = dot(way, p) / determinant;
   if (u < 0 || u > 1) return std::nullopt;

@@ -196,6 +196,15 @@ TEST_CASE("solids that cross, touch or hold each other are one, and cavities non
   CHECK(solids(oracle::join(block, block, {20.01, 3, 1})) == 1);   // all but
   CHECK(solids(oracle::join(block, block, {20.1, 3, 1})) == 2);
   CHECK(solids(oracle::join(block, ball, {0, 0, -5})) == 1);  // within
+  const Mesh blocks = oracle::join(block, block, {0, 0, 15});
+  CHECK(solids(blocks) == 2);
+  for (const double up : {1.0, -1.0}) {  // a post through one triangle of each, whose edges meet one block first
+    Mesh post = oracle::box({-1, -1, -4.5}, {1, 1, 4.5});
+    if (up < 0)
+      for (auto& p : post.points) p = {p[0], -p[1], -p[2]};
+    CHECK(solids(oracle::join(blocks, post, {4, -4, 2.5})) == 1);
+    CHECK(solids(oracle::join(blocks, post, {-4, 4, 2.5})) == 1);
+  }
   Mesh plates = oracle::box({-2, -2, -1}, {2, 2, 80});  // a bar through plates, each held by a small ring of contact
   for (int n = 0; n < 20; ++n) plates = oracle::join(plates, oracle::box({-50, -50, 0}, {50, 50, 2}), {0, 0, 4.0 * n});
   CHECK(solids(plates) == 1);
