@@ -4,6 +4,7 @@
 // that is more than three quarters free are surely printed shut.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -60,7 +61,8 @@ struct Unresolved {
     return (loses_much() || loses_rods()) && (!surface || surface->may_lose_walls());
   }
   [[nodiscard]] bool loses_much() const { return lost_share() > 1e-3; }
-  [[nodiscard]] bool loses_rods() const { return lost_walls.far > 2; }
+  /// More than the feather edges of a large part, as where a sheet is cut at a small angle.
+  [[nodiscard]] bool loses_rods() const { return lost_walls.far > std::max(2.0, 1e-6 * whole); }
   /// "walls of 0.9 voxels and gaps of 0.4 voxels", or ridges and grooves where there are neither: what the part's own
   /// surface shows to be thin, and is not known to be lost. Empty: nothing.
   [[nodiscard]] std::string thin_places() const;

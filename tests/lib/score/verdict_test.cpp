@@ -83,6 +83,8 @@ TEST_CASE("slits and hairs are told however small their share is") {
   hair.unresolved.lost_walls.far = hair.unresolved.lost_walls.voxels = 3;
   CHECK(answer(hair) == Answer::not_as_designed);
   CHECK(words(hair).ends_with("; walls or rods too thin for the voxels will be missing"));
+  hair.unresolved.whole = 4e6;  // a millionth of which is more: feather edges
+  CHECK(answer(hair) == Answer::yes);
 }
 
 TEST_CASE("a part without a voxel wholly inside is not judged") {
