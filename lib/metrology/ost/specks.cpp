@@ -131,7 +131,9 @@ std::vector<Tap> taps_around(const RayMask& hidden, int width, int heights, int 
   constexpr std::array<std::array<int, 2>, 4> directions{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   std::vector<Tap> taps;
   float sum = 0;
-  for (const auto& [right, up] : directions) {
+  for (const auto& direction : directions) {
+    const int right = direction[0];
+    const int up = direction[1];
     int n = 1;
     const auto x = [&] { return column + n * right; };
     const auto y = [&] { return height + n * up; };
