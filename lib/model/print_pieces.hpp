@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/part_surface.hpp"
 #include "model/pieces.hpp"
 #include "model/smooth_print.hpp"
 #include "model/torn.hpp"
@@ -28,6 +29,10 @@ struct PrintPieces {
   int solids = 0;               // of the part's own surface; 0: not known
   int specks = 0;               // of these, so small that they may not count
 
+  void set_solids(const PartSurface& surface) {
+    solids = surface.solids;
+    specks = surface.specks;
+  }
   [[nodiscard]] bool loses_walls() const { return broken > 0; }
   [[nodiscard]] bool shuts_gaps() const { return shut > 0; }
   [[nodiscard]] bool has_holes() const { return firm_holes > 0; }
@@ -44,6 +49,7 @@ struct PrintPieces {
   [[nodiscard]] bool is_as_part() const {
     return !is_in_other_pieces() && !loses_walls() && !shuts_gaps() && !has_holes();
   }
+  [[nodiscard]] bool is_surely_as_part() const { return is_as_part() && is_certain(); }
 };
 
 /// Slice by slice, from the lowest up.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/verdict.hpp"
 
+#include <string>
+#include <vector>
+
 #include "base/json.hpp"
 #include "base/text.hpp"
 
@@ -17,36 +20,34 @@ bool holds_threshold(const Verdict& verdict) {
   return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
 }
 
+/// By which factors all doses may fall and rise until a voxel wholly in part or void is on the wrong side.
+struct DoseRoom {
+  double less = 0, more = 0;
+};
+
+std::optional<DoseRoom> dose_room(const Verdict& verdict) {
+  if (!verdict.threshold || !(verdict.whole.max_void > 0)) return std::nullopt;
+  return DoseRoom{1 - *verdict.threshold / verdict.whole.min_part, *verdict.threshold / verdict.whole.max_void - 1};
+}
+
+std::string room_text(const DoseRoom& room) {
+  return "; doses may be " + format_number(100 * room.less, 2) + " % lower or " + format_number(100 * room.more, 2) +
+         " % higher";
+}
+
 std::string in_pieces(int count) { return std::to_string(count) + (count == 1 ? " piece" : " pieces"); }
 
-std::string pieces_text(const model::PrintPieces& pieces) {
-  std::string text;
-  if (pieces.is_in_other_pieces()) {
-    text += "; the print is in " + in_pieces(pieces.print) + ", the part in " +
-            std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part);
-  } else if (!pieces.knows_pieces()) {
-    text += "; the print is in " + in_pieces(pieces.print) +
-            ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) + " or " +
-            std::to_string(pieces.part_at_half);
-  } else if (pieces.may_be_in_other_pieces()) {
-    text += "; the print is in " + in_pieces(pieces.print) + ", but with up to 2 % less or more dose in " +
-            std::to_string(pieces.print_least()) + " to " + std::to_string(pieces.print_most());
+std::vector<std::string> of_pieces(const model::PrintPieces& pieces) {
+  const std::string print = "the print is in " + in_pieces(pieces.print);
+  if (pieces.is_in_other_pieces())
+    return {print + ", the part in " + std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part)};
+  if (!pieces.knows_pieces()) {
+    return {print + ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) +
+            " or " + std::to_string(pieces.part_at_half)};
   }
-  if (pieces.loses_walls()) {
-    text += "; walls are cut or missing: " + std::to_string(pieces.broken) +
-            " voxels that the part fills by half or more do not cure";
-  }
-  if (pieces.shuts_gaps()) {
-    text +=
-        "; gaps are shut: " + std::to_string(pieces.shut) + " voxels that the part fills by less than a quarter cure";
-  }
-  if (pieces.may_have_holes()) {
-    text += std::string("; walls ") + (pieces.has_holes() ? "are" : "may be") +
-            " pierced or gaps bridged: the print has " + std::to_string(pieces.holes) +
-            (pieces.holes == 1 ? " hole" : " holes") + " that the part has not" +
-            (pieces.has_holes() ? "" : ", on which 2 % of the dose decide");
-  }
-  return text;
+  if (!pieces.may_be_in_other_pieces()) return {};
+  return {print + ", but with up to 2 % less or more dose in " + std::to_string(pieces.print_least()) + " to " +
+          std::to_string(pieces.print_most())};
 }
 
 const char* beginning(Answer answer) {
@@ -96,9 +97,39 @@ Answer answer(const Verdict& verdict) {
 void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& pieces) {
   verdict.pieces = pieces;
   const auto& surface = verdict.unresolved.surface;
-  if (!verdict.pieces || !surface) return;
-  verdict.pieces->solids = surface->places.solids;
-  verdict.pieces->specks = surface->places.specks;
+  if (verdict.pieces && surface) verdict.pieces->set_solids(surface->places);
+}
+
+std::string words(const model::PrintPieces& pieces) {
+  std::vector<std::string> all = of_pieces(pieces);
+  if (pieces.loses_walls()) {
+    all.push_back("walls are cut or missing: " + std::to_string(pieces.broken) +
+                  " voxels that the part fills by half or more do not cure");
+  }
+  if (pieces.shuts_gaps()) {
+    all.push_back("gaps are shut: " + std::to_string(pieces.shut) +
+                  " voxels that the part fills by less than a quarter cure");
+  }
+  if (pieces.may_have_holes()) {
+    all.push_back(std::string("walls ") + (pieces.has_holes() ? "are" : "may be") +
+                  " pierced or gaps bridged: the print has " + std::to_string(pieces.holes) +
+                  (pieces.holes == 1 ? " hole" : " holes") + " that the part has not" +
+                  (pieces.has_holes() ? "" : ", on which 2 % of the dose decide"));
+  }
+  return join(all, "; ");
+}
+
+void add_to(Json& figures, const model::PrintPieces& pieces) {
+  figures["part_pieces"] = pieces.part;
+  if (pieces.solids > 0) figures["solids"] = pieces.solids;
+  figures["part_pieces_at_half"] = pieces.part_at_half;
+  figures["print_pieces"] = pieces.print;
+  figures["print_pieces_least"] = pieces.print_least();
+  figures["print_pieces_most"] = pieces.print_most();
+  figures["broken_voxels"] = pieces.broken;
+  figures["shut_voxels"] = pieces.shut;
+  figures["holes"] = pieces.holes;
+  figures["firm_holes"] = pieces.firm_holes;
 }
 
 std::string words(const Verdict& verdict) {
@@ -112,11 +143,12 @@ std::string words(const Verdict& verdict) {
   }
   line += ": process window " + margin(verdict.whole) + " of the largest dose, VER " +
           format_number(verdict.whole.ver, 3) + " (" + std::to_string(voxels(verdict.whole)) + " voxels)";
+  if (const auto room = dose_room(verdict); room && judged > Answer::no) line += room_text(*room);
   if (cut > 0) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);
   }
-  if (judged > Answer::no && verdict.pieces) line += pieces_text(*verdict.pieces);
+  if (judged > Answer::no && verdict.pieces && !words(*verdict.pieces).empty()) line += "; " + words(*verdict.pieces);
   line += unjudged(verdict.unresolved);
   if (verdict.seconds) line += "; duration " + format_number(*verdict.seconds, 4) + " s";
   return line;
@@ -129,17 +161,8 @@ void add_to(Json& figures, const Verdict& verdict) {
                              {"ver", verdict.with_cut.ver},
                              {"pw", verdict.with_cut.pw},
                              {"iou", verdict.with_cut.iou}};
-  if (!verdict.pieces) return;
-  figures["part_pieces"] = verdict.pieces->part;
-  if (verdict.pieces->solids > 0) figures["solids"] = verdict.pieces->solids;
-  figures["part_pieces_at_half"] = verdict.pieces->part_at_half;
-  figures["print_pieces"] = verdict.pieces->print;
-  figures["print_pieces_least"] = verdict.pieces->print_least();
-  figures["print_pieces_most"] = verdict.pieces->print_most();
-  figures["broken_voxels"] = verdict.pieces->broken;
-  figures["shut_voxels"] = verdict.pieces->shut;
-  figures["holes"] = verdict.pieces->holes;
-  figures["firm_holes"] = verdict.pieces->firm_holes;
+  if (const auto room = dose_room(verdict)) figures["doses_may_be"] = {{"lower", room->less}, {"higher", room->more}};
+  if (verdict.pieces) add_to(figures, *verdict.pieces);
 }
 
 }  // namespace vam::score

@@ -36,13 +36,20 @@ enum class Answer {
 /// The pieces of part and print, of which the part's own surface may tell the number.
 void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& pieces);
 
+/// What the print has otherwise than the part: pieces, walls, gaps and holes. Empty: nothing, nor may it have.
+[[nodiscard]] std::string words(const model::PrintPieces& pieces);
+
+/// The numbers of both.
+void add_to(Json& figures, const model::PrintPieces& pieces);
+
 /// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
 /// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will not
 /// print", "will not print as designed", "may print" or "will print".
 [[nodiscard]] std::string words(const Verdict& verdict);
 
-/// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), and the pieces, where
-/// they are counted.
+/// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), where the threshold is
+/// given by how much the doses may be lower and higher (relative; negative where it does not print), and the pieces,
+/// where they are counted.
 void add_to(Json& figures, const Verdict& verdict);
 
 }  // namespace vam::score

@@ -139,6 +139,31 @@ holds 'the strut is the thinnest place' "($(json strut.json thinnest_place_mm) -
 ok 'the table says where' grep -Eq '^  thinnest place   [234][0-9.]* voxels \(0.[12][0-9]* mm\) at x, y, z = (0.9|1|1.0)[0-9]*, -(1.9|2|2.0)[0-9]*, -?[0-9.]+ mm' strut
 is 'and of a plain block nothing' "$(box 8 8 4 >plain.off; vam-plan plain.off --no-preview | grep -c 'thinnest place')" 0
 
+# An hourglass, two cones that share a neck: none of its faces is near a parallel one, and on coarse voxels it holds.
+hourglass() {  # hourglass RADIUS: of the neck, between ends of 1.5 mm
+  awk -v neck="$1" 'BEGIN {
+    n = 32; print "OFF\n" 3 * n + 2 " " 6 * n " 0"
+    for (ring = -1; ring <= 1; ring++) for (i = 0; i < n; i++) {
+      a = 2 * 3.14159265 * i / n; r = ring ? 1.5 : neck; print 2.5 * ring, r * cos(a), r * sin(a) }
+    print "-2.5 0 0\n2.5 0 0"
+    for (i = 0; i < n; i++) { j = (i + 1) % n
+      for (b = 0; b <= n; b += n) print "3 " b + i " " b + j " " b + n + i "\n3 " b + j " " b + n + j " " b + n + i
+      print "3 " 3 * n " " j " " i "\n3 " 3 * n + 1 " " 2 * n + i " " 2 * n + j } }'
+}
+coarse='--set projector.columns=96 --set projector.rows=96 --set projector.pixel_mm=0.2 --set projector.axis_column=47.5 --set projector.axis_row=47.5'
+hourglass 0.16 >neck.off
+ok 'an hourglass' sh -c "vam-plan neck.off $coarse --report neck.json >neck"
+ok 'may be cut' grep -q '^will it print  *perhaps: process window +.*on voxels of 1 pixel)' neck
+ok 'as the estimate shows' grep -q '^  pieces  *the print is in' neck
+holds 'with the numbers' "$(json neck.json solids) == 1 && $(json neck.json print_pieces_most) > 1"
+hourglass 0.4 >waist.off
+ok 'a wider one' sh -c "vam-plan waist.off $coarse --report waist.json >waist"
+is 'prints' "$(sed -n 's/^will it print  *\([a-z]*\).*/\1/p' waist) $(grep -c '^  pieces' waist)" 'yes 0'
+is 'in one piece' "$(json waist.json solids) $(json waist.json print_pieces_least) $(json waist.json print_pieces_most)" '1 1 1'
+vam-slice neck.off --voxel 0.2 -o neck.vdb
+ok 'as vam-optimize --preview' sh -c "vam-optimize --preview $coarse neck.vdb --report seen.json >seen"
+is 'is not sure of it' "$(json seen.json prints) $(grep -c '^verdict .*in the estimate the print is in' seen)" 'unsure 1'
+
 fails 66 'none.stl' vam-plan none.stl
 echo hello >text.stl
 fails 65 'text.stl' vam-plan text.stl

@@ -19,6 +19,7 @@
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "score/exposure_plan.hpp"
+#include "score/verdict.hpp"
 #include "unresolved.hpp"
 #include "vam-optimize/coarse_start.hpp"
 #include "vam-optimize/coarser.hpp"
@@ -92,6 +93,7 @@ SolvedLevel solved(Level& level, int proof, std::optional<CoarseStart> start) {
   task.limits.iterations = std::min(task.limits.iterations, most_iterations);
   task.limits.at_least = std::min(task.limits.iterations, least_iterations);
   task.certify = proof;
+  task.count_pieces = true;
   if (!start) start = coarse_start(level.in(), scene, level.options);
   if (start) continue_from(std::move(*start), task, level.options);
   return solved(task, scene, level.options);
@@ -158,10 +160,15 @@ Answer unsure(const std::vector<std::string>& reasons) {
 }
 
 /// `target`: of its own voxels.
-Answer answer_of(const Level& level, const model::Unresolved& target, const model::DoseMetrics& doses, double least) {
+Answer answer_of(const Level& level, const model::Unresolved& target, const optimize::VolumeOutcome& outcome,
+                 double least) {
+  const model::DoseMetrics& doses = outcome.metrics;
   if (least >= 1) return {"no", "will not print, by any projections", {}};
   if (!(doses.pw > 0)) return {"no", "will not print", {}};
   std::vector<std::string> doubts = lost(target);
+  auto pieces = outcome.pieces;
+  if (pieces && target.surface) pieces->set_solids(target.surface->places);
+  if (pieces && !pieces->is_surely_as_part()) doubts.push_back("in the estimate " + score::words(*pieces));
   if (level.pixels > 1 && level.unresolved.is_much()) doubts.push_back(unseen(level));
   if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");
   return doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
@@ -208,7 +215,7 @@ Seen see(Level level, const model::Unresolved& target) {
   optimize::require_light(outcome, io::input_name(level.options.input),
                           level.options.surface_margin_mm / level.in().grid().voxel_mm);
   const double least = outcome.certificate ? outcome.certificate->least : below.least;
-  Seen seen{answer_of(level, target, outcome.metrics, least), outcome.metrics, least};
+  Seen seen{answer_of(level, target, outcome, least), outcome.metrics, least};
   seen.place = place_of(outcome, level.scene);
   seen.plan = exposure_of(outcome.metrics, outcome.peak_intensity, level.printer, {}, level.options);
   seen.voxel_mm = level.scene.grid.voxel_mm;

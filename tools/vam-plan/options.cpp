@@ -25,10 +25,12 @@ cli::Manual manual() {
            " million of them, and smaller, down to a pixel, where walls or gaps are too thin for them and smaller ones "
            "are at most " +
            format_number(most_finer) +
-           " million. What is too thin even then is stated with its volume and heights as not judged; if it is 2 % of "
+           " million, or where the print of the estimate is in other pieces than the part. What is too thin even then "
+           "is stated with its volume and heights as not judged; if it is 2 % of "
            "the part or more, or if the printer's pixels lose walls or gaps or leave them in doubt, as vam-slice "
-           "tells, or where a wall is below 1.5 pixels, or that of a mesh below 2.3, where it may be pierced, the "
-           "answer is perhaps. The deviations, one at a time and "
+           "tells, or where a wall is below 1.5 pixels, or that of a mesh below 2.3, where it may be pierced, or if "
+           "the print of the estimate is in other pieces than the part, with walls that are cut or gaps that are shut, "
+           "as vam-score counts them, the answer is perhaps. The deviations, one at a time and "
            "either "
            "way, are " +
            deviations +

@@ -195,12 +195,12 @@ void add_walls(Plan& plan, const solid::Part& part) {
   plan.wall_mm = walls.thinnest_mm;
   plan.in_doubt = doubts(unresolved);
   if (has_walls_below_a_voxel(fine.content.unresolved, walls)) plan.wall_voxels.reset();
+  if (unresolved.surface) plan.surface = unresolved.surface->places;
   if (!plan.wall_voxels) return;
   *plan.wall_voxels *= plan.wall_resolution;
   plan.thinnest_place = walls.thinnest_place;
   if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
-  if (!unresolved.surface) return;
-  const model::ThinPlaces& thin = unresolved.surface->places.walls;
+  const model::ThinPlaces& thin = plan.surface.walls;
   if (!thin.are_below(model::lost_voxels, plan.grid.voxel_mm)) return;
   const solid::Walls::Place place = place_of(thin, plan);
   if (!plan.thinnest_place || place.voxels < plan.thinnest_place->voxels) plan.thinnest_place = place;
@@ -248,19 +248,28 @@ optimize::Preview preview_of(Coarse coarse, int coarseness) {
   return optimize::preview(task);
 }
 
-/// On voxels that are larger for large parts, and smaller for those of thin walls or gaps.
-void add_preview(Plan& plan, const solid::Part& part, const model::Printer& printer) {
-  int& by = plan.coarseness = usual_coarseness;
-  while (million_voxels(plan.grid, by) > most_estimated) by *= 2;
-  Coarse judged = coarse(part, printer, by);
-  while (!judged.is_all_judged() && by > 1 && million_voxels(plan.grid, by / 2) <= most_finer)
-    judged = coarse(part, printer, by /= 2);
+void estimate(Plan& plan, Coarse judged) {
   const model::Grid& grid = judged.part.volume.grid;
   plan.unjudged = judged.unresolved();
   plan.all_judged = judged.is_all_judged();
   plan.unjudged_low_mm = grid.z_mm(judged.unresolved().first - 0.5) / plan.stretch_z;
   plan.unjudged_high_mm = grid.z_mm(judged.unresolved().end - 0.5) / plan.stretch_z;
-  if (judged.is_judged()) plan.preview = preview_of(std::move(judged), by);
+  if (!judged.is_judged()) return;
+  plan.preview = preview_of(std::move(judged), plan.coarseness);
+  plan.pieces = plan.preview->outcome.pieces;
+  if (plan.pieces) plan.pieces->set_solids(plan.surface);
+}
+
+/// On voxels that are larger for large parts, and smaller for those of thin walls or gaps, or that the estimate tears.
+void add_preview(Plan& plan, const solid::Part& part, const model::Printer& printer) {
+  int& by = plan.coarseness = usual_coarseness;
+  while (million_voxels(plan.grid, by) > most_estimated) by *= 2;
+  const auto can_be_finer = [&] { return by > 1 && million_voxels(plan.grid, by / 2) <= most_finer; };
+  Coarse judged = coarse(part, printer, by);
+  while (!judged.is_all_judged() && can_be_finer()) judged = coarse(part, printer, by /= 2);
+  estimate(plan, std::move(judged));
+  while (plan.pieces && !plan.pieces->is_surely_as_part() && can_be_finer())
+    estimate(plan, coarse(part, printer, by /= 2));
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include "base/json_fwd.hpp"
 #include "model/cavities.hpp"
 #include "model/grid.hpp"
+#include "model/part_surface.hpp"
+#include "model/print_pieces.hpp"
 #include "model/printer.hpp"
 #include "model/unresolved.hpp"
 #include "optimize/run/preview.hpp"
@@ -47,12 +49,14 @@ struct Plan {
   bool in_doubt = false;       // the printer's voxels lose walls or gaps, or leave open whether they print
   bool sharp_edges = false;    // thinner than what prints
   int wall_resolution = 1;     // in voxels
+  model::PartSurface surface;  // none known: no places, no solids
   int coarseness = 0;          // pixels per voxel of the estimate; 0: none is wanted
   model::Unresolved unjudged;  // walls and gaps too thin for the voxels of the estimate
   bool all_judged = true;      // they are hardly more than rounded edges
   double unjudged_low_mm = 0;  // heights in the print of most of them
   double unjudged_high_mm = 0;
   std::optional<optimize::Preview> preview;  // none: none of its voxels is wholly inside the part
+  std::optional<model::PrintPieces> pieces;  // of part and print on its voxels
   bool resin_known = false;
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
 };

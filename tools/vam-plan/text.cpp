@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/json.hpp"
+#include "score/verdict.hpp"
 #include "solid/voxel/placement.hpp"
 #include "solid/voxel/trapped_resin.hpp"
 #include "solid/voxel/wall.hpp"
@@ -58,7 +59,8 @@ std::string unjudged_share(const model::Unresolved& unjudged) {
 /// Whether the estimate speaks of the part as it is.
 bool is_sure(const Plan& plan) {
   const auto is_thin = [](double voxels) { return voxels < model::thin_voxels; };
-  return plan.all_judged && !plan.in_doubt && !(plan.wall_voxels && is_thin(*plan.wall_voxels)) &&
+  const bool is_whole = !plan.pieces || plan.pieces->is_surely_as_part();
+  return plan.all_judged && is_whole && !plan.in_doubt && !(plan.wall_voxels && is_thin(*plan.wall_voxels)) &&
          !(plan.thinnest_place && is_thin(plan.thinnest_place->voxels));
 }
 
@@ -80,6 +82,8 @@ std::string print_rows(const Plan& plan) {
                                     (plan.coarseness > 1 ? "vam-slice states which the printer's voxels resolve"
                                                          : "smaller pixels, or thicker walls, resolve them"));
   }
+  const std::string torn = plan.pieces ? score::words(*plan.pieces) : "";
+  if (!torn.empty()) text += row("  pieces", torn);
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
   if (!plan.exposure) {
@@ -178,6 +182,7 @@ Json report(const Plan& plan) {
   if (plan.preview) {
     json["ver"] = plan.preview->trials.nominal.figures.ver;
     json["pw"] = window(plan.preview->trials.nominal);
+    if (plan.pieces) score::add_to(json, *plan.pieces);
     for (const auto& single : plan.preview->trials.singles) {
       const std::string name(model::tolerance_table[single.tolerance].name);
       json["pw_deviating"][name] = worst_window(single);

@@ -52,6 +52,7 @@ Preview preview(const PreviewTask& wanted) {
   task.part = light::moved(wanted.part, margin);
   task.limits.iterations = wanted.iterations;
   task.limits.patience = 0;
+  task.count_pieces = true;
   task.limit.of_even = usual_of_even;
   const double seconds = model::seconds_of(wanted.printer.stage, wanted.printer.stage.turns);
   const model::Resin& resin = wanted.printer.resin;
