@@ -21,7 +21,7 @@ std::vector<const Option*> own_options(const Declaration& tool) {
   return options;
 }
 
-std::vector<const Option*> options_of(const Declaration& tool) {
+std::vector<const Option*> completed_options(const Declaration& tool) {
   std::vector<const Option*> options = own_options(tool);
   for (const Option& option : options_of_all()) options.push_back(&option);
   return options;
@@ -38,7 +38,7 @@ std::string bash(const Declaration& tool) {
   std::string function = "_" + tool.manual.name;
   std::string flags = join(about_flags(), " ");
   std::string cases;
-  for (const Option* option : options_of(tool)) {
+  for (const Option* option : completed_options(tool)) {
     flags += " " + long_flag(*option);
     if (!option->choices.empty()) {
       cases += "    " + long_flag(*option) + ") COMPREPLY=($(compgen -W '" + join(option->choices, " ") +
@@ -55,7 +55,7 @@ std::string bash(const Declaration& tool) {
 
 std::string zsh(const Declaration& tool) {
   std::string out = "#compdef " + tool.manual.name + "\n_arguments -s \\\n";
-  for (const Option* option : options_of(tool)) {
+  for (const Option* option : completed_options(tool)) {
     std::string help;
     for (const char c : option->help)
       help += (c == '[' || c == ']' || c == ':') ? std::string("\\") + c : std::string(1, c);
@@ -75,7 +75,7 @@ std::string zsh(const Declaration& tool) {
 std::string fish(const Declaration& tool) {
   const std::string begin = "complete -c " + tool.manual.name;
   std::string out;
-  for (const Option* option : options_of(tool)) {
+  for (const Option* option : completed_options(tool)) {
     out += begin + " -l " + long_flag(*option).substr(2) +
            (option->value_name.empty() || !option->left_out.empty() ? "" : " -r");
     if (!option->choices.empty()) out += " -f -a " + literal(join(option->choices, " "));

@@ -14,7 +14,7 @@ namespace vam::cli {
 
 namespace {
 
-constexpr int width = 78;
+constexpr int text_width = 78;
 
 // UTF-8 to roff's ASCII spelling; backslashes literal.
 std::string escape(const std::string& text) {
@@ -70,7 +70,7 @@ std::string paragraph(const std::string& text) {
     const char mark = closing ? words[i][words[i].size() - 2] : last;
     const bool ends = (mark == '.' && !abbreviated(words[i])) || mark == '?' || mark == '!';
     if (ends || i + 1 == words.size()) {
-      out += guarded(wrap(sentence, width, 0));
+      out += guarded(wrap(sentence, text_width, 0));
       sentence.clear();
     }
   }
@@ -142,7 +142,7 @@ std::string synopsis(const Declaration& tool) {
 // What makes two options the same for a reader.
 std::string printed(const Option& option) { return flag_words(option) + "\n" + join(details(option), "\n"); }
 
-std::vector<Option> options_of(const Declaration& form) {
+std::vector<Option> grouped_options(const Declaration& form) {
   std::vector<Option> options;
   for (const auto& group : form.groups) options.insert(options.end(), group.options.begin(), group.options.end());
   return options;
@@ -152,12 +152,12 @@ std::vector<Option> options_of(const Declaration& form) {
 Group common_options(const Declaration& tool) {
   std::map<std::string, int> uses;
   for (const auto& nested : tool.subcommands) {
-    for (const auto& option : options_of(nested)) ++uses[printed(option)];
+    for (const auto& option : grouped_options(nested)) ++uses[printed(option)];
   }
-  for (const auto& option : options_of(tool)) uses.erase(printed(option));
+  for (const auto& option : grouped_options(tool)) uses.erase(printed(option));
   Group common{"Options of several commands", {}};
   for (const auto& nested : tool.subcommands) {
-    for (const auto& option : options_of(nested)) {
+    for (const auto& option : grouped_options(nested)) {
       if (uses[printed(option)] < 2) continue;
       common.options.push_back(option);
       uses[printed(option)] = 0;
@@ -198,8 +198,8 @@ std::string commands(const Declaration& tool) {
   Declaration shared;
   shared.groups = {common_options(tool)};
   std::set<std::string> above;
-  for (const auto& option : options_of(tool)) above.insert(printed(option));
-  for (const auto& option : options_of(shared)) above.insert(printed(option));
+  for (const auto& option : grouped_options(tool)) above.insert(printed(option));
+  for (const auto& option : grouped_options(shared)) above.insert(printed(option));
   if (!shared.groups[0].options.empty()) out += option_list(shared);
   for (const auto& nested : tool.subcommands) {
     out += ".Ss " + tool.manual.name + " " + nested.manual.name + "\n" + paragraph(sentence(nested.manual.summary));

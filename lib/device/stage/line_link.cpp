@@ -7,7 +7,7 @@
 namespace vam::device {
 
 namespace {
-constexpr std::size_t longest_line = 65536;
+constexpr std::size_t most_buffered = 65536;
 }
 
 void LineLink::drain() {
@@ -27,7 +27,7 @@ std::string LineLink::poll_line(double wait_s) {
     }
     const std::string bytes = port_->read(wait_s);
     if (bytes.empty()) return "";
-    if (buffer_.size() + bytes.size() > longest_line) throw malformed("?", buffer_);
+    if (buffer_.size() + bytes.size() > most_buffered) throw malformed("?", buffer_);
     buffer_ += bytes;
   }
 }

@@ -14,8 +14,8 @@ namespace vam::io::arrays {
 
 namespace {
 
-constexpr std::size_t piece = 1 << 16;    // values converted at a time
-constexpr std::size_t side_by_side = 16;  // images gathered at a time, as their values share cache lines
+constexpr std::size_t values_a_pass = 1 << 16;  // values converted at a time
+constexpr std::size_t side_by_side = 16;        // images gathered at a time, as their values share cache lines
 
 // Of the array's own axes, in values.
 std::array<std::size_t, 3> strides(const Head& head) {
@@ -37,9 +37,9 @@ Parser::Parser(const Head& head, Bytes values, std::array<int, 3> axes) : head_(
 
 void Parser::take_floats(float* to, std::size_t count) {
   const auto bytes = static_cast<std::size_t>(head_.bytes);
-  raw_.resize(piece * bytes);
-  for (std::size_t done = 0; done < count; done += piece) {
-    const std::size_t step = std::min(piece, count - done);
+  raw_.resize(values_a_pass * bytes);
+  for (std::size_t done = 0; done < count; done += values_a_pass) {
+    const std::size_t step = std::min(values_a_pass, count - done);
     bytes_.take(raw_.data(), step * bytes);
     to_floats(head_, raw_.data(), step, to + done);
   }

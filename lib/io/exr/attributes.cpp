@@ -58,7 +58,7 @@ std::optional<double> number(const Imf::Header& header, const char* name) {
   return value;
 }
 
-std::string join(const std::vector<std::string>& lines) {
+std::string joined_lines(const std::vector<std::string>& lines) {
   std::string all;
   for (const std::string& line : lines) all += (all.empty() ? "" : "\n") + line;
   return all;
@@ -144,7 +144,7 @@ void set_common(Imf::Header& header, const StackInfo& info) {
   set_number(header, "vam:angle_start_deg", info.angle_start_deg);
   set_number(header, "vam:angle_step_deg", info.angle_step_deg);
   set_text(header, "vam:units", info.units);
-  set_text(header, "vam:history", join(info.history));
+  set_text(header, "vam:history", joined_lines(info.history));
   if (!info.piece.whole()) set_text(header, piece_name, model::piece_text(info.piece));
 }
 

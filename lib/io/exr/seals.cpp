@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* follows = "follows";
 
-std::string text(const Imf::Header& header, const char* name) {
+std::string stated(const Imf::Header& header, const char* name) {
   const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
   return found != nullptr ? found->value() : "";
 }
@@ -68,8 +68,8 @@ void set_seals(Imf::Header& header, const Digest& facts, const std::optional<Dig
 }
 
 std::optional<PartSeals> seals_of(const Imf::Header& header, const std::string& part) {
-  const std::string facts = text(header, facts_seal_key);
-  const std::string values = text(header, values_seal_key);
+  const std::string facts = stated(header, facts_seal_key);
+  const std::string values = stated(header, values_seal_key);
   if (facts.empty() && values.empty()) return std::nullopt;
   PartSeals seals;
   Digest of_values;

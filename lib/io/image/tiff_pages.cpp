@@ -15,15 +15,15 @@ namespace vam::io {
 namespace {
 
 /// What all pages must have in common.
-struct Layout {
+struct PageLayout {
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
   std::uint16_t bits = 0;
   std::uint16_t format = 0;
-  bool operator==(const Layout&) const = default;
+  bool operator==(const PageLayout&) const = default;
 };
 
-Layout layout_of(TIFF* tiff) {
+PageLayout layout_of(TIFF* tiff) {
   return {tiff_field<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH), tiff_field<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH),
           tiff_field(tiff, TIFFTAG_BITSPERSAMPLE), tiff_field(tiff, TIFFTAG_SAMPLEFORMAT)};
 }
@@ -95,7 +95,7 @@ struct TiffPages::State {
   TiffMemory file;
   std::string name;
   Tiff tiff = open_tiff(file, "rm");
-  Layout layout;
+  PageLayout layout;
   std::uint32_t count = 0;
   std::uint32_t page = 0;
   std::uint32_t line = 0;

@@ -16,14 +16,14 @@ namespace vam::io {
 namespace {
 
 // How the brightness of a pixel is stored.
-struct Layout {
+struct PixelLayout {
   int bits = 0;          // of a frame as read; 0: not a format that is known
   int stored_bits = 0;   // of a value in the file
   bool limited = false;  // black is 16 and white 235 of 255, unless the video states the full range
   bool rgb = false;
 };
 
-Layout layout_of(int pixel_format) {
+PixelLayout layout_of(int pixel_format) {
   switch (pixel_format) {
     case AV_PIX_FMT_GRAY8:
     case AV_PIX_FMT_YUVJ420P:
@@ -83,7 +83,7 @@ SliceState judged_slices(const std::uint8_t* bytes, std::size_t size, bool check
 struct VideoReader::State {
   std::string path;
   VideoFormat format;
-  Layout layout;
+  PixelLayout layout;
   AVFormatContext* container = nullptr;
   int stream = -1;
   av::Codec codec;

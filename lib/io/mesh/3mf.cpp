@@ -16,7 +16,6 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::uint64_t max_triangles = std::uint64_t{1} << 25;
 constexpr std::uint64_t max_points = std::uint64_t{1} << 26;
 constexpr std::uint64_t point_bytes = 24;
 constexpr std::uint64_t triangle_bytes = 68;                    // as a face of a soup and as a triangle

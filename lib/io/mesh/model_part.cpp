@@ -13,7 +13,6 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::size_t max_triangles = std::size_t{1} << 25;
 constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 
 // Extensions without which the shape of an object is still what its triangles say. Beam lattices are refused object by

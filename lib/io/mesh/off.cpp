@@ -12,7 +12,7 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::string_view blanks = " \t\r";
+constexpr std::string_view blank_letters = " \t\r";
 
 class NumberLines {
  public:
@@ -35,7 +35,7 @@ class NumberLines {
   bool take(std::string_view line) {
     line = line.substr(0, line.find('#'));
     for (;;) {
-      line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+      line.remove_prefix(std::min(line.find_first_not_of(blank_letters), line.size()));
       if (line.empty()) return true;
       if (line.front() == '+') line.remove_prefix(1);
       double number = 0;
@@ -72,7 +72,7 @@ bool take_face(const std::vector<double>& line, std::vector<int>& face) {
 PolygonSoup parse_off(const std::string& bytes) {
   std::string_view text(bytes);
   text.remove_prefix(std::min(text.find("OFF") + 3, text.size()));  // its magic word, by which it was recognised
-  const std::size_t word = text.find_first_not_of(blanks);
+  const std::size_t word = text.find_first_not_of(blank_letters);
   if (word != std::string_view::npos && text.substr(word).starts_with("BINARY")) {
     throw MeshProblem{"is a binary OFF file; save it as text"};
   }

@@ -28,7 +28,7 @@ constexpr double most_unwatched_s = 5;
 constexpr double same_deg = 1e-3;  // vam-print states four digits
 constexpr double early_deg = 1;    // of the first image, at an angle that is predicted
 constexpr double most_deg = 360 * FlipRules::most_turns;
-constexpr double most_bytes = 1e15;
+constexpr double most_sealed_bytes = 1e15;
 constexpr const char* changed = "; the log was changed; restore it";
 
 std::string beside(const std::string& log, const char* name) {
@@ -109,7 +109,7 @@ void FlipProof::require_armed(const Json& sinogram) const {
 }
 
 void FlipProof::take_seal(const Json& event, const std::string& place) {
-  const double bytes = number_of(event, "bytes", static_cast<double>(sealed_), most_bytes, place);
+  const double bytes = number_of(event, "bytes", static_cast<double>(sealed_), most_sealed_bytes, place);
   Seal seal{static_cast<std::uint64_t>(bytes), text_at(event, "sha256"), text_at(event, "utc")};
   if (!is_hash(seal.sha256)) throw Error{Fault::data, place + ": sha256 is not 64 hexadecimal digits" + changed};
   sealed_ = seal.bytes;

@@ -30,7 +30,7 @@ namespace {
 
 using model::Printer;
 
-constexpr std::size_t most_bytes = std::size_t{1} << 18;
+constexpr std::size_t most_file_bytes = std::size_t{1} << 18;
 constexpr std::ptrdiff_t most_levels = 4096;
 
 const PrinterField* find_field(std::string_view section, std::string_view given) {
@@ -255,13 +255,14 @@ std::string slurp(const std::string& file) {
   if (file == "-") throw Error{Fault::usage, "-: printer settings are not read from standard input; name a file"};
   if (std::filesystem::is_directory(file)) throw Error{Fault::no_input, file + ": is a folder, not a printer file"};
   std::ifstream stream(file, std::ios::binary);
-  std::string text(most_bytes + 1, '\0');
+  std::string text(most_file_bytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(stream.gcount());
   if (!stream.is_open() || stream.bad()) {
     throw system_error(Fault::no_input, file + ": cannot open", errno);
   }
-  if (text.size() > most_bytes) throw Error{Fault::data, file + ": is longer than 256 KiB; it is not a printer file"};
+  if (text.size() > most_file_bytes)
+    throw Error{Fault::data, file + ": is longer than 256 KiB; it is not a printer file"};
   return text;
 }
 

@@ -30,7 +30,7 @@ constexpr std::size_t digits = 64;
 std::string path_in(const std::string& folder, const std::string& name) { return (fs::path(folder) / name).string(); }
 
 // "HASH  ./NAME", "HASH *NAME": the name; empty where it is none of a file in the folder.
-std::string name_of(const std::string& line) {
+std::string summed_file(const std::string& line) {
   if (line.size() < digits + 3 || line.find_first_not_of("0123456789abcdef") != digits || line[digits] != ' ')
     return "";
   std::string name = line.substr(digits + 2);
@@ -132,7 +132,7 @@ RunSums read_run_sums(const std::string& folder) {
   if (!lines.empty() && lines.back().empty()) lines.pop_back();
   RunSums sums;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string name = name_of(lines[i]);
+    const std::string name = summed_file(lines[i]);
     if (!name.empty() && sums.try_emplace(name, lines[i].substr(0, digits)).second) continue;
     throw Error{Fault::data, path + ": line " + std::to_string(i + 1) +
                                  (name.empty() ? ": is not a hash and the name of a file in the folder"

@@ -22,7 +22,7 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr std::size_t read_bytes = std::size_t{1} << 20;
 
 // /dev/zero, full, random and urandom, by the numbers that Linux gives them for good.
 bool never_ends(const struct stat& about) {
@@ -56,7 +56,7 @@ InputFile::InputFile(const std::string& path, Content content) : name_(input_nam
   (void)fcntl(descriptor_, F_SETPIPE_SZ, pipe_bytes);  // fails on what is no pipe, and then does not matter
   (void)posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);
   if (S_ISREG(about.st_mode)) size_ = static_cast<std::uint64_t>(about.st_size);
-  buffer_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);
+  buffer_ = std::make_unique_for_overwrite<char[]>(read_bytes);
 }
 
 InputFile::~InputFile() {
@@ -74,7 +74,7 @@ std::size_t InputFile::receive(char* to, std::size_t size) {
 std::span<const char> InputFile::peek() {
   if (begin_ == end_) {
     begin_ = 0;
-    end_ = receive(buffer_.get(), buffer_bytes);
+    end_ = receive(buffer_.get(), read_bytes);
   }
   return {buffer_.get() + begin_, end_ - begin_};
 }
@@ -89,7 +89,7 @@ std::size_t InputFile::read(void* to, std::size_t size) {
   std::size_t done = 0;
   while (done < size) {
     std::size_t step = 0;
-    if (begin_ == end_ && size - done >= buffer_bytes) {  // no detour through the buffer
+    if (begin_ == end_ && size - done >= read_bytes) {  // no detour through the buffer
       step = receive(out + done, size - done);
       position_ += step;
     } else {

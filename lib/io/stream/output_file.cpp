@@ -20,8 +20,8 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::size_t buffer_bytes = std::size_t{1}
-                                     << 18;  // small writes are gathered up to here, larger ones go through
+constexpr std::size_t gathered_bytes = std::size_t{1}
+                                       << 18;  // small writes are gathered up to here, larger ones go through
 
 [[noreturn]] void fail(Fault fault, const std::string& name, const std::string& what, int problem) {
   throw system_error(fault, name + ": " + what, problem);
@@ -75,7 +75,7 @@ OutputFile::OutputFile(const std::string& path, Content content, Temporary tempo
     }
     (void)fcntl(descriptor_, F_SETPIPE_SZ, pipe_bytes);  // fails on what is no pipe, and then does not matter
   }
-  buffer_.reserve(buffer_bytes);
+  buffer_.reserve(gathered_bytes);
 }
 
 OutputFile::~OutputFile() { discard(); }
@@ -96,8 +96,8 @@ void OutputFile::require_space(double bytes) const {
 
 void OutputFile::write(const void* bytes, std::size_t size) {
   const char* from = static_cast<const char*>(bytes);
-  if (buffer_.size() + size > buffer_bytes) flush();
-  if (size >= buffer_bytes) {
+  if (buffer_.size() + size > gathered_bytes) flush();
+  if (size >= gathered_bytes) {
     send(from, size);
   } else {
     buffer_.append(from, size);

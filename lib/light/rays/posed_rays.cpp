@@ -14,7 +14,7 @@ namespace vam::light {
 
 namespace {
 
-constexpr float turn_rad = 2 * std::numbers::pi_v<float>;
+constexpr float float_turn_rad = 2 * std::numbers::pi_v<float>;
 using NodeValues = std::array<float, DisplacedVial::floats>;
 
 /// Between four points of the table.
@@ -71,7 +71,7 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
   const auto y = static_cast<float>(y_mm * here.cosine - x_mm * here.sine + here.y_mm);
   const float r = std::sqrt(x * x + y * y);
   if (r >= static_cast<float>(table.edge_mm)) return 0;
-  const float turns = static_cast<float>(sense_) * std::atan2(y, x) / turn_rad;
+  const float turns = static_cast<float>(sense_) * std::atan2(y, x) / float_turn_rad;
   const float turn = turns < 0 ? turns + 1 : turns;
   const float place = turn * static_cast<float>(table.directions);
   const int direction = std::min(static_cast<int>(place), table.directions - 1);

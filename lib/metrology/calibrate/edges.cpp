@@ -20,10 +20,10 @@ enum : std::size_t {
   ground,
   low_share,
   high_share = low_share + edge_powers,
-  count = high_share + edge_powers
+  unknowns = high_share + edge_powers
 };
-constexpr std::size_t lights = count - ground;
-static_assert(least_readings == 2 * count);
+constexpr std::size_t lights = unknowns - ground;
+static_assert(least_readings == 2 * unknowns);
 
 class BandModel {
  public:
@@ -159,7 +159,7 @@ BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, con
   const Values parts = model.best_parts(model.light(start), false);
   start.insert(start.end(), parts.begin(), parts.end());
   const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
-  step.resize(count, 1e-3 * (*high - *low));
+  step.resize(unknowns, 1e-3 * (*high - *low));
   const auto fit = stats::fit_curve(residuals, start, step, subject);
   const double furthest = (1 + edge_window) * radius;  // where readings are
   if (fit.value[centre] - fit.value[edge] < middle - furthest ||

@@ -74,7 +74,7 @@ struct Fit {
   Motion variance = Motion::Zero();  // by parts of the surface, whose errors are independent
 };
 
-using Normal = Eigen::Matrix<double, components, components>;
+using NormalMatrix = Eigen::Matrix<double, components, components>;
 
 /// Edges that the camera or the resin has rounded lie far out: weights of [BT74], from the median of what is left.
 std::vector<double> weights_of(const std::vector<solid::SurfaceSample>& points, const std::vector<float>& distances,
@@ -95,14 +95,14 @@ Fit fit(const std::vector<solid::SurfaceSample>& points, const std::vector<float
   constexpr int rounds = 8;
   for (int round = 0; round < rounds; ++round) {
     const auto weights = weights_of(points, distances, middle, result.motion);
-    Normal normal = Normal::Zero();
+    NormalMatrix normal = NormalMatrix::Zero();
     Motion right = Motion::Zero();
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Motion row = row_of(points[i], middle);
       normal += weights[i] * row * row.transpose();
       right -= weights[i] * static_cast<double>(distances[i]) * row;
     }
-    const Eigen::CompleteOrthogonalDecomposition<Normal> solver(normal);
+    const Eigen::CompleteOrthogonalDecomposition<NormalMatrix> solver(normal);
     result.motion = solver.solve(right);
     std::array<Motion, parts> errors;
     errors.fill(Motion::Zero());

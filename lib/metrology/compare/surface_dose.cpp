@@ -18,7 +18,7 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr int samples = 40000;
+constexpr int surface_samples = 40000;
 constexpr std::size_t octants = 8;  // of the bounding box: what is wrong with one side differs between them
 constexpr double most_beyond = 0.1;
 
@@ -52,7 +52,7 @@ double slope_at(const model::Volume& dose, const Vector3& at, const Vector3& nor
 SurfaceDose surface_dose(const model::TriangleSoup& body, const model::Volume& dose, double stretch_z,
                          const std::string& subject) {
   if (body.triangles.empty()) throw Error{Fault::data, subject + ": has no surface"};
-  const auto points = solid::sample_surface(body, samples);
+  const auto points = solid::sample_surface(body, surface_samples);
   const Vector3 centre = solid::bounding_box(body).centre();
   std::vector<double> all, slopes;
   std::array<std::vector<double>, octants> parts;

@@ -15,11 +15,10 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr int terms = SensitivityField::terms;
-constexpr int numbers = SensitivityField::numbers;
-
-Eigen::Map<const Eigen::Matrix<double, numbers, numbers>> matrix_of(const std::vector<double>& covariance) {
-  return Eigen::Map<const Eigen::Matrix<double, numbers, numbers>>(covariance.data());
+Eigen::Map<const Eigen::Matrix<double, SensitivityField::numbers, SensitivityField::numbers>> matrix_of(
+    const std::vector<double>& covariance) {
+  return Eigen::Map<const Eigen::Matrix<double, SensitivityField::numbers, SensitivityField::numbers>>(
+      covariance.data());
 }
 
 double squared(double value) { return value * value; }
@@ -36,14 +35,15 @@ SensitivityField::Terms SensitivityField::basis(double x_mm, double y_mm, double
 double SensitivityField::log_at(double x_mm, double y_mm, double z_mm) const {
   const Terms at = basis(x_mm, y_mm, z_mm);
   double sum = 0;
-  for (int t = 0; t < terms; ++t) sum += at[t] * value[t];
+  for (int t = 0; t < SensitivityField::terms; ++t) sum += at[t] * value[t];
   return sum;
 }
 
 double SensitivityField::sigma_at(double x_mm, double y_mm, double z_mm) const {
   const Terms basis_here = basis(x_mm, y_mm, z_mm);
-  const Eigen::Map<const Eigen::Matrix<double, terms, 1>> at(basis_here.data());
-  return std::sqrt(std::max(0.0, at.dot(matrix_of(covariance).topLeftCorner<terms, terms>() * at)));
+  const Eigen::Map<const Eigen::Matrix<double, SensitivityField::terms, 1>> at(basis_here.data());
+  return std::sqrt(std::max(
+      0.0, at.dot(matrix_of(covariance).topLeftCorner<SensitivityField::terms, SensitivityField::terms>() * at)));
 }
 
 double SensitivityField::axis_sigma_px() const { return std::sqrt(covariance.back()); }
@@ -88,8 +88,9 @@ SensitivityField expected_sensitivity(const model::Volume& dose, const ScatterCu
     field.centre_mm[a] = 0.5 * (low[a] + high[a]);
     field.half_mm[a] = std::max(g.voxel_mm, 0.5 * (high[a] - low[a]));
   }
-  field.covariance.assign(product(numbers, numbers), 0);
-  for (int t = 0; t < terms; ++t) field.covariance[t * numbers + t] = squared(prior.term);
+  field.covariance.assign(product(SensitivityField::numbers, SensitivityField::numbers), 0);
+  for (int t = 0; t < SensitivityField::terms; ++t)
+    field.covariance[t * SensitivityField::numbers + t] = squared(prior.term);
   const double critical = curve.critical_sigma_mj_cm3 / curve.critical_dose_mj_cm3;
   field.covariance.front() = squared(prior.whole) + squared(critical);
   field.covariance.back() = squared(std::max(prior.axis_px, SensitivityField::certain_px));
@@ -97,7 +98,8 @@ SensitivityField expected_sensitivity(const model::Volume& dose, const ScatterCu
 }
 
 SensitivityField carried_on(SensitivityField field, const SensitivityPrior& prior) {
-  for (int t = 0; t < terms; ++t) field.covariance[t * numbers + t] += prior.drift * prior.drift;
+  for (int t = 0; t < SensitivityField::terms; ++t)
+    field.covariance[t * SensitivityField::numbers + t] += prior.drift * prior.drift;
   return field;
 }
 
@@ -181,8 +183,8 @@ SensitivityField sensitivity_field(const Json& json) {
   } catch (const Json::exception&) {
     throw Error{Fault::data, "has no field of vam-correct"};
   }
-  if (count_of(field.covariance) != numbers * numbers) {
-    throw Error{Fault::data, "its covariance is not of eleven numbers"};
+  if (count_of(field.covariance) != SensitivityField::numbers * SensitivityField::numbers) {
+    throw Error{Fault::data, "its covariance is not of eleven SensitivityField::numbers"};
   }
   const bool sized = std::all_of(field.half_mm.begin(), field.half_mm.end(), [](double half) { return half > 0; });
   if (!sized || matrix_of(field.covariance).llt().info() != Eigen::Success) {

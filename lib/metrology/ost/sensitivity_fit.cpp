@@ -39,7 +39,7 @@ void put(const Vector& vector, SensitivityField& field) {
   for (int t = 0; t < terms; ++t) field.value[t] = vector[t];
   field.axis_px = vector[terms];
 }
-Matrix matrix_of(const std::vector<double>& covariance) { return Eigen::Map<const Matrix>(covariance.data()); }
+Matrix stated_matrix(const std::vector<double>& covariance) { return Eigen::Map<const Matrix>(covariance.data()); }
 
 void put_covariance(const Matrix& covariance, SensitivityField& field) {
   field.covariance.assign(covariance.data(), covariance.data() + covariance.size());
@@ -272,7 +272,7 @@ SensitivityFit fit_sensitivity(const model::Volume& scatter, const model::Volume
   const double sigma_px = resolution_mm / scatter.grid.voxel_mm;
   const Blur blur(sigma_px);
   const Sight sight = sight_of(scatter, sigma, dose, curve, ceil_int(3 * sigma_px));
-  const Matrix precision = matrix_of(before.covariance).inverse();
+  const Matrix precision = stated_matrix(before.covariance).inverse();
   const Vector expected = vector_of(before.value, before.axis_px);
   SensitivityField field = before;
   const auto try_at = [&](const Vector& value) {

@@ -50,8 +50,6 @@ const char* const help_lines[] = {"#5 - Request motion status",
                                   "VEL - Set velocity",
                                   "VEL? - Get velocity"};
 
-constexpr double homing_speed_deg_s = 30;
-
 // Of "errors", PI_CNTR_...
 constexpr int unknown_command = 2;          // UNKNOWN_COMMAND
 constexpr int no_reference_or_servo = 5;    // MOVE_WITHOUT_REF_OR_NO_SERVO
@@ -216,6 +214,7 @@ class SimGcs final : public SimController {
     if (!reference_mode_) return refuse(reference_disabled);
     if (!servo_) return refuse(no_reference_or_servo);
     homing_ = true;
+    constexpr double homing_speed_deg_s = 30;
     go(0, homing_speed_deg_s);
     return "";
   }

@@ -14,8 +14,6 @@ namespace vam::sim {
 
 namespace {
 
-constexpr double homing_speed_deg_s = 30;
-
 class SimGrbl final : public SimController {
  public:
   using SimController::SimController;
@@ -115,6 +113,7 @@ class SimGrbl final : public SimController {
       homing_fault_ = arrive(line, command);
       if (silent()) return;
       homing_ = true;
+      constexpr double homing_speed_deg_s = 30;
       return go(0, homing_speed_deg_s);
     }
     if (command == "$J") return jog(line);

@@ -22,7 +22,6 @@ namespace {
 
 constexpr double steps_per_turn = 384000;
 constexpr double steps_per_deg = steps_per_turn / 360;
-constexpr double homing_speed_deg_s = 60;
 constexpr double speed_units = 1.6384;      // manual, "maxspeed": microsteps per second times 1.6384
 constexpr double speed_bound = 64 * 16384;  // manual, "maxspeed": at most resolution (64) times 16384
 
@@ -156,6 +155,7 @@ class SimZaber final : public SimController {
       zero_deg_ += angle_deg - motor_.angle_deg();
       motor_.set_angle(angle_deg);
     }
+    constexpr double homing_speed_deg_s = 60;
     go(0, homing_speed_deg_s);
     return "0";
   }

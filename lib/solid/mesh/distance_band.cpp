@@ -12,7 +12,7 @@ namespace vam::solid {
 
 namespace {
 
-constexpr int edge = 6;  // voxels of a block
+constexpr int block_edge = 6;  // voxels of a block
 
 struct VoxelSpan {
   int first;
@@ -20,7 +20,7 @@ struct VoxelSpan {
   [[nodiscard]] double middle() const { return 0.5 * (first + last - 1); }
 };
 
-VoxelSpan span_of(int block, int voxels) { return {block * edge, std::min(voxels, (block + 1) * edge)}; }
+VoxelSpan span_of(int block, int voxels) { return {block * block_edge, std::min(voxels, (block + 1) * block_edge)}; }
 
 // Signed distances at points along a way: the side is asked for only where it may have changed, as a distance does not
 // change by more than the way.
@@ -53,10 +53,10 @@ class WayAlong {
 
 model::Volume distance_band(const Surface& surface, const model::Grid& grid, double band_mm) {
   model::Volume volume{grid, std::vector<float>(grid.size())};
-  const auto blocks = [](int voxels) { return (voxels + edge - 1) / edge; };
+  const auto blocks = [](int voxels) { return (voxels + block_edge - 1) / block_edge; };
   const int across = blocks(grid.nx);
   const int along = blocks(grid.ny);
-  const double reach_mm = band_mm + 0.5 * std::sqrt(3.0) * edge * grid.voxel_mm;
+  const double reach_mm = band_mm + 0.5 * std::sqrt(3.0) * block_edge * grid.voxel_mm;
   const int count = across * along * blocks(grid.nz);
   Progress progress("measuring distances", count);
   parallel_for(count, [&](int n) {
@@ -70,7 +70,7 @@ model::Volume distance_band(const Surface& surface, const model::Grid& grid, dou
       for (int j = y.first; j < y.last; ++j) {
         float* row = volume.slice(k) + std::ptrdiff_t{j} * grid.nx;
         double distance = middle;
-        int beyond = far ? edge : 0;  // voxels of the row that are farther than the band, as the one before tells
+        int beyond = far ? block_edge : 0;  // voxels of the row that are farther than the band, as the one before tells
         for (int i = x.first; i < x.last; ++i) {
           if (beyond-- <= 0) {
             distance = at({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)});

@@ -65,8 +65,8 @@ double area_of(const model::TriangleSoup& mesh) {
 }
 
 /// To one side, at least and at most so far.
-void cross(const SurfaceTree& surface, const SeparateSolids& solids, const std::vector<SurfaceSample>& samples,
-           double side, double least, double most, Ways& found) {
+void look_across(const SurfaceTree& surface, const SeparateSolids& solids, const std::vector<SurfaceSample>& samples,
+                 double side, double least, double most, Ways& found) {
   found.resize(samples.size());
   constexpr int at_once = 1000;
   parallel_for((count_of(samples) + at_once - 1) / at_once, [&](int block) {
@@ -263,8 +263,8 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   const SeparateSolids solids(surface, repaired, all.samples, touching, least_solid * face * voxel_mm);
   const double lost = model::lost_voxels * voxel_mm;
   const double reach = model::free_voxels * voxel_mm;
-  cross(surface, solids, all.samples, -1, own * lost, lost, all.inwards);
-  cross(surface, solids, all.samples, 1, touching, reach, all.outwards);
+  look_across(surface, solids, all.samples, -1, own * lost, lost, all.inwards);
+  look_across(surface, solids, all.samples, 1, touching, reach, all.outwards);
   leave_outer(all, surface, voxel_mm);
   const Ways gaps = without_lone(all.outwards, all, voxel_mm);
   model::PartSurface found;

@@ -12,6 +12,8 @@
 
 namespace vam::io {
 
+inline constexpr std::uint64_t max_triangles = std::uint64_t{1} << 25;  // of a package, and of what it expands to
+
 /// Rows of the matrix of the 3MF core specification, 3.3: row vectors, (x y z 1) M; translations in mm.
 struct ComponentPlacement {
   std::array<std::array<double, 3>, 4> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
