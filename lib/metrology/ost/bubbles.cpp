@@ -149,12 +149,11 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, const R
   if (brightest(sinograms) <= 0) return 0;  // beside the print
   const Contrast of_rays = bubble_contrast(sinograms);
   restore_dark_rays(sinograms, rows, of_rays.least(6));
-  const bool is_noisy = 6 * of_rays.noise > of_rays.share;
-  const std::vector<Image> smooth = is_noisy ? smoothed(sinograms) : std::vector<Image>{};
-  const float least = is_noisy ? bubble_contrast(smooth).least(6) : of_rays.least(6);
+  const std::vector<Image> smooth = smoothed(sinograms);
+  const float least = bubble_contrast(smooth).least(6);
   std::vector<RayMask> marked(angles);
   parallel_for(angles, [&](int a) {
-    marked[a] = bright_rays(is_noisy ? smooth : sinograms, rows, a, least);
+    marked[a] = bright_rays(smooth, rows, a, least);
     if (!marked[a].empty()) marked[a] = grown(marked[a], width, heights, 3);
   });
   std::ptrdiff_t count = 0;
@@ -164,20 +163,21 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, const R
   take_darker_ends(sinograms, marked);
   std::vector<RayMask> hidden = suspect_rays(marked, specks, width, heights);
   const std::vector<Image> seen = sinograms;
-  constexpr int rounds = 2;  // restored rays show the bodies better
+  constexpr int rounds = 2;                                 // restored rays show the bodies better
+  const float nearest = of_rays.noise + 3 * of_rays.share;  // nearer to the bodies a ray says more than they do
   float farthest = std::numeric_limits<float>::infinity();
   for (int round = 0; round < rounds; ++round) {
     const BodyPaths bodies(rays, one_density_body(rays, grid, sinograms, 0.5F * of_rays.least(6)));
     if (round == 0) {
       // Bubbles are seldom alike at both ends of a line: more rays than this are bodies of another density. Twice the
       // contrast, as the bodies are known to a few per cent.
-      if (const auto above = rays_above(bodies, is_noisy ? smoothed(seen) : seen, hidden, count / 4, 2 * least)) {
+      if (const auto above = rays_above(bodies, smoothed(seen), hidden, count / 4, 2 * least)) {
         add(*above, hidden);
         add(mirrored(*above, width), hidden);
         farthest = of_rays.least(6);  // rays that differ by more are bubbles that were not seen
       }
     }
-    limit_to_bodies(bodies, hidden, of_rays.least(3), farthest, seen, sinograms);  // 3, as a bubble is near
+    limit_to_bodies(bodies, hidden, nearest, farthest, seen, sinograms);
   }
   return share;
 }
