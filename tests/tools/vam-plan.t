@@ -155,6 +155,7 @@ hourglass 0.16 >neck.off
 ok 'an hourglass' sh -c "vam-plan neck.off $coarse --report neck.json >neck"
 ok 'may be cut' grep -q '^will it print  *perhaps: process window +.*on voxels of 1 pixel)' neck
 ok 'as the estimate shows' grep -q '^  pieces  *the print is in' neck
+ok 'at its neck' grep -q '^  thinnest place  *1.*voxels (0.3.* mm) at x, y, z = -*0.1, -*0.1, -*0.*; it may not print' neck
 holds 'with the numbers' "$(json neck.json solids) == 1 && $(json neck.json print_pieces_most) > 1"
 hourglass 0.4 >waist.off
 ok 'a wider one' sh -c "vam-plan waist.off $coarse --report waist.json >waist"

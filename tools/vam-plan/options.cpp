@@ -45,8 +45,8 @@ cli::Manual manual() {
       {"Memory: the part at up to 16 million voxels, 9 bytes each, and the doses and projections of the estimate.",
        "Wall thickness: the first percentile of the distance across the part at its medial surface, accurate to one "
        "or two voxels, which are larger for parts of more than 16 million voxels. Faces that converge by more than 20 "
-       "degrees, as at the edge of a wedge, are no walls, and reported as sharp edges; a strut, or another place that "
-       "is thinner by more than 1.5 voxels, is "
+       "degrees, as at the edge of a wedge, are no walls, and reported as sharp edges; a strut, the neck "
+       "of an hourglass, or another place that is thinner by more than 1.5 voxels, is "
        "stated with its coordinates in the print, as placed in the vial; of a part without walls, such "
        "as a cone, the largest ball within is stated."},
       {"vam-slice", "vam-optimize", "vam-score"}};

@@ -13,6 +13,7 @@
 
 #include "base/parallel.hpp"
 #include "model/dose_metrics.hpp"
+#include "solid/voxel/private/neck.hpp"
 
 namespace vam::solid {
 
@@ -23,6 +24,7 @@ constexpr double thin_share = 0.01;
 constexpr double sharp_share = 0.01;     // of the middle, that makes edges sharp
 constexpr double widest_cosine = -0.94;  // of the directions into both faces of a wall: 20 degrees apart from parallel
 constexpr double farthest_of_ball = 1.25;  // the way through a wall's middle, but for two voxels
+constexpr double accuracy = 1.5;           // of a thickness, voxels
 constexpr int window = 3;                  // voxels around a place that tell which way a face looks
 
 /// The grid with a layer of void around it, x fastest.
@@ -245,10 +247,8 @@ Places middle_of(const model::Volume& part, const Field& field, double stretch_z
 }
 
 /// One place may be thin by its steps alone; a strut or a wall has more of them beside it.
-std::optional<Walls::Place> thinnest_place(std::vector<Wall> walls, double usual_voxels, const Field& field,
-                                           const model::Grid& grid, double stretch_z) {
-  constexpr double accuracy = 1.5;  // voxels
-  constexpr double steps = 0.75;    // by which places of one wall differ
+std::optional<Wall> thinnest_wall(std::vector<Wall> walls, double usual_voxels, const Field& field) {
+  constexpr double steps = 0.75;  // by which places of one wall differ
   constexpr int reach = 2;
   constexpr int fewest = 4;
   const auto before = [](const Wall& a, const Wall& b) { return a.at < b.at; };
@@ -274,11 +274,34 @@ std::optional<Walls::Place> thinnest_place(std::vector<Wall> walls, double usual
         thinnest == nullptr ? wall.thickness.voxels <= usual_voxels - accuracy : wall.thickness < thinnest->thickness;
     if (thinner && confirmed(wall)) thinnest = &wall;
   }
-  if (thinnest == nullptr) return std::nullopt;
-  const auto [i, j, k] = field.place(thinnest->at);
-  return Walls::Place{thinnest->thickness.voxels,
-                      thinnest->thickness.print_voxels * grid.voxel_mm,
-                      {grid.x_mm(i - 1), grid.y_mm(j - 1), grid.z_mm(k - 1) / stretch_z}};
+  return thinnest == nullptr ? std::nullopt : std::optional(*thinnest);
+}
+
+/// Of those that are about as narrow as what does not print.
+std::optional<Wall> thinnest_neck(const Field& field, double stretch_z) {
+  constexpr std::int32_t most_squared = 6;  // of the way from the middle to the void: 4 voxels across
+  constexpr double least_deeper = 1;        // more than voxels make of a strut
+  std::vector<std::int32_t> squared(field.solid.size());
+  parallel_for(field.size[2], [&](int k) {
+    for (std::int64_t at = field.index(0, 0, k); at < field.index(0, 0, k + 1); ++at) {
+      const auto here = static_cast<std::size_t>(at);
+      if (field.solid[here] != 0) squared[here] = static_cast<std::int32_t>(field.squared(at, field.nearest[here]));
+    }
+  });
+  std::optional<Wall> thinnest;
+  for (const std::int64_t at : necks(field.size, squared, most_squared, least_deeper)) {
+    const Crossing across = crossing(field, at);
+    const Wall neck{thickness_of(across, across.thickness, stretch_z), at};
+    if (!thinnest || neck.thickness < thinnest->thickness) thinnest = neck;
+  }
+  return thinnest;
+}
+
+Walls::Place place_of(const Wall& wall, const Field& field, const model::Grid& grid, double stretch_z) {
+  const auto [i, j, k] = field.place(wall.at);
+  return {wall.thickness.voxels,
+          wall.thickness.print_voxels * grid.voxel_mm,
+          {grid.x_mm(i - 1), grid.y_mm(j - 1), grid.z_mm(k - 1) / stretch_z}};
 }
 
 }  // namespace
@@ -305,9 +328,14 @@ Walls walls(const model::Volume& part, double stretch_z) {
   const double sharp = std::min(least_printed_voxels, thinnest.voxels - 1);  // the ends of a thin wall are no thinner
   const auto thin = std::count_if(places.tapering.begin(), places.tapering.end(),
                                   [&](const Crossing& across) { return across.thickness < sharp; });
-  return {thinnest.voxels, thinnest.print_voxels * part.grid.voxel_mm,
-          thinnest_place(std::move(places.walls), thinnest.voxels, field, part.grid, stretch_z),
-          static_cast<double>(thin) > sharp_share * static_cast<double>(middle)};
+  std::optional<Wall> place = thinnest_wall(std::move(places.walls), thinnest.voxels, field);
+  const std::optional<Wall> neck = thinnest_neck(field, stretch_z);
+  const bool is_neck_thin = neck && neck->thickness.voxels <= thinnest.voxels - accuracy;
+  if (is_neck_thin && (!place || neck->thickness < place->thickness)) place = neck;
+  Walls found{thinnest.voxels, thinnest.print_voxels * part.grid.voxel_mm, {}, false};
+  if (place) found.thinnest_place = place_of(*place, field, part.grid, stretch_z);
+  found.sharp_edges = static_cast<double>(thin) > sharp_share * static_cast<double>(middle);
+  return found;
 }
 
 }  // namespace vam::solid

@@ -16,8 +16,8 @@ struct Walls {
   /// cone, the diameter of the largest ball within; none for a part without a voxel.
   std::optional<double> thinnest_voxels;
   double thinnest_mm = 0;  // of the print: a way along z is shorter in the resin than in the stretched target
-  /// The thinnest place of all that a few beside it confirm, as in a strut; none where it is not thinner by more than
-  /// 1.5 voxels.
+  /// The thinnest place of all that a few beside it confirm, as in a strut, or that is a neck, narrower by 2 voxels
+  /// than on both sides; none where it is not thinner by more than 1.5 voxels.
   struct Place {
     double voxels = 0;
     double mm = 0;                  // of the print

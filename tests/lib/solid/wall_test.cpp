@@ -45,6 +45,29 @@ TEST_CASE("the thinnest wall of plates, also where a thick block stands on one, 
   CHECK(std::abs(thinnest(tilted) - 11 / std::sqrt(2.0)) < 1);  // good to a voxel
 }
 
+TEST_CASE("the thinnest place of an hourglass is its neck, which a cone has not") {
+  for (const double radius : {1.0, 1.5, 2.0}) {
+    CAPTURE(radius);
+    for (const double tilt : {0.0, 0.2}) {
+      const auto hourglass = filled(41, 31, 31, [=](int i, int j, int k) {
+        const double x = i - 20;
+        return std::abs(x) < 18 && std::hypot(j - 15 - tilt * x, k - 15) <= radius + 0.5 * std::abs(x);
+      });
+      const solid::Walls found = solid::walls(hourglass);
+      const auto& place = found.thinnest_place;  // none where the neck is as much as one in a hundred places
+      CHECK(std::abs((place ? place->voxels : *found.thinnest_voxels) - 2 * radius) <= 1);
+      REQUIRE((place || tilt > 0));
+      if (place) CHECK(std::abs(place->at_mm[0] - 20) <= 2);
+    }
+  }
+  const auto cone = filled(41, 31, 31, [](int i, int j, int k) { return std::hypot(j - 15, k - 15) < 0.35 * i; });
+  CHECK(!solid::walls(cone).thinnest_place);
+  const auto two = filled(41, 31, 31, [](int i, int j, int k) {
+    return std::hypot(std::abs(i - 20) - 11, j - 15, k - 15) <= 9;  // balls that do not touch
+  });
+  CHECK(!solid::walls(two).thinnest_place);
+}
+
 TEST_CASE("the thinnest place: one strut between thick blocks, its middle, and no single place") {
   for (const int n : {1, 2, 3, 4, 5, 6}) {
     CAPTURE(n);

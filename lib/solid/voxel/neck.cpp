@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solid/voxel/private/neck.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vam::solid {
+
+namespace {
+
+/// The solid voxels, the deepest first.
+std::vector<std::int32_t> by_depth(const std::vector<std::int32_t>& squared) {
+  const std::int32_t deepest = squared.empty() ? 0 : *std::max_element(squared.begin(), squared.end());
+  std::vector<std::int64_t> place(static_cast<std::size_t>(deepest) + 1, 0);  // of the next voxel of a depth
+  for (const std::int32_t depth : squared) ++place[static_cast<std::size_t>(depth)];
+  std::int64_t solid = 0;
+  for (std::int32_t depth = deepest; depth > 0; --depth) {
+    const std::int64_t count = place[static_cast<std::size_t>(depth)];
+    place[static_cast<std::size_t>(depth)] = solid;
+    solid += count;
+  }
+  std::vector<std::int32_t> order(static_cast<std::size_t>(solid));
+  for (std::size_t at = 0; at < squared.size(); ++at) {
+    if (squared[at] == 0) continue;
+    order[static_cast<std::size_t>(place[static_cast<std::size_t>(squared[at])]++)] = static_cast<std::int32_t>(at);
+  }
+  return order;
+}
+
+/// Sets of voxels that touch; each is named by its deepest one.
+class Sets {
+ public:
+  explicit Sets(std::size_t voxels) : parent_(voxels, absent) {}
+  void add(std::int32_t voxel) { parent_[static_cast<std::size_t>(voxel)] = voxel; }
+  [[nodiscard]] bool has(std::int32_t voxel) const { return parent_[static_cast<std::size_t>(voxel)] != absent; }
+  [[nodiscard]] std::int32_t of(std::int32_t voxel) {
+    while (parent(voxel) != voxel) voxel = parent(voxel) = parent(parent(voxel));
+    return voxel;
+  }
+  /// The second set becomes a part of the first.
+  void join(std::int32_t deeper, std::int32_t other) { parent(other) = deeper; }
+
+ private:
+  static constexpr std::int32_t absent = -1;
+  std::int32_t& parent(std::int32_t voxel) { return parent_[static_cast<std::size_t>(voxel)]; }
+  std::vector<std::int32_t> parent_;
+};
+
+}  // namespace
+
+std::vector<std::int64_t> necks(const std::array<int, 3>& size, const std::vector<std::int32_t>& squared,
+                                std::int32_t most, double least_deeper) {
+  const auto depth_of = [&](std::int32_t voxel) { return squared[static_cast<std::size_t>(voxel)]; };
+  std::array<std::int32_t, 26> around{};
+  for (int n = 0; n < 27; ++n) {
+    if (n == 13) continue;
+    around[static_cast<std::size_t>(n < 13 ? n : n - 1)] =
+        (n / 9 - 1) * size[0] * size[1] + (n / 3 % 3 - 1) * size[0] + n % 3 - 1;
+  }
+  std::vector<std::int64_t> found;
+  Sets sets(squared.size());
+  for (const std::int32_t voxel : by_depth(squared)) {
+    sets.add(voxel);
+    std::int32_t own = voxel;
+    for (const std::int32_t step : around) {
+      if (!sets.has(voxel + step)) continue;
+      std::int32_t other = sets.of(voxel + step);
+      if (other == own) continue;
+      if (depth_of(own) < depth_of(other)) std::swap(own, other);
+      sets.join(own, other);
+      const bool is_narrow = depth_of(voxel) <= most;
+      if (is_narrow && std::sqrt(depth_of(other)) >= std::sqrt(depth_of(voxel)) + least_deeper) found.push_back(voxel);
+    }
+  }
+  return found;
+}
+
+}  // namespace vam::solid
