@@ -30,14 +30,17 @@ void write_figure(const Options& options, const plot::ImageFigure& figure, const
   io::write_png(options.output, pixels, {{"Comment", history}});
 }
 
-io::SparseVolume target_for(const Options& options) {
-  return io::read_volume(options.target.empty() ? options.input : options.target, "target");
-}
-
 bool has_grid(const std::string& path, const std::string& name) {
   if (path == "-") return false;  // can be read once only
   const std::vector<io::VolumeFacts> grids = io::check_volumes(path, true);
   return std::any_of(grids.begin(), grids.end(), [&](const io::VolumeFacts& facts) { return facts.name == name; });
+}
+
+io::SparseVolume target_for(const Options& options) {
+  if (!options.target.empty()) return io::read_volume(options.target, "target");
+  if (options.input != "-" && !has_grid(options.input, "target"))
+    throw Error{Fault::data, options.input + ": has no grid 'target'; give the part with --target"};
+  return io::read_volume(options.input, "target");
 }
 
 /// A target is shown with its insert.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <utility>
 
 #include "base/index.hpp"
@@ -11,6 +12,8 @@
 namespace vam::model {
 
 namespace {
+
+constexpr std::array other_factors{0.98, 0.99, 1.01, 1.02};
 
 /// Of the middle one of three slices of bits; nullptr beyond the volume.
 struct TornOfBoth {
@@ -33,8 +36,7 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
       part_(PrintPieces::least_voxels),
       part_at_half_(width, height, half_surface, PrintPieces::least_voxels),
       print_(width, height, threshold, PrintPieces::least_voxels),
-      print_of_less_(width, height, threshold, PrintPieces::least_voxels),
-      print_of_more_(width, height, threshold, PrintPieces::least_voxels),
+      print_of_others_(other_factors.size(), print_),
       of_part_(width, height, half_surface),
       of_print_(width, height, threshold),
       of_smooth_(width, height, threshold),
@@ -44,14 +46,12 @@ PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
 void PrintPieceCounter::add(int count, const float* coverage, const float* dose) {
   const std::size_t size = product(width_, height_);
   std::vector<Slice> slices(count, Slice(size));
-  std::vector<float> firm(product(count, size)), less(firm.size()), more(firm.size());
+  std::vector<float> firm(product(count, size));
   parallel_for(count, [&](int k) {
     const std::size_t first = product(k, size);
     for (std::size_t i = 0; i < size; ++i) {
       slices[k][i] = printed_bits(coverage[first + i], static_cast<double>(dose[first + i]) >= threshold_);
       firm[first + i] = firm_dose(coverage[first + i], dose[first + i], threshold_);
-      less[first + i] = less_dose(coverage[first + i], dose[first + i], threshold_);
-      more[first + i] = more_dose(coverage[first + i], dose[first + i], threshold_);
     }
   });
   std::vector<const Slice*> all;
@@ -74,20 +74,29 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
   of_smooth_.add(static_cast<int>(smoothed.size() / size), smoothed.data());
   of_firm_.add(count, firm.data());
   const std::array<TunnelCounter*, 4> tunnels{&of_part_, &of_print_, &of_smooth_, &of_firm_};
-  using Field = std::pair<FieldPieces*, const float*>;
-  const std::array<Field, 4> fields{Field{&part_at_half_, coverage}, Field{&print_, dose},
-                                    Field{&print_of_less_, less.data()}, Field{&print_of_more_, more.data()}};
-  const auto add_part = [&] {
+  const auto add_field = [&](FieldPieces& field, const auto& value_of) {
+    for (int k = 0; k < count; ++k) {
+      std::vector<float> slice(size);
+      for (std::size_t i = 0; i < size; ++i) slice[i] = value_of(product(k, size) + i);
+      field.add(std::move(slice));
+    }
+  };
+  std::vector<std::function<void()>> work;
+  work.emplace_back([&] {
     for (const Slice& slice : slices) {
       part_.add(runs_of(width_, height_, [&](std::size_t i) { return (slice[i] & printed::trace) != 0; }), at_corners);
     }
-  };
-  parallel_for(1 + count_of(fields) + count_of(tunnels), [&](int n) {
-    if (n == 0) return add_part();
-    if (n > count_of(fields)) return tunnels[n - 1 - count_of(fields)]->connect();
-    const auto& [field, values] = fields[n - 1];
-    for (int k = 0; k < count; ++k) field->add({values + product(k, size), values + product(k + 1, size)});
   });
+  work.emplace_back([&] { add_field(part_at_half_, [&](std::size_t i) { return coverage[i]; }); });
+  work.emplace_back([&] { add_field(print_, [&](std::size_t i) { return dose[i]; }); });
+  for (std::size_t n = 0; n < other_factors.size(); ++n) {
+    work.emplace_back([&, n] {
+      add_field(print_of_others_[n],
+                [&](std::size_t i) { return other_dose(other_factors[n], coverage[i], dose[i], threshold_); });
+    });
+  }
+  for (TunnelCounter* const tunnel : tunnels) work.emplace_back([tunnel] { tunnel->connect(); });
+  parallel_for(count_of(work), [&](int n) { work[n](); });
   std::vector<Slice> last;
   for (std::size_t k = all.size() - std::min<std::size_t>(all.size(), 2); k < all.size(); ++k) last.push_back(*all[k]);
   last_ = std::move(last);
@@ -111,7 +120,12 @@ PrintPieces PrintPieceCounter::found() const {
   };
   const std::int64_t holes = beyond_part(std::min(of_print_.tunnels(), of_smooth.tunnels()));
   const int print = print_.count();
-  const auto [least, most] = std::minmax({print, print_of_less_.count(), print_of_more_.count()});
+  int least = print;
+  int most = print;
+  for (const FieldPieces& other : print_of_others_) {
+    least = std::min(least, other.count());
+    most = std::max(most, other.count());
+  }
   return {.part = part_.count(),
           .part_at_half = part_at_half_.count(),
           .print = print,

@@ -17,11 +17,11 @@ namespace vam::model {
 
 struct PrintPieces {
   static constexpr std::int64_t least_voxels = 8;  // of a piece: smaller ones are rounded tips and edges
-  int part = 0;             // of voxels with a trace of it that share a corner: thin rods hold together
-  int part_at_half = 0;     // of the coverage at a half: narrow gaps part it
-  int print = 0;            // of the dose at the threshold
-  int print_fewer = 0;      // and by how many it is in fewer or more with up to 2 % less or more dose
-  int print_more = 0;       // [less_dose, more_dose]
+  int part = 0;          // of voxels with a trace of it that share a corner: thin rods hold together
+  int part_at_half = 0;  // of the coverage at a half: narrow gaps part it
+  int print = 0;         // of the dose at the threshold
+  int print_fewer = 0;   // and by how many it is in fewer or more with 1 and 2 % less and more dose [other_dose]
+  int print_more = 0;
   std::int64_t broken = 0;  // voxels of torn sets of the part [TornSets]
   std::int64_t shut = 0;    // and of gaps
   std::int64_t holes = 0;  // tunnels of the print, smooth ones [SmoothPrint], beyond those of the part; not less than 0
@@ -67,7 +67,8 @@ class PrintPieceCounter {
   int width_, height_;
   double threshold_;
   PieceCounter part_;
-  FieldPieces part_at_half_, print_, print_of_less_, print_of_more_;
+  FieldPieces part_at_half_, print_;
+  std::vector<FieldPieces> print_of_others_;  // of other doses
   TunnelCounter of_part_, of_print_, of_smooth_, of_firm_;
   SmoothPrint smooth_;
   std::vector<Slice> last_;                        // up to two

@@ -30,16 +30,11 @@ float firm_dose(float coverage, float dose, double threshold) {
   return coverage >= static_cast<float>(half_surface) ? most : least;
 }
 
-float less_dose(float coverage, float dose, double threshold) {
-  const float less = static_cast<float>(1 - rough) * dose;
-  const bool stays = coverage >= 1 && static_cast<double>(less) < threshold;
-  return stays ? dose : less;
-}
-
-float more_dose(float coverage, float dose, double threshold) {
-  const float more = static_cast<float>(1 + rough) * dose;
-  const bool stays = coverage <= 0 && static_cast<double>(more) >= threshold;
-  return stays ? dose : more;
+float other_dose(double factor, float coverage, float dose, double threshold) {
+  const float other = static_cast<float>(factor) * dose;
+  const bool cures = static_cast<double>(other) >= threshold;
+  const bool stays = factor < 1 ? coverage >= 1 && !cures : coverage <= 0 && cures;
+  return stays ? dose : other;
 }
 
 /// Along the 13 lines through a voxel and its neighbours.

@@ -10,10 +10,9 @@ namespace vam::model {
 /// A dose within 2 % of the threshold is moved to the side of it on which the part has the voxel.
 [[nodiscard]] float firm_dose(float coverage, float dose, double threshold);
 
-/// 2 % less or more of the dose, as may decide on what hangs together, but where a voxel wholly in the part would no
-/// longer cure, or one wholly in the void would: the process window tells of those.
-[[nodiscard]] float less_dose(float coverage, float dose, double threshold);
-[[nodiscard]] float more_dose(float coverage, float dose, double threshold);
+/// Less or more of the dose, which may decide on what hangs together: by a factor, but where a voxel wholly in the part
+/// would no longer cure, or one wholly in the void would: the process window tells of those.
+[[nodiscard]] float other_dose(double factor, float coverage, float dose, double threshold);
 
 /// As firm_dose, but in walls and gaps of up to two voxels, where this little dose decides on holes and bridges: a
 /// voxel is in one if up to two in a row, on a line through it and a neighbour, are between void, or between part, as

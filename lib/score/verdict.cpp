@@ -20,19 +20,21 @@ bool holds_threshold(const Verdict& verdict) {
   return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
 }
 
-/// By which factors all doses may fall and rise until a voxel wholly in part or void is on the wrong side.
-struct DoseRoom {
-  double less = 0, more = 0;
+/// Of a threshold that is given, in the process window.
+struct ThresholdMargin {
+  double below_part = 0, above_void = 0;  // relative to the part's least dose and to the void's largest
 };
 
-std::optional<DoseRoom> dose_room(const Verdict& verdict) {
-  if (!verdict.threshold || !(verdict.whole.max_void > 0)) return std::nullopt;
-  return DoseRoom{1 - *verdict.threshold / verdict.whole.min_part, *verdict.threshold / verdict.whole.max_void - 1};
+std::optional<ThresholdMargin> threshold_margin(const Verdict& verdict) {
+  if (!verdict.threshold || !(verdict.whole.max_void > 0) || !(verdict.whole.min_part > 0)) return std::nullopt;
+  return ThresholdMargin{1 - *verdict.threshold / verdict.whole.min_part,
+                         *verdict.threshold / verdict.whole.max_void - 1};
 }
 
-std::string room_text(const DoseRoom& room) {
-  return "; doses may be " + format_number(100 * room.less, 2) + " % lower or " + format_number(100 * room.more, 2) +
-         " % higher";
+std::string margin_text(const ThresholdMargin& margin) {
+  return "; the threshold is " + format_number(100 * margin.below_part, 2) +
+         " % below its least dose in the part and " + format_number(100 * margin.above_void, 2) +
+         " % above its largest in the void";
 }
 
 std::string in_pieces(int count) { return std::to_string(count) + (count == 1 ? " piece" : " pieces"); }
@@ -143,7 +145,7 @@ std::string words(const Verdict& verdict) {
   }
   line += ": process window " + margin(verdict.whole) + " of the largest dose, VER " +
           format_number(verdict.whole.ver, 3) + " (" + std::to_string(voxels(verdict.whole)) + " voxels)";
-  if (const auto room = dose_room(verdict); room && judged > Answer::no) line += room_text(*room);
+  if (const auto by = threshold_margin(verdict); by && judged > Answer::no) line += margin_text(*by);
   if (cut > 0) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);
@@ -161,7 +163,8 @@ void add_to(Json& figures, const Verdict& verdict) {
                              {"ver", verdict.with_cut.ver},
                              {"pw", verdict.with_cut.pw},
                              {"iou", verdict.with_cut.iou}};
-  if (const auto room = dose_room(verdict)) figures["doses_may_be"] = {{"lower", room->less}, {"higher", room->more}};
+  if (const auto by = threshold_margin(verdict))
+    figures["threshold_margin"] = {{"below_part", by->below_part}, {"above_void", by->above_void}};
   if (verdict.pieces) add_to(figures, *verdict.pieces);
 }
 

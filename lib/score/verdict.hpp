@@ -47,9 +47,9 @@ void add_to(Json& figures, const model::PrintPieces& pieces);
 /// print", "will not print as designed", "may print" or "will print".
 [[nodiscard]] std::string words(const Verdict& verdict);
 
-/// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), where the threshold is
-/// given by how much the doses may be lower and higher (relative; negative where it does not print), and the pieces,
-/// where they are counted.
+/// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), threshold_margin where
+/// the threshold is given (below_part and above_void, relative; negative where it is outside the process window), and
+/// the pieces, where they are counted.
 void add_to(Json& figures, const Verdict& verdict);
 
 }  // namespace vam::score

@@ -130,7 +130,8 @@ void check_import(const cli::App& app, const Options& options) {
   if (!volume && !projections) {
     throw Error{Fault::usage,
                 io::input_name(options.input) +
-                    ": the kind of data is not given; use --voxel MM for a volume, or --geometry parallel or vial"};
+                    ": the kind of data is not given; use --voxel MM for a volume, or --geometry parallel or "
+                    "vial; a mesh is for vam-slice"};
   }
   if (volume) {
     refuse_given(app, projection_flags, "is for projections; omit it, or --voxel");

@@ -28,7 +28,7 @@ cli::Manual manual() {
            " million, or where the print of the estimate is in other pieces than the part. What is too thin even then "
            "is stated with its volume and heights as not judged; if it is 2 % of "
            "the part or more, or if the printer's pixels lose walls or gaps or leave them in doubt, as vam-slice "
-           "tells, or where a wall is below 1.5 pixels, or that of a mesh below 2.3, where it may be pierced, or if "
+           "tells, or where a wall or another place is below 2.3 pixels, so that it may be pierced, or if "
            "the print of the estimate is in other pieces than the part, with walls that are cut or gaps that are shut, "
            "as vam-score counts them, the answer is perhaps. The deviations, one at a time and "
            "either "

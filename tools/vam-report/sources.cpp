@@ -107,7 +107,8 @@ Sources gather(const std::vector<std::string>& paths) {
     } else if (!add(sources, path)) {
       const std::string head = beginning(path);
       const std::string foreign = head.starts_with('{') ? "" : io::foreign_format(head);  // JSON, but no report
-      throw Error{Fault::data, path + (foreign.empty() ? ": is not" : ": is " + foreign + ", not") +
+      const std::string found = head.empty() ? "empty" : foreign;
+      throw Error{Fault::data, path + (found.empty() ? ": is not" : ": is " + found + ", not") +
                                    " a volume, mesh, stack, video, report (JSON), trace (CSV of vam-optimize "
                                    "--trace) or image (PNG)"};
     }

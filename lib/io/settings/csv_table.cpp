@@ -93,7 +93,9 @@ CsvTable read_csv(const std::string& path, const std::vector<std::string>& colum
     }
     table.lines.push_back(number);
   }
-  if (table.rows.empty()) throw Error{Fault::data, table.source + ": no rows; give " + join(columns, ",")};
+  if (table.rows.empty()) {
+    throw Error{Fault::data, table.source + ": no rows" + (columns.empty() ? "" : "; give " + join(columns, ","))};
+  }
   return table;
 }
 

@@ -87,10 +87,10 @@ TEST_CASE("a firm dose is as the part has it within 2 % of the threshold") {
 }
 
 TEST_CASE("2 % of the dose decide on no voxel wholly in part or void") {
-  CHECK(same(vam::model::less_dose(0.3F, 0.505F, threshold), 0.4949));
-  CHECK(same(vam::model::less_dose(1, 0.6F, threshold), 0.588));
-  CHECK(vam::model::less_dose(1, 0.505F, threshold) == 0.505F);
-  CHECK(same(vam::model::more_dose(0.3F, 0.495F, threshold), 0.5049));
-  CHECK(same(vam::model::more_dose(0, 0.4F, threshold), 0.408));
-  CHECK(vam::model::more_dose(0, 0.495F, threshold) == 0.495F);
+  CHECK(same(vam::model::other_dose(0.98, 0.3F, 0.505F, threshold), 0.4949));
+  CHECK(same(vam::model::other_dose(0.98, 1, 0.6F, threshold), 0.588));
+  CHECK(vam::model::other_dose(0.98, 1, 0.505F, threshold) == 0.505F);
+  CHECK(same(vam::model::other_dose(1.02, 0.3F, 0.495F, threshold), 0.5049));
+  CHECK(same(vam::model::other_dose(1.02, 0, 0.4F, threshold), 0.408));
+  CHECK(vam::model::other_dose(1.02, 0, 0.495F, threshold) == 0.495F);
 }

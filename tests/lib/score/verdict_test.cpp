@@ -46,12 +46,14 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
   fixed.whole.min_part = 0.8;
   fixed.threshold = 0.772;
   CHECK(answer(fixed) == Answer::yes);
-  CHECK(words(fixed).find("will print: process window +0.0653 of the largest dose, VER 0 (1000 voxels); doses may be "
-                          "3.5 % lower or 10 % higher; including the 110 voxels") == 0);
+  CHECK(
+      words(fixed).find("will print: process window +0.0653 of the largest dose, VER 0 (1000 voxels); the threshold is "
+                        "3.5 % below its least dose in the part and 10 % above its largest in the void; including the "
+                        "110 voxels") == 0);
   Json figures;
   add_to(figures, fixed);
-  CHECK(figures["doses_may_be"]["lower"].get<double>() == doctest::Approx(0.028 / 0.8));
-  CHECK(figures["doses_may_be"]["higher"].get<double>() == doctest::Approx(0.072 / 0.7));
+  CHECK(figures["threshold_margin"]["below_part"].get<double>() == doctest::Approx(0.028 / 0.8));
+  CHECK(figures["threshold_margin"]["above_void"].get<double>() == doctest::Approx(0.072 / 0.7));
   fixed.threshold = 0.8;
   CHECK(answer(fixed) == Answer::yes);
   for (const double beside : {0.7, 0.81}) {
