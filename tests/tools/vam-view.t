@@ -88,6 +88,7 @@ printf '%s\n' a,b,c,d,e,f 1,2,3,4,5,6 >wide.csv
 fails 65 'has 6 columns' vam-view wide.csv -o x.png
 ok "two traces" vam-view trace.csv --compare trace.csv -o traces.png
 fails 64 'exclude each other' vam-view wider.vdb --target small.vdb --cure-map --render -o x.png
+fails 65 "wider.vdb: has no grid 'target'; give the part with --target" vam-view wider.vdb --cure-map -o x.png
 fails 64 'requires --cure-map' vam-view wider.vdb --threshold 1 -o x.png
 fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.png
 fails 65 'compare volumes of one grid' vam-view small.vdb --compare part.vdb -o x.png
