@@ -13,98 +13,97 @@ namespace vam::model {
 
 namespace {
 
-/// Values at the corners of a cell between eight voxels, x fastest.
+/// Values at the corners of a cell between eight voxels, x fastest, above the level.
 using Corners = std::array<float, 8>;
-/// Whether each of 3 x 3 x 3 points of a cell, half a voxel apart, reaches the level.
-using Points = std::array<bool, 27>;
+/// Of each corner the least one that it hangs together with in the cell; both are solid, or neither.
+using Parts = std::array<int, 8>;
 
-constexpr int corner_point(int corner) { return 2 * (corner & 1) + 6 * (corner >> 1 & 1) + 18 * (corner >> 2); }
+constexpr bool is_solid(float value) { return value >= 0; }
 
-Points solid_points(const Corners& corners, double level) {
-  Points solid{};
-  for (int n = 0; n < 27; ++n) {
-    const std::array<int, 3> at{n % 3, n / 3 % 3, n / 9};
-    double value = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto share = [&](std::size_t axis) { return (corner >> axis & 1) != 0 ? at[axis] : 2 - at[axis]; };
-      value += share(0) * share(1) * share(2) * static_cast<double>(corners[corner]);
-    }
-    solid[n] = value >= 8 * level;
-  }
-  return solid;
+void join(int a, int b, Parts& parts) {
+  const int from = std::max(parts[a], parts[b]);
+  std::replace(parts.begin(), parts.end(), from, std::min(parts[a], parts[b]));
 }
 
-/// What the first of 2 x 2 x 2 points adds: corners - edges + faces - cubes of the union of cubes around the points,
-/// of those that lie beside it in the direction of the others.
-int cubes_added(const std::array<bool, 8>& is) {
-  const auto any = [&](std::initializer_list<int> points) {
-    return std::any_of(points.begin(), points.end(), [&](int n) { return is[n]; }) ? 1 : 0;
-  };
-  const int corner = any({0, 1, 2, 3, 4, 5, 6, 7});
-  const int edges = any({0, 2, 4, 6}) + any({0, 1, 4, 5}) + any({0, 1, 2, 3});
-  const int faces = any({0, 1}) + any({0, 2}) + any({0, 4});
-  return corner - edges + faces - (is[0] ? 1 : 0);
-}
-
-/// The Euler characteristic of a cell's share of the union.
-int euler_of(const Points& solid) {
-  int sum = 0;
+/// By the edges of the cell.
+Parts along_edges(const Corners& corners) {
+  Parts parts{};
+  std::iota(parts.begin(), parts.end(), 0);
   for (int n = 0; n < 8; ++n) {
-    const int first = corner_point(n) / 2;
-    std::array<bool, 8> is{};
-    for (int m = 0; m < 8; ++m) is[m] = solid[first + corner_point(m) / 2];
-    sum += cubes_added(is);
-  }
-  return sum;
-}
-
-int steps_apart(int a, int b) {
-  return std::abs(a % 3 - b % 3) + std::abs(a / 3 % 3 - b / 3 % 3) + std::abs(a / 9 - b / 9);
-}
-
-bool touch(int a, int b) {
-  return std::abs(a % 3 - b % 3) <= 1 && std::abs(a / 3 % 3 - b / 3 % 3) <= 1 && std::abs(a / 9 - b / 9) <= 1;
-}
-
-/// Of each point that is solid, or not, the least one that it hangs together with, -1 of the others. Solid points hang
-/// together where their cubes touch, others by faces.
-std::array<int, 27> connected(const Points& points, bool solid) {
-  std::array<int, 27> least{};
-  for (int n = 0; n < 27; ++n) least[n] = points[n] == solid ? n : -1;
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (int a = 0; a < 27; ++a) {
-      for (int b = 0; b < 27; ++b) {
-        if (least[a] < 0 || least[b] <= least[a] || (solid ? !touch(a, b) : steps_apart(a, b) != 1)) continue;
-        least[b] = least[a];
-        changed = true;
-      }
+    for (const int bit : {1, 2, 4}) {
+      if ((n & bit) == 0 && is_solid(corners[n]) == is_solid(corners[n | bit])) join(n, n | bit, parts);
     }
   }
-  return least;
+  return parts;
 }
 
-/// Of each corner that is solid, or not, the least one that edges of the cell lead to.
-std::array<int, 8> along_edges(const Points& points, bool solid) {
-  std::array<int, 8> least{};
-  for (int n = 0; n < 8; ++n) least[n] = points[corner_point(n)] == solid ? n : -1;
-  for (int round = 0; round < 3; ++round) {
-    for (int n = 0; n < 8; ++n) {
-      for (const int bit : {1, 2, 4}) {
-        const int other = n ^ bit;
-        if (least[n] >= 0 && least[other] > least[n]) least[other] = least[n];
-      }
-    }
+/// How many there are of the solid, or of the rest.
+int count_of(const Parts& parts, const Corners& corners, bool solid) {
+  int count = 0;
+  for (int n = 0; n < 8; ++n) count += parts[n] == n && is_solid(corners[n]) == solid ? 1 : 0;
+  return count;
+}
+
+/// Corners a and d of a face, and b and c, are opposite.
+struct Face {
+  int a, b, c, d;
+};
+constexpr std::array<Face, 3> low_faces{{{0, 2, 4, 6}, {0, 1, 4, 5}, {0, 1, 2, 3}}};
+constexpr std::array<int, 3> to_high_face{1, 2, 4};
+
+bool is_ambiguous(const Face& face, const Corners& corners) {
+  const bool solid = is_solid(corners[face.a]);
+  return is_solid(corners[face.d]) == solid && is_solid(corners[face.b]) != solid && is_solid(corners[face.c]) != solid;
+}
+
+/// Whether at its saddle an ambiguous face is solid: its solid corners hang together there, else the others.
+bool is_solid_at_saddle(const Face& face, const Corners& corners) {
+  const auto value = [&](int corner) { return static_cast<double>(corners[corner]); };
+  const double way = value(face.a) * value(face.d) - value(face.b) * value(face.c);
+  return is_solid(corners[face.a]) ? way >= 0 : way <= 0;
+}
+
+void join_across(const Face& face, const Corners& corners, Parts& parts) {
+  if (!is_ambiguous(face, corners)) return;
+  const bool first = is_solid(corners[face.a]) == is_solid_at_saddle(face, corners);
+  first ? join(face.a, face.d, parts) : join(face.b, face.c, parts);
+}
+
+/// Of the solid in a face: its pieces, as none has a hole.
+int pieces_of(const Face& face, const Corners& corners) {
+  if (is_ambiguous(face, corners) && !is_solid_at_saddle(face, corners)) return 2;
+  return is_solid(corners[face.a]) || is_solid(corners[face.b]) || is_solid(corners[face.c]) ||
+                 is_solid(corners[face.d])
+             ? 1
+             : 0;
+}
+
+/// Joins what hangs together inside the cell: where a section between two faces, of which each is the face that the
+/// other would become, has two opposite corners that hang together at its saddle, as neither face may have (Chernyaev
+/// 1995).
+void join_inside(const Corners& corners, Parts& parts) {
+  for (std::size_t axis = 0; axis < low_faces.size(); ++axis) {
+    const Face& low = low_faces[axis];
+    const int up = to_high_face[axis];
+    const auto at = [&](int corner, double t) {
+      return (1 - t) * static_cast<double>(corners[corner]) + t * static_cast<double>(corners[corner + up]);
+    };
+    // a d - b c along the axis, a quadratic, at its extremum.
+    const auto rise = [&](int corner) { return at(corner, 1) - at(corner, 0); };
+    const double bend = rise(low.a) * rise(low.d) - rise(low.b) * rise(low.c);
+    const double slope = at(low.a, 0) * rise(low.d) + rise(low.a) * at(low.d, 0) - at(low.b, 0) * rise(low.c) -
+                         rise(low.b) * at(low.c, 0);
+    if (bend == 0) continue;
+    const double t = -slope / (2 * bend);
+    if (!(t > 0 && t < 1)) continue;
+    const bool solid = at(low.a, t) >= 0;
+    const auto is = [&](int corner) { return at(corner, t) >= 0; };
+    if (is(low.d) != solid || is(low.b) == solid || is(low.c) == solid) continue;
+    const double way = at(low.a, t) * at(low.d, t) - at(low.b, t) * at(low.c, t);
+    if (way * bend >= 0) continue;  // as at the faces
+    const auto end = [&](int corner) { return is_solid(corners[corner]) == is(corner) ? corner : corner + up; };
+    way > 0 ? join(end(low.a), end(low.d), parts) : join(end(low.b), end(low.c), parts);
   }
-  return least;
-}
-
-bool all_alike(const std::array<int, 8>& least) {
-  int first = -1;
-  return std::all_of(least.begin(), least.end(), [&](int n) {
-    if (n >= 0 && first < 0) first = n;
-    return n < 0 || n == first;
-  });
 }
 
 /// Of the runs that of this voxel. There is one.
@@ -118,21 +117,32 @@ std::size_t run_of(const std::vector<VoxelRun>& runs, int x, int y) {
 
 }  // namespace
 
-void TunnelCounter::add_cell(const Corners& values, double level, int x, int y, Layer& layer) {
-  const Points points = solid_points(values, level);
-  layer.euler += euler_of(points);
-  for (const bool solid : {true, false}) {
-    const std::array<int, 8> least = along_edges(points, solid);
-    if (all_alike(least)) continue;
-    const std::array<int, 27> piece = connected(points, solid);
-    for (int b = 0; b < 8; ++b) {
-      for (int a = 0; a < b; ++a) {
-        if (least[a] != a || least[b] != b || piece[corner_point(a)] != piece[corner_point(b)]) continue;
-        const auto corner = [&](int n) { return Corner{x + (n & 1), y + (n >> 1 & 1), n >= 4}; };
-        layer.joins.push_back({corner(a), corner(b), solid});
-      }
+/// The Euler characteristic is the sum of those of cells - faces + edges - corners: a cell brings those that it has at
+/// its low sides. Within a cell it is pieces - tunnels, which are what the rest joins inside.
+void TunnelCounter::add_cell(const std::array<float, 8>& values, double level, int x, int y, Layer& layer) {
+  Corners corners{};
+  for (int n = 0; n < 8; ++n) corners[n] = static_cast<float>(static_cast<double>(values[n]) - level);
+  const Parts edges = along_edges(corners);
+  Parts parts = edges;
+  int of_cell = 1;
+  if (count_of(edges, corners, true) > 1 || count_of(edges, corners, false) > 1) {
+    for (std::size_t n = 0; n < low_faces.size(); ++n) {
+      const Face& low = low_faces[n];
+      const int up = to_high_face[n];
+      join_across(low, corners, parts);
+      join_across({low.a + up, low.b + up, low.c + up, low.d + up}, corners, parts);
+    }
+    const int rest_at_faces = count_of(parts, corners, false);
+    if (rest_at_faces > 1 || count_of(parts, corners, true) > 1) join_inside(corners, parts);
+    of_cell = count_of(parts, corners, true) - (rest_at_faces - count_of(parts, corners, false));
+    for (int n = 0; n < 8; ++n) {
+      const auto corner = [&](int m) { return Corner{x + (m & 1), y + (m >> 1 & 1), m >= 4}; };
+      if (edges[n] == n && parts[n] != n) layer.joins.push_back({corner(parts[n]), corner(n), is_solid(corners[n])});
     }
   }
+  layer.euler += of_cell - (is_solid(corners[0]) ? 1 : 0);
+  for (const Face& face : low_faces) layer.euler -= pieces_of(face, corners);
+  for (const int end : to_high_face) layer.euler += is_solid(corners[0]) || is_solid(corners[end]) ? 1 : 0;
 }
 
 /// nullptr: beyond the volume.

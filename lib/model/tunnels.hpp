@@ -11,9 +11,10 @@
 namespace vam::model {
 
 /// Of where a field, linear in x, y and z between the centres of voxels, reaches a level > 0; slice by slice, from the
-/// lowest up. The field is looked at every half voxel, where the solid is the union of cubes: its tunnels are pieces +
-/// cavities - Euler characteristic, cavities being the pieces of the rest, joined by faces, that are closed in. Beyond
-/// the volume the field is 0. Memory: three slices, and the runs of two.
+/// lowest up. Its tunnels are pieces + cavities - Euler characteristic, cavities being the pieces of the rest that are
+/// closed in. What hangs together across a face between four voxels its saddle tells (Nielson and Hamann 1991), and
+/// inside a cell between eight that of a section (Chernyaev 1995). Beyond the volume the field is 0. Memory: three
+/// slices, and the runs of two.
 class TunnelCounter {
  public:
   TunnelCounter(int width, int height, double level) : width_(width), height_(height), level_(level) {}

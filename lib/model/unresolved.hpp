@@ -54,7 +54,9 @@ struct Unresolved {
   /// Rounded edges and tips are less of a part.
   [[nodiscard]] bool is_much() const { return share() > 0.02; }
   /// A verdict on the voxels is none on the part: of its surface, or where that is not known of its voxels.
-  [[nodiscard]] bool leaves_doubt() const { return surface ? surface->leaves_doubt() : is_much(); }
+  [[nodiscard]] bool leaves_doubt() const { return is_most() || (surface ? surface->leaves_doubt() : is_much()); }
+  /// Whatever the surface shows: hardly anything of the part is judged.
+  [[nodiscard]] bool is_most() const { return part_share() > 0.5; }
   /// Walls will be missing in the print: more than crumbs, and where the part's surface is known more than its
   /// roughness.
   [[nodiscard]] bool loses_walls() const {

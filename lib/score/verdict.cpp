@@ -79,7 +79,7 @@ std::string unjudged(const model::Unresolved& un) {
   if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
   const std::string thin = un.thin_places();
   if (!thin.empty()) text += "; " + thin + " are not judged; smaller voxels resolve them";
-  if (!un.surface && un.is_much())
+  if (un.is_most() || (!un.surface && un.is_much()))
     text += "; walls and gaps too thin for the voxels are not judged: " + percent(un.share()) +
             "; smaller voxels resolve them";
   return text;

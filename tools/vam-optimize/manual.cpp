@@ -61,7 +61,9 @@ std::vector<std::string> dose_and_intensity() {
 std::vector<std::string> verdict() {
   return {
       "--preview optimises the part in 4 to 16 iterations on voxels four times as large as those of the target (twice "
-      "as large, or equal, where walls or gaps of the part are too thin for these and the part is small). The answer "
+      "as large, or equal, where walls or gaps of the part are too thin for these, or the print of the estimate is in "
+      "other "
+      "pieces than the part, and the part is small). The answer "
       "is yes or no, or unsure with the reason: the process window is narrower than 0.03, or walls and gaps of the "
       "part are too thin to be seen, or so thin, below 2.3 voxels of the target, that the print may have holes or "
       "bridges there, or the print of the estimate is in other pieces than the part. It includes a lower bound like "

@@ -66,8 +66,8 @@ bool can_be_coarser(const Level& level) {
   return std::min(grid.nx, grid.ny) >= 2 * (is_quick(level) ? least_voxels : least_of_slow) && grid.nz > 1;
 }
 
-/// The coarsest of four, two and one voxels of the target that shows all of the part, or that is quick enough.
-Level level_of(const model::Printer& printer, const Inputs& in, const Options& options) {
+/// One, two and four voxels of the target, down to the coarsest that shows all of the part, or that is quick enough.
+std::vector<Level> levels_of(const model::Printer& printer, const Inputs& in, const Options& options) {
   std::vector<Level> levels;
   levels.push_back({1, printer, options, {}, &in, make_scene(in.target.front(), printer, options)});
   levels.front().unresolved = tool::unresolved(in.target.front());
@@ -80,10 +80,10 @@ Level level_of(const model::Printer& printer, const Inputs& in, const Options& o
     level.unresolved = tool::unresolved(level.own.target.front());
     if (!level.unresolved.is_much() || !is_quick(levels[levels.size() - 2])) break;
   }
-  return std::move(levels.back());
+  return levels;
 }
 
-SolvedLevel solved(Level& level, int proof, std::optional<CoarseStart> start) {
+SolvedLevel solved(Level& level, int proof, std::optional<CoarseStart> start, int at_least = least_iterations) {
   const Scene& scene = level.scene;
   optimize::VolumeTask task = make_task(scene, level.in(), level.options);
   if (level.pixels == 1) {
@@ -91,7 +91,7 @@ SolvedLevel solved(Level& level, int proof, std::optional<CoarseStart> start) {
   }
   task.limits.patience = task.limits.early = 0;
   task.limits.iterations = std::min(task.limits.iterations, most_iterations);
-  task.limits.at_least = std::min(task.limits.iterations, least_iterations);
+  task.limits.at_least = std::min(task.limits.iterations, at_least);
   task.certify = proof;
   task.count_pieces = true;
   if (!start) start = coarse_start(level.in(), scene, level.options);
@@ -153,10 +153,23 @@ struct Answer {
   const char* prints;  // yes, no, unsure
   std::string words;
   std::vector<std::string> reasons;
+  bool is_torn = false;  // in other pieces than the part
 };
 
 Answer unsure(const std::vector<std::string>& reasons) {
   return {"unsure", "may not print: " + join(reasons, "; "), reasons};
+}
+
+/// Of the estimate; the surface of the target may tell the part's.
+std::optional<model::PrintPieces> pieces_of(const optimize::VolumeOutcome& outcome, const model::Unresolved& target) {
+  auto pieces = outcome.pieces;
+  if (pieces && target.surface) pieces->set_solids(target.surface->places);
+  return pieces;
+}
+
+bool is_torn(const optimize::VolumeOutcome& outcome, const model::Unresolved& target) {
+  const auto pieces = pieces_of(outcome, target);
+  return pieces && !pieces->is_surely_as_part();
 }
 
 /// `target`: of its own voxels.
@@ -166,12 +179,12 @@ Answer answer_of(const Level& level, const model::Unresolved& target, const opti
   if (least >= 1) return {"no", "will not print, by any projections", {}};
   if (!(doses.pw > 0)) return {"no", "will not print", {}};
   std::vector<std::string> doubts = lost(target);
-  auto pieces = outcome.pieces;
-  if (pieces && target.surface) pieces->set_solids(target.surface->places);
-  if (pieces && !pieces->is_surely_as_part()) doubts.push_back("in the estimate " + score::words(*pieces));
+  if (is_torn(outcome, target)) doubts.push_back("in the estimate " + score::words(*pieces_of(outcome, target)));
   if (level.pixels > 1 && level.unresolved.is_much()) doubts.push_back(unseen(level));
   if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");
-  return doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
+  Answer answer = doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
+  answer.is_torn = is_torn(outcome, target);
+  return answer;
 }
 
 /// All that is told.
@@ -205,13 +218,17 @@ FromCoarser from_coarser(const Level& level) {
   return {least, start_of(std::move(found), coarse.scene, coarse.options, level.scene, level.options)};
 }
 
-Seen see(Level level, const model::Unresolved& target) {
+Seen see(Level& level, const model::Unresolved& target) {
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
   warn_of(level.scene, level.in().target.front(), level.options);
   const bool has_coarser = can_be_coarser(level);
-  FromCoarser below = has_coarser ? from_coarser(level) : FromCoarser{};
-  const optimize::VolumeOutcome outcome =
-      solved(level, has_coarser ? 0 : proof_on(level), std::move(below.start)).outcome;
+  const FromCoarser below = has_coarser ? from_coarser(level) : FromCoarser{};
+  optimize::VolumeOutcome outcome = solved(level, has_coarser ? 0 : proof_on(level), below.start).outcome;
+  if (is_torn(outcome, target)) {  // more iterations than the process window needs
+    auto certificate = outcome.certificate;
+    outcome = solved(level, 0, below.start, most_iterations).outcome;
+    outcome.certificate = certificate;
+  }
   optimize::require_light(outcome, io::input_name(level.options.input),
                           level.options.surface_margin_mm / level.in().grid().voxel_mm);
   const double least = outcome.certificate ? outcome.certificate->least : below.least;
@@ -271,7 +288,13 @@ Json report_of(const Seen& seen) {
 }  // namespace
 
 void preview(const model::Printer& printer, const Inputs& in, const Options& options) {
-  const Seen seen = see(level_of(printer, in, options), tool::unresolved(in.target.front()));
+  const model::Unresolved target = tool::unresolved(in.target.front());
+  std::vector<Level> levels = levels_of(printer, in, options);
+  Seen seen = see(levels.back(), target);
+  while (seen.answer.is_torn && levels.size() > 1 && is_quick(levels[levels.size() - 2])) {  // by its voxels, perhaps
+    levels.pop_back();
+    seen = see(levels.back(), target);
+  }
   if (options.report != "-") io::write_text("-", table(seen));
   io::write_report(options.report, "vam-optimize-preview/1", report_of(seen));
 }

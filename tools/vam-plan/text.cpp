@@ -58,7 +58,7 @@ std::string unjudged_share(const model::Unresolved& unjudged) {
 
 /// Whether the estimate speaks of the part as it is.
 bool is_sure(const Plan& plan) {
-  const auto is_thin = [](double voxels) { return voxels < model::lost_voxels; };
+  const auto is_thin = [](double voxels) { return voxels < model::narrow_voxels; };
   const bool is_whole = !plan.pieces || plan.pieces->is_surely_as_part();
   return plan.all_judged && is_whole && !plan.in_doubt && !(plan.wall_voxels && is_thin(*plan.wall_voxels)) &&
          !(plan.thinnest_place && is_thin(plan.thinnest_place->voxels));
