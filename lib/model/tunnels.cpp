@@ -2,7 +2,6 @@
 #include "model/tunnels.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -78,9 +77,8 @@ int pieces_of(const Face& face, const Corners& corners) {
              : 0;
 }
 
-/// Joins what hangs together inside the cell: where a section between two faces, of which each is the face that the
-/// other would become, has two opposite corners that hang together at its saddle, as neither face may have (Chernyaev
-/// 1995).
+/// Joins what hangs together inside the cell [CHE95]: where a section between two opposite faces has two opposite
+/// corners that hang together at its saddle, as neither face may have.
 void join_inside(const Corners& corners, Parts& parts) {
   for (std::size_t axis = 0; axis < low_faces.size(); ++axis) {
     const Face& low = low_faces[axis];

@@ -12,9 +12,9 @@ namespace vam::model {
 
 /// Of where a field, linear in x, y and z between the centres of voxels, reaches a level > 0; slice by slice, from the
 /// lowest up. Its tunnels are pieces + cavities - Euler characteristic, cavities being the pieces of the rest that are
-/// closed in. What hangs together across a face between four voxels its saddle tells (Nielson and Hamann 1991), and
-/// inside a cell between eight that of a section (Chernyaev 1995). Beyond the volume the field is 0. Memory: three
-/// slices, and the runs of two.
+/// closed in. What hangs together across a face between four voxels its saddle tells [NIE91], and inside a cell between
+/// eight that of a section [CHE95]. Beyond the volume the field is 0. Memory: three slices, and of those that are not
+/// yet connected a byte a voxel.
 class TunnelCounter {
  public:
   TunnelCounter(int width, int height, double level) : width_(width), height_(height), level_(level) {}
@@ -22,7 +22,7 @@ class TunnelCounter {
   void add(int count, const float* slices);
   /// Takes in what was added; other threads may do so for other fields.
   void connect();
-  /// Of the slices that were taken in.
+  /// Of all slices, after connect().
   [[nodiscard]] std::int64_t tunnels() const;
 
  private:

@@ -26,7 +26,8 @@ struct ThresholdMargin {
 };
 
 std::optional<ThresholdMargin> threshold_margin(const Verdict& verdict) {
-  if (!verdict.threshold || !(verdict.whole.max_void > 0) || !(verdict.whole.min_part > 0)) return std::nullopt;
+  const model::DoseMetrics& doses = verdict.whole;
+  if (!verdict.threshold || doses.part == 0 || !(doses.max_void > 0) || !(doses.min_part > 0)) return std::nullopt;
   return ThresholdMargin{1 - *verdict.threshold / verdict.whole.min_part,
                          *verdict.threshold / verdict.whole.max_void - 1};
 }

@@ -48,7 +48,7 @@ void add_to(Json& figures, const model::PrintPieces& pieces);
 [[nodiscard]] std::string words(const Verdict& verdict);
 
 /// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), threshold_margin where
-/// the threshold is given (below_part and above_void, relative; negative where it is outside the process window), and
+/// the threshold is given and both have a dose (below_part and above_void, relative; negative outside the window), and
 /// the pieces, where they are counted.
 void add_to(Json& figures, const Verdict& verdict);
 

@@ -66,7 +66,8 @@ std::vector<std::string> verdict() {
       "pieces than the part, and the part is small). The answer "
       "is yes or no, or unsure with the reason: the process window is narrower than 0.03, or walls and gaps of the "
       "part are too thin to be seen, or so thin, below 2.3 voxels of the target, that the print may have holes or "
-      "bridges there, or the print of the estimate is in other pieces than the part. It includes a lower bound like "
+      "bridges there, or the print of the estimate is torn: in other pieces than the part, with cut walls, shut gaps "
+      "or holes. It includes a lower bound like "
       "that of --certify, computed on voxels of twice "
       "that size.",
       "The verdict of a full run counts the pieces of the print, its broken walls and shut gaps as vam-score does, "

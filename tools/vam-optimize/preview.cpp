@@ -2,7 +2,6 @@
 #include "vam-optimize/preview.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -153,7 +152,7 @@ struct Answer {
   const char* prints;  // yes, no, unsure
   std::string words;
   std::vector<std::string> reasons;
-  bool is_torn = false;  // in other pieces than the part
+  bool is_torn = false;  // as a reason
 };
 
 Answer unsure(const std::vector<std::string>& reasons) {
@@ -167,6 +166,7 @@ std::optional<model::PrintPieces> pieces_of(const optimize::VolumeOutcome& outco
   return pieces;
 }
 
+/// In other pieces than the part, or with cut walls, shut gaps or holes.
 bool is_torn(const optimize::VolumeOutcome& outcome, const model::Unresolved& target) {
   const auto pieces = pieces_of(outcome, target);
   return pieces && !pieces->is_surely_as_part();
@@ -219,12 +219,15 @@ FromCoarser from_coarser(const Level& level) {
 }
 
 Seen see(Level& level, const model::Unresolved& target) {
+  level.unresolved = level.pixels == 1 ? target : tool::unresolved(level.own.target.front());
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
   warn_of(level.scene, level.in().target.front(), level.options);
   const bool has_coarser = can_be_coarser(level);
   const FromCoarser below = has_coarser ? from_coarser(level) : FromCoarser{};
   optimize::VolumeOutcome outcome = solved(level, has_coarser ? 0 : proof_on(level), below.start).outcome;
-  if (is_torn(outcome, target)) {  // more iterations than the process window needs
+  const bool can_go_on =
+      outcome.iterations < std::min(level.options.iterations.value_or(most_iterations), most_iterations);
+  if (outcome.metrics.pw > 0 && is_torn(outcome, target) && can_go_on) {  // more than the process window needs
     auto certificate = outcome.certificate;
     outcome = solved(level, 0, below.start, most_iterations).outcome;
     outcome.certificate = certificate;

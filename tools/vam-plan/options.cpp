@@ -25,13 +25,12 @@ cli::Manual manual() {
            " million of them, and smaller, down to a pixel, where walls or gaps are too thin for them and smaller ones "
            "are at most " +
            format_number(most_finer) +
-           " million, or where the print of the estimate is in other pieces than the part. What is too thin even then "
+           " million, or where the print of the estimate is torn. What is too thin even then "
            "is stated with its volume and heights as not judged; if it is 2 % of "
            "the part or more, or if the printer's pixels lose walls or gaps or leave them in doubt, as vam-slice "
            "tells, or where a wall or another place is below 2 pixels, or a wall of a mesh below 2.3, so that it may "
-           "be pierced, or if "
-           "the print of the estimate is in other pieces than the part, with walls that are cut or gaps that are shut, "
-           "as vam-score counts them, the answer is perhaps. The deviations, one at a time and "
+           "be pierced, or if the print of the estimate is torn: in other pieces than the part, with cut walls, shut "
+           "gaps or holes, as vam-score counts them, the answer is perhaps. The deviations, one at a time and "
            "either "
            "way, are " +
            deviations +
@@ -43,7 +42,7 @@ cli::Manual manual() {
        "The duration requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm."},
       {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:diameter=10,cell=5"},
        {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},
-      {"Memory: the part at up to 16 million voxels, 9 bytes each, and the doses and projections of the estimate.",
+      {"Memory: the part at up to 16 million voxels, 21 bytes each, and the doses and projections of the estimate.",
        "Wall thickness: the first percentile of the distance across the part at its medial surface, accurate to one "
        "or two voxels, which are larger for parts of more than 16 million voxels. Faces that converge by more than 20 "
        "degrees, as at the edge of a wedge, are no walls, and reported as sharp edges; a strut, the neck "

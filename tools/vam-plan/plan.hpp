@@ -22,7 +22,7 @@ namespace vam::plan_tool {
 
 inline constexpr int usual_coarseness = 4;  // pixels per voxel of the estimate
 inline constexpr int most_estimated = 2;    // million voxels: those of larger parts are larger by a power of 2
-inline constexpr double most_finer = 0.7;   // million voxels that are taken for the sake of thin walls
+inline constexpr double most_finer = 0.7;   // million voxels that are taken for thin walls and torn prints
 inline constexpr const char* deviations = "axis=0.5px,index=0.005,angle=0.25deg";
 
 /// Whether the part fits, and at which scale.
@@ -44,7 +44,7 @@ struct Plan {
   double stretch_z = 1;               // of that grid
   std::optional<double> wall_voxels;  // of that grid; none: the thinnest one is thinner than the resolution
   double wall_mm = 0;                 // of the print
-  std::optional<solid::Walls::Place> thinnest_place;  // where a few voxels are thinner than that
+  std::optional<solid::Walls::Place> thinnest_place;  // or a neck, thinner than that
   model::Cavities cavities;                           // closed ones, in voxels of the walls' resolution
   bool in_doubt = false;       // the printer's voxels lose walls or gaps, or leave open whether they print
   bool sharp_edges = false;    // thinner than what prints

@@ -184,7 +184,8 @@ SensitivityField sensitivity_field(const Json& json) {
     throw Error{Fault::data, "has no field of vam-correct"};
   }
   if (count_of(field.covariance) != SensitivityField::numbers * SensitivityField::numbers) {
-    throw Error{Fault::data, "its covariance is not of eleven SensitivityField::numbers"};
+    throw Error{Fault::data,
+                "its covariance is not of " + std::to_string(SensitivityField::numbers) + " numbers squared"};
   }
   const bool sized = std::all_of(field.half_mm.begin(), field.half_mm.end(), [](double half) { return half > 0; });
   if (!sized || matrix_of(field.covariance).llt().info() != Eigen::Success) {

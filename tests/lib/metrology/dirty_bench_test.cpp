@@ -253,8 +253,8 @@ TEST_CASE("bubbles that rise are removed") {
 
 TEST_CASE("bubbles with specks before them, and bubbles in noise, are removed") {
   // A bubble at the one end of a line and a speck at the other leave no end that shows the print. Draws 1 to 10 are
-  // within the bar, 2 just so. Noise of 2 % of the brightest, which are bubbles, is 5 % of the print's: of these draws
-  // 7 are within the bar with it, the worst has 0.07 mm.
+  // within the bar, 2 just so. Noise of 2 % of the brightest, which are bubbles, is 5 % of the print's: with it
+  // all are within the bar, with specks as well 7 of 10, the worst has 0.07 mm.
   const auto bodies = post(2.7);
   oracle::ViewBench bench = narrow_bench();
   bench.rows = 140;

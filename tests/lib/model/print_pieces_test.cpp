@@ -474,6 +474,23 @@ TEST_CASE("torn sets are those of the whole volume, at every density and height 
   CHECK(some > 100);
 }
 
+TEST_CASE("1 % of the dose may cut off what 2 % no longer cure") {
+  constexpr int width = 11;
+  constexpr int height = 5;
+  model::PrintPieceCounter counter(width, height, 0.8);
+  std::vector<float> part, dose;  // a block, a rod that 1 % break, and beyond it what 1 % leave
+  for (int i = 0; i < width * height; ++i) {
+    const int x = i % width;
+    part.push_back(x < 5 ? 1.0F : x == 5 ? 0.6F : x < 9 ? 0.9F : 0.0F);
+    dose.push_back(x < 5 ? 1.0F : x == 5 ? 0.805F : x < 9 ? 0.812F : 0.0F);
+  }
+  for (int k = 0; k < height; ++k) counter.add(1, part.data(), dose.data());
+  const model::PrintPieces found = counter.found();
+  CHECK(found.print == 1);
+  CHECK(found.print_least() == 1);
+  CHECK(found.print_most() == 2);
+}
+
 TEST_CASE("a rod at the threshold, or a gap just below it, leaves the number of pieces open") {
   const auto found = [](float covered, float dose) {  // between two blocks
     constexpr int width = 11;

