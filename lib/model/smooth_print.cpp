@@ -33,7 +33,8 @@ float firm_dose(float coverage, float dose, double threshold) {
 float other_dose(double factor, float coverage, float dose, double threshold) {
   const float other = static_cast<float>(factor) * dose;
   const bool cures = static_cast<double>(other) >= threshold;
-  const bool stays = factor < 1 ? coverage >= 1 && !cures : coverage <= 0 && cures;
+  const bool stays =
+      factor < 1 ? label_of(coverage) == Label::part && !cures : label_of(coverage) == Label::void_ && cures;
   return stays ? dose : other;
 }
 

@@ -79,8 +79,10 @@ void add_preview(Plan& plan, const solid::Part& part, const model::Printer& prin
   Coarse judged = coarse(body, printer, by);
   while (!judged.is_all_judged() && can_be_finer()) judged = coarse(body, printer, by /= 2);
   estimate(plan, std::move(judged));
-  while (plan.pieces && !plan.pieces->is_surely_as_part() && can_be_finer())
-    estimate(plan, coarse(body, printer, by /= 2));
+  const auto is_torn = [&] {  // where it prints at all
+    return plan.preview && plan.preview->outcome.metrics.pw > 0 && plan.pieces && !plan.pieces->is_surely_as_part();
+  };
+  while (is_torn() && can_be_finer()) estimate(plan, coarse(body, printer, by /= 2));
 }
 
 }  // namespace vam::plan_tool

@@ -82,7 +82,7 @@ std::string print_rows(const Plan& plan) {
                                     (plan.coarseness > 1 ? "vam-slice states which the printer's voxels resolve"
                                                          : "smaller pixels, or thicker walls, resolve them"));
   }
-  const std::string torn = plan.pieces ? score::words(*plan.pieces) : "";
+  const std::string torn = plan.pieces && nominal.figures.pw > 0 ? score::words(*plan.pieces) : "";
   if (!torn.empty()) text += row("  pieces", torn);
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));

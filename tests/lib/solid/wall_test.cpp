@@ -3,9 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
+#include <vector>
+
+#include "solid/voxel/private/neck.hpp"
 
 using namespace vam;
 
@@ -62,10 +67,25 @@ TEST_CASE("the thinnest place of an hourglass is its neck, which a cone has not"
   }
   const auto cone = filled(41, 31, 31, [](int i, int j, int k) { return std::hypot(j - 15, k - 15) < 0.35 * i; });
   CHECK(!solid::walls(cone).thinnest_place);
-  const auto two = filled(41, 31, 31, [](int i, int j, int k) {
-    return std::hypot(std::abs(i - 20) - 11, j - 15, k - 15) <= 9;  // balls that do not touch
-  });
-  CHECK(!solid::walls(two).thinnest_place);
+}
+
+TEST_CASE("a neck is narrow, and narrower than both sides, which it joins") {
+  const auto found = [](const std::vector<std::int32_t>& row, std::int32_t most, double least_deeper) {
+    const int length = static_cast<int>(row.size());
+    std::vector<std::int32_t> squared(9 * row.size(), 0);  // the row, with void around it
+    std::copy(row.begin(), row.end(), squared.begin() + 4 * length);
+    std::vector<std::int64_t> at = solid::necks({length, 3, 3}, squared, most, least_deeper);
+    for (std::int64_t& voxel : at) voxel -= 4 * length;
+    return at;
+  };
+  using Places = std::vector<std::int64_t>;
+  CHECK(found({0, 9, 4, 9, 0}, 6, 1) == Places{2});
+  CHECK(found({0, 9, 4, 9, 0}, 6, 1.1).empty());  // not narrower by so much
+  CHECK(found({0, 9, 4, 9, 0}, 3, 1).empty());    // not so narrow
+  CHECK(found({0, 9, 4, 4, 1, 4, 0}, 6, 1) == Places{4});
+  CHECK(found({0, 9, 4, 1, 0}, 6, 1).empty());     // a tip
+  CHECK(found({0, 9, 1, 0, 9, 0}, 6, 1).empty());  // apart
+  CHECK(found({0, 0, 0}, 6, 1).empty());
 }
 
 TEST_CASE("the thinnest place: one strut between thick blocks, its middle, and no single place") {
