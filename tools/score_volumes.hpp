@@ -78,7 +78,9 @@ inline score::Score score_print(const io::SparseVolume& dose, const io::SparseVo
   const double threshold = result.print_threshold();
   if (!(threshold > 0)) return result;  // the part stays dark
   const score::CuredPieces start(how.circle, threshold, grid.nx, grid.ny);
-  result.set_pieces(with_volumes(start, dose, target, "counting pieces").found());
+  model::PrintPieces pieces = with_volumes(start, dose, target, "counting pieces").found();
+  pieces.set_places(grid, stretch_z(target.metadata));
+  result.set_pieces(pieces);
   return result;
 }
 

@@ -157,8 +157,10 @@ void require_memory(double bytes, const std::string& subject, const std::string&
   if (bytes <= left) return;
   throw Error{Fault::memory,
               subject + ": needs " + in_gib(bytes) + " of memory, but " +
-                  (chosen ? std::string(bound_name) + " leaves " + in_gib(left) : in_gib(left) + " are free") + "; " +
-                  remedy + ", or allow more with " + bound_name};
+                  (!chosen    ? in_gib(left) + " are free"
+                   : left > 0 ? bound_name + (" leaves " + in_gib(left))
+                              : bound_name + (" of " + in_gib(static_cast<double>(bound)) + " is used up")) +
+                  "; " + remedy + ", or allow more with " + bound_name};
 }
 
 }  // namespace vam

@@ -66,7 +66,9 @@ void RunSets::add(const std::vector<VoxelRun>& slice, const Joins& joins) {
   for (const VoxelRun& run : slice) {
     parent_.push_back(parent_.size());
     voxels_.push_back(run.end - run.begin);
+    places_.push_back({(run.begin + run.end) / 2, run.row, slices_});
   }
+  ++slices_;
   const Lists level{slice, slice, first, first, false};
   const Lists below{slice, last_, first, first - last_.size(), true};
   join_faces(level, -1);
@@ -81,11 +83,13 @@ std::vector<std::size_t> RunSets::forget(const std::function<void(std::size_t se
   std::vector<std::size_t> stands(runs(), gone);  // for a set, of the last slice
   std::vector<std::size_t> parents;
   std::vector<std::int64_t> voxels;
+  std::vector<VoxelPlace> places;
   for (std::size_t run = first; run < runs(); ++run) {
     const std::size_t set = set_of(run);
     if (stands[set] == gone) stands[set] = run - first;
     parents.push_back(stands[set]);
     voxels.push_back(voxels_[set]);
+    places.push_back(places_[set]);
   }
   std::vector<std::size_t> now;
   for (std::size_t run = 0; run < runs(); ++run) {
@@ -94,6 +98,7 @@ std::vector<std::size_t> RunSets::forget(const std::function<void(std::size_t se
   }
   parent_ = std::move(parents);
   voxels_ = std::move(voxels);
+  places_ = std::move(places);
   return now;
 }
 

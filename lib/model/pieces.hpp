@@ -14,6 +14,12 @@ struct VoxelRun {
   int row, begin, end;
 };
 
+/// A voxel of a volume.
+struct VoxelPlace {
+  int column = 0, row = 0, slice = 0;
+  bool operator==(const VoxelPlace&) const = default;
+};
+
 /// The runs of a slice, row by row, of the voxels with solid(pixel).
 template <class Solid>
 [[nodiscard]] std::vector<VoxelRun> runs_of(int width, int height, const Solid& solid) {
@@ -58,6 +64,8 @@ class RunSets {
   [[nodiscard]] std::size_t set_of(std::size_t run) const;
   /// Of the set that this run stands for.
   [[nodiscard]] std::int64_t voxels(std::size_t set) const { return voxels_[set]; }
+  /// The middle of one of its runs.
+  [[nodiscard]] const VoxelPlace& place(std::size_t set) const { return places_[set]; }
   /// Forgets all runs but those of the last slice, which are then numbered from 0 on; before that, complete(set) of the
   /// sets that do not reach it. Of each former run the number of the run that stands for its set, or `gone`.
   static constexpr std::size_t gone = ~std::size_t{0};
@@ -77,7 +85,9 @@ class RunSets {
 
   mutable std::vector<std::size_t> parent_;  // of each run; paths are shortened when they are followed
   std::vector<std::int64_t> voxels_;         // of the set, at the run that stands for it
+  std::vector<VoxelPlace> places_;           // of each run
   std::vector<VoxelRun> last_;
+  int slices_ = 0;  // so far
 };
 
 /// Voxels that touch, by a corner at least, are of one set.

@@ -131,8 +131,8 @@ PrintPieces PrintPieceCounter::found() const {
           .print = print,
           .print_fewer = print - least,
           .print_more = most - print,
-          .broken = broken.voxels(),
-          .shut = shut.voxels(),
+          .broken = broken.found(),
+          .shut = shut.found(),
           .holes = holes,
           .firm_holes = std::min(holes, beyond_part(of_firm_.tunnels()))};
 }

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "model/grid.hpp"
 #include "model/part_surface.hpp"
 #include "model/pieces.hpp"
 #include "model/smooth_print.hpp"
@@ -22,19 +25,30 @@ struct PrintPieces {
   int print = 0;         // of the dose at the threshold
   int print_fewer = 0;   // and by how many it is in fewer or more with 1 and 2 % less and more dose [other_dose]
   int print_more = 0;
-  std::int64_t broken = 0;  // voxels of torn sets of the part [TornSets]
-  std::int64_t shut = 0;    // and of gaps
+  TornSets::Found broken = {};  // of the part
+  TornSets::Found shut = {};    // of gaps
   std::int64_t holes = 0;  // tunnels of the print, smooth ones [SmoothPrint], beyond those of the part; not less than 0
   std::int64_t firm_holes = 0;  // of these, on which 2 % of the dose do not decide [firm_dose]
   int solids = 0;               // of the part's own surface; 0: not known
   int specks = 0;               // of these, so small that they may not count
+  /// Where most hang together of what is broken and shut, in mm of the print; not known before set_places().
+  std::optional<std::array<double, 3>> broken_at_mm = std::nullopt, shut_at_mm = std::nullopt;
 
+  /// Both were counted on these voxels.
+  void set_places(const Grid& grid, double stretch_z) {
+    const auto place = [&](const TornSets::Found& found) -> std::optional<std::array<double, 3>> {
+      if (found.voxels == 0) return std::nullopt;
+      return std::array{grid.x_mm(found.at.column), grid.y_mm(found.at.row), grid.z_mm(found.at.slice) / stretch_z};
+    };
+    broken_at_mm = place(broken);
+    shut_at_mm = place(shut);
+  }
   void set_solids(const PartSurface& surface) {
     solids = surface.solids;
     specks = surface.specks;
   }
-  [[nodiscard]] bool loses_walls() const { return broken > 0; }
-  [[nodiscard]] bool shuts_gaps() const { return shut > 0; }
+  [[nodiscard]] bool loses_walls() const { return broken.voxels > 0; }
+  [[nodiscard]] bool shuts_gaps() const { return shut.voxels > 0; }
   [[nodiscard]] bool has_holes() const { return firm_holes > 0; }
   [[nodiscard]] bool may_have_holes() const { return holes > 0; }
   /// In how many pieces the part is, as far as its surface or the two numbers tell.

@@ -216,7 +216,7 @@ void TornSets::decide_torn() {
   const std::vector<std::size_t> lost = lost_of_torn_;
   const std::vector<std::size_t> now = torn_.forget([&](std::size_t set) {
     if (apart[set] < least_apart && torn_.voxels(set) < least_torn_) return;
-    voxels_ += torn_.voxels(set);
+    count(torn_.voxels(set), torn_.place(set));
     counted_[lost[set]] += torn_.voxels(set);
   });
   apart_ = carried(apart, now, torn_.runs());
@@ -245,7 +245,7 @@ void TornSets::decide() {
          at != touching_.end() && at->first == set; ++at) {
       pieces.push_back(at->second);
     }
-    judge(lost_.voxels(set) - counted[set], torn[set] == lost_.voxels(set), std::move(pieces));
+    judge(torn[set] == lost_.voxels(set), {lost_.voxels(set) - counted[set], lost_.place(set), std::move(pieces)});
   });
   std::erase_if(touching_, [&](const auto& pair) { return runs[pair.first] == RunSets::gone; });
   thin_out(touching_, ended);
@@ -255,31 +255,37 @@ void TornSets::decide() {
   for (std::size_t& lost : lost_of_torn_) lost = runs[lost];
 }
 
-/// Of a set that is complete those that are not counted as torn, whether all are torn, and the pieces that touch it, in
-/// order.
-void TornSets::judge(std::int64_t voxels, bool is_whole, std::vector<Piece> pieces) {
-  const bool cut = pieces.size() > 1 && pieces.back() >= ended;  // which no other will ever be one with
-  if (cut || (pieces.empty() && is_whole)) {
-    voxels_ += voxels;
-  } else if (pieces.size() > 1) {
-    undecided_.push_back({voxels, std::move(pieces)});
+void TornSets::count(std::int64_t voxels, const VoxelPlace& at) {
+  found_.voxels += voxels;
+  if (voxels <= found_.largest) return;
+  found_.largest = voxels;
+  found_.at = at;
+}
+
+/// A set that is complete, its pieces in order. is_whole: all of it is torn.
+void TornSets::judge(bool is_whole, Undecided set) {
+  const bool cut = set.pieces.size() > 1 && set.pieces.back() >= ended;  // which no other will ever be one with
+  if (cut || (set.pieces.empty() && is_whole)) {
+    count(set.voxels, set.at);
+  } else if (set.pieces.size() > 1) {
+    undecided_.push_back(std::move(set));
   }
 }
 
 void TornSets::judge_undecided(const std::vector<Piece>& now) {
-  for (auto& [voxels, pieces] : std::exchange(undecided_, {})) {
-    for (Piece& piece : pieces) piece = now[piece];
-    std::sort(pieces.begin(), pieces.end());
-    pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
-    judge(voxels, false, std::move(pieces));
+  for (Undecided& set : std::exchange(undecided_, {})) {
+    for (Piece& piece : set.pieces) piece = now[piece];
+    std::sort(set.pieces.begin(), set.pieces.end());
+    set.pieces.erase(std::unique(set.pieces.begin(), set.pieces.end()), set.pieces.end());
+    judge(false, std::move(set));
   }
 }
 
 // Above the last slice is nothing, so that all ends there.
-std::int64_t TornSets::voxels() const {
+TornSets::Found TornSets::found() const {
   TornSets all = *this;
   all.add({});
-  return all.voxels_;
+  return all.found_;
 }
 
 }  // namespace vam::model

@@ -55,7 +55,14 @@ class TornSets {
   explicit TornSets(Torn what) : least_torn_(what == Torn::part ? 27 : 3) {}
   void add(const TornSlice& slice);
   /// That count.
-  [[nodiscard]] std::int64_t voxels() const;
+  [[nodiscard]] std::int64_t voxels() const { return found().voxels; }
+  struct Found {
+    std::int64_t voxels = 0;   // of all that count
+    std::int64_t largest = 0;  // of these, that hang together
+    VoxelPlace at = {};        // one of them
+    bool operator==(const Found&) const = default;
+  };
+  [[nodiscard]] Found found() const;
 
  private:
   /// Of left voxels: the run that stands for it in the last slice, or of one that ends before, a number of its own.
@@ -64,6 +71,7 @@ class TornSets {
   /// A set that is torn if these pieces stay apart.
   struct Undecided {
     std::int64_t voxels;  // that are not counted as torn
+    VoxelPlace at;        // one of them
     std::vector<Piece> pieces;
   };
 
@@ -72,7 +80,8 @@ class TornSets {
   [[nodiscard]] std::vector<Piece> forget_rim();
   void decide();
   void decide_torn();
-  void judge(std::int64_t voxels, bool is_whole, std::vector<Piece> pieces);
+  void judge(bool is_whole, Undecided set);
+  void count(std::int64_t voxels, const VoxelPlace& at);
   void judge_undecided(const std::vector<Piece>& now);
 
   std::int64_t least_torn_;
@@ -83,7 +92,7 @@ class TornSets {
   std::vector<std::pair<std::size_t, Piece>> touching_;  // a lost run and a piece
   std::vector<Undecided> undecided_;
   std::size_t ended_pieces_ = 0;
-  std::int64_t voxels_ = 0;  // of what is decided
+  Found found_;  // of what is decided
 };
 
 }  // namespace vam::model

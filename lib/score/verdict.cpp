@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/verdict.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,12 @@ std::string margin_text(const ThresholdMargin& margin) {
 }
 
 std::string in_pieces(int count) { return std::to_string(count) + (count == 1 ? " piece" : " pieces"); }
+
+std::string place(const std::optional<std::array<double, 3>>& at_mm) {
+  if (!at_mm) return "";
+  const auto& [x, y, z] = *at_mm;
+  return ", most at x, y, z = " + format_number(x, 3) + ", " + format_number(y, 3) + ", " + format_number(z, 3) + " mm";
+}
 
 std::vector<std::string> of_pieces(const model::PrintPieces& pieces) {
   const std::string print = "the print is in " + in_pieces(pieces.print);
@@ -106,12 +113,12 @@ void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& piece
 std::string words(const model::PrintPieces& pieces) {
   std::vector<std::string> all = of_pieces(pieces);
   if (pieces.loses_walls()) {
-    all.push_back("walls are cut or missing: " + std::to_string(pieces.broken) +
-                  " voxels that the part fills by half or more do not cure");
+    all.push_back("walls are cut or missing: " + std::to_string(pieces.broken.voxels) +
+                  " voxels that the part fills by half or more do not cure" + place(pieces.broken_at_mm));
   }
   if (pieces.shuts_gaps()) {
-    all.push_back("gaps are shut: " + std::to_string(pieces.shut) +
-                  " voxels that the part fills by less than a quarter cure");
+    all.push_back("gaps are shut: " + std::to_string(pieces.shut.voxels) +
+                  " voxels that the part fills by less than a quarter cure" + place(pieces.shut_at_mm));
   }
   if (pieces.may_have_holes()) {
     all.push_back(std::string("walls ") + (pieces.has_holes() ? "are" : "may be") +
@@ -129,8 +136,10 @@ void add_to(Json& figures, const model::PrintPieces& pieces) {
   figures["print_pieces"] = pieces.print;
   figures["print_pieces_least"] = pieces.print_least();
   figures["print_pieces_most"] = pieces.print_most();
-  figures["broken_voxels"] = pieces.broken;
-  figures["shut_voxels"] = pieces.shut;
+  figures["broken_voxels"] = pieces.broken.voxels;
+  if (pieces.broken_at_mm) figures["broken_at_mm"] = *pieces.broken_at_mm;
+  figures["shut_voxels"] = pieces.shut.voxels;
+  if (pieces.shut_at_mm) figures["shut_at_mm"] = *pieces.shut_at_mm;
   figures["holes"] = pieces.holes;
   figures["firm_holes"] = pieces.firm_holes;
 }

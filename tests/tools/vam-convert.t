@@ -85,6 +85,8 @@ fails 64 'stretch-z' vam-convert ramp.npy --voxel 0.5 --stretch-z 0 -o x.vdb
 
 # What is refused.
 fails 64 'the kind of data is not given; use --voxel MM' vam-convert a.npy -o x.vdb
+: >empty.vdb
+fails 65 'empty.vdb: is empty; the program that should have written it failed' vam-convert empty.vdb -o x.npy
 fails 64 'stdin: the kind of data is not given; use --voxel MM' sh -c 'vam-convert <a.npy'
 fails 64 'x.exr: a volume is written as .vdb' vam-convert a.npy --voxel 1 -o x.exr
 fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --geometry parallel -o x.vdb

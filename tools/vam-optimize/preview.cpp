@@ -160,15 +160,18 @@ Answer unsure(const std::vector<std::string>& reasons) {
 }
 
 /// Of the estimate; the surface of the target may tell the part's.
-std::optional<model::PrintPieces> pieces_of(const optimize::VolumeOutcome& outcome, const model::Unresolved& target) {
+std::optional<model::PrintPieces> pieces_of(const Level& level, const optimize::VolumeOutcome& outcome,
+                                            const model::Unresolved& target) {
   auto pieces = outcome.pieces;
-  if (pieces && target.surface) pieces->set_solids(target.surface->places);
+  if (!pieces) return pieces;
+  if (target.surface) pieces->set_solids(target.surface->places);
+  pieces->set_places(level.scene.grid, tool::stretch_z(level.in().target.front().metadata));
   return pieces;
 }
 
 /// In other pieces than the part, or with cut walls, shut gaps or holes.
-bool is_torn(const optimize::VolumeOutcome& outcome, const model::Unresolved& target) {
-  const auto pieces = pieces_of(outcome, target);
+bool is_torn(const Level& level, const optimize::VolumeOutcome& outcome, const model::Unresolved& target) {
+  const auto pieces = pieces_of(level, outcome, target);
   return pieces && !pieces->is_surely_as_part();
 }
 
@@ -179,11 +182,12 @@ Answer answer_of(const Level& level, const model::Unresolved& target, const opti
   if (least >= 1) return {"no", "will not print, by any projections", {}};
   if (!(doses.pw > 0)) return {"no", "will not print", {}};
   std::vector<std::string> doubts = lost(target);
-  if (is_torn(outcome, target)) doubts.push_back("in the estimate " + score::words(*pieces_of(outcome, target)));
+  const bool torn = is_torn(level, outcome, target);
+  if (torn) doubts.push_back("in the estimate " + score::words(*pieces_of(level, outcome, target)));
   if (level.pixels > 1 && level.unresolved.is_much()) doubts.push_back(unseen(level));
   if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");
   Answer answer = doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
-  answer.is_torn = is_torn(outcome, target);
+  answer.is_torn = torn;
   return answer;
 }
 
@@ -227,7 +231,7 @@ Seen see(Level& level, const model::Unresolved& target) {
   optimize::VolumeOutcome outcome = solved(level, has_coarser ? 0 : proof_on(level), below.start).outcome;
   const bool can_go_on =
       outcome.iterations < std::min(level.options.iterations.value_or(most_iterations), most_iterations);
-  if (outcome.metrics.pw > 0 && is_torn(outcome, target) && can_go_on) {  // more than the process window needs
+  if (outcome.metrics.pw > 0 && is_torn(level, outcome, target) && can_go_on) {  // more than the process window needs
     auto certificate = outcome.certificate;
     outcome = solved(level, 0, below.start, most_iterations).outcome;
     outcome.certificate = certificate;

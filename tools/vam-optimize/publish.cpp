@@ -108,6 +108,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     verdict.threshold = fixed_threshold(options);
     verdict.unresolved = tool::unresolved(target);
     set_pieces(verdict, outcome.pieces);
+    if (verdict.pieces) verdict.pieces->set_places(scene.grid, tool::stretch_z(target.metadata));
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(

@@ -2,6 +2,7 @@
 #include "vam-view/options.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/save.hpp"
 
@@ -79,7 +80,9 @@ void declare(cli::App& app, Options& options) {
 
 void check(const Options& options) {
   const auto& view = options.view;
-  if (view.low && view.high && *view.low >= *view.high) throw Error{Fault::usage, "--low: must be below --high"};
+  if (view.low && view.high && *view.low >= *view.high)
+    throw Error{Fault::usage,
+                "--low " + format_number(*view.low) + ": must be below --high " + format_number(*view.high)};
   if (view.at && view.sheet > 1) throw Error{Fault::usage, "--at: cannot be combined with --sheet"};
   if (options.histogram + options.cure + options.render + !options.compare.empty() > 1)
     throw Error{Fault::usage, "--dose-histogram, --cure-map, --render and --compare exclude each other; give one"};

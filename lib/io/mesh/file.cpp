@@ -33,7 +33,7 @@ std::string without_mark(std::string bytes) {
 
 // By content, whatever the name. others: what else the caller reads.
 PolygonSoup parse(const std::string& bytes, const std::string& others) {
-  if (bytes.empty()) throw MeshProblem{"is empty"};
+  if (bytes.empty()) throw MeshProblem{"is empty; the program that should have written it failed"};
   for (const MeshFormat& format : mesh_formats()) {
     if (format.recognises(bytes)) return format.read(bytes);
   }
@@ -55,7 +55,7 @@ PolygonSoup parse(const std::string& bytes, const std::string& others) {
       throw MeshProblem{"is damaged: byte " + std::to_string(at) + " of its text (" + text + ") is 0; save it again"};
     return parse_stl(bytes);
   }
-  throw MeshProblem{"not a mesh of a known format (" + mesh_format_names() + ")"};
+  throw MeshProblem{"not a mesh of a known format; export the part as one of " + mesh_format_names()};
 }
 
 // A pipe may never end: whether nothing that follows makes these first bytes a mesh. No format begins so, and a binary

@@ -67,9 +67,9 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
   }
   const std::uint64_t count = triangles_promised(bytes);
   if (bytes.size() < binary_stl_bytes(bytes)) {
-    throw MeshProblem{"the header states " + std::to_string(count) + " triangles (" +
-                      std::to_string(binary_stl_bytes(bytes)) + " bytes) but the file has " +
-                      std::to_string(bytes.size()) + " bytes; it is truncated or no STL"};
+    throw MeshProblem{"neither a mesh of another format nor a whole binary STL, whose header would state " +
+                      std::to_string(count) + " triangles (" + std::to_string(binary_stl_bytes(bytes)) +
+                      " bytes): it has " + std::to_string(bytes.size()) + " bytes; export it again"};
   }
   if (const std::string_view rest = std::string_view(bytes).substr(binary_stl_bytes(bytes));
       count > 0 && !is_padding(rest)) {

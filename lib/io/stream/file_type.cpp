@@ -87,12 +87,16 @@ std::optional<FileType> known_file_type(const std::string& path) {
   return std::nullopt;
 }
 
+void require_content(const std::string& path) {
+  std::error_code ignored;
+  if ((path != "-" && std::filesystem::is_directory(path, ignored)) || !head_of(path).empty()) return;
+  throw Error{Fault::data, input_name(path) + ": is empty; the program that should have written it failed"};
+}
+
 FileType file_type(const std::string& path) {
   if (const auto known = known_file_type(path)) return *known;
+  require_content(path);
   const std::string name = input_name(path);
-  if (head_of(path).empty()) {
-    throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
-  }
   const std::string foreign = foreign_format(head_of(path));
   if (!foreign.empty()) {
     throw Error{Fault::data, name + ": is " + foreign +

@@ -21,6 +21,9 @@ enum class FileType {
 /// The same; nothing for a file that is none of these.
 [[nodiscard]] std::optional<FileType> known_file_type(const std::string& path);
 
+/// Throws Error: no_input, data (a file or pipe without bytes).
+void require_content(const std::string& path);
+
 /// Where a mesh may stand as well: is it a volume? Throws Fault::no_input.
 [[nodiscard]] bool is_volume(const std::string& path);
 

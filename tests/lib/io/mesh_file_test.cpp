@@ -189,7 +189,7 @@ TEST_CASE("a file truncated anywhere is an error") {
       CHECK(refusal(folder, bytes.substr(0, size)) != "no error");
     }
   }
-  CHECK(has(refusal(folder, stl.substr(0, 300)), "12 triangles (684 bytes) but the file has 300 bytes"));
+  CHECK(has(refusal(folder, stl.substr(0, 300)), "12 triangles (684 bytes): it has 300 bytes"));
 }
 
 TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no faces, foreign files") {

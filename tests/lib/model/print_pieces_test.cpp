@@ -84,15 +84,15 @@ TEST_CASE("a wall without its foot is a piece of its own; one that hangs on by i
     return print.found(1);
   };
   CHECK(pieces(height).print == 1);
-  CHECK(pieces(height).broken == 0);
+  CHECK(pieces(height).broken.voxels == 0);
   CHECK(pieces(height).is_as_part());
   CHECK(pieces(2).part == 1);
   CHECK(pieces(2).part_at_half == 1);
   CHECK(pieces(2).print == 1);
-  CHECK(pieces(2).broken == height - 3);  // beside the last one the wall is whole
+  CHECK(pieces(2).broken.voxels == height - 3);  // beside the last one the wall is whole
   CHECK(!pieces(2).is_as_part());
   CHECK(pieces(0).print == 2);
-  CHECK(pieces(0).broken == height);
+  CHECK(pieces(0).broken.voxels == height);
 }
 
 TEST_CASE("rough faces and holes in walls cut nothing, however the slices come") {
@@ -108,8 +108,8 @@ TEST_CASE("rough faces and holes in walls cut nothing, however the slices come")
               });
   }
   for (const int a_pass : {1, 2, 3, 16}) {
-    CHECK(print.found(a_pass).broken == 0);
-    CHECK(print.found(a_pass).shut == 0);
+    CHECK(print.found(a_pass).broken.voxels == 0);
+    CHECK(print.found(a_pass).shut.voxels == 0);
     CHECK(print.found(a_pass).print == 1);
   }
 }
@@ -126,12 +126,12 @@ TEST_CASE("a wall that does not cure is broken; a rod of a voxel's width holds t
     }
     return print.found(16);
   };
-  CHECK(found(0, 0).broken == 0);
-  CHECK(found(4, 6).broken == 0);
-  CHECK(found(3, 8).broken == 0);  // 9 of them are torn
+  CHECK(found(0, 0).broken.voxels == 0);
+  CHECK(found(4, 6).broken.voxels == 0);
+  CHECK(found(3, 8).broken.voxels == 0);  // 9 of them are torn
   CHECK(found(3, 8).holes == 1);
   CHECK(!found(3, 8).is_as_part());
-  CHECK(found(0, size).broken == size * size);
+  CHECK(found(0, size).broken.voxels == size * size);
   const auto blocks = [&](bool rod_cures) {  // with a rod between them that has 0.4 of its voxels
     Print print(size, size);
     for (int k = 0; k < size; ++k) {
@@ -163,13 +163,13 @@ TEST_CASE("a channel is shut where it cures, and where what is left of it falls 
     }
     return print.found(4);
   };
-  CHECK(found(0, 0).shut == 0);
-  CHECK(found(3, 4).shut == 1);
+  CHECK(found(0, 0).shut.voxels == 0);
+  CHECK(found(3, 4).shut.voxels == 1);
   CHECK(!found(3, 4).is_as_part());
-  CHECK(found(3, 6).shut == 3);
-  CHECK(found(1, 11).shut == 10);
-  CHECK(found(7, size).shut == 3);  // blind: of five that are lost
-  CHECK(found(9, size).shut == 0);  // a rounded end
+  CHECK(found(3, 6).shut.voxels == 3);
+  CHECK(found(1, 11).shut.voxels == 10);
+  CHECK(found(7, size).shut.voxels == 3);  // blind: of five that are lost
+  CHECK(found(9, size).shut.voxels == 0);  // a rounded end
 }
 
 TEST_CASE("a cavity of one voxel that cures is shut, at the edge of the volume it is open") {
@@ -180,7 +180,7 @@ TEST_CASE("a cavity of one voxel that cures is shut, at the edge of the volume i
       const auto free = [&](int i) { return k == 3 && i == 3 * size + at; };
       print.add([&](int i) { return free(i) ? 0.1F : 1.0F; }, [](int) { return true; });
     }
-    CHECK(print.found(4).shut == (at == 2 ? 1 : 0));
+    CHECK(print.found(4).shut.voxels == (at == 2 ? 1 : 0));
   }
 }
 
@@ -198,12 +198,38 @@ TEST_CASE("a strut is cut at any length, also in a frame that holds together wit
                 });
     }
     CHECK(print.found(3).print == 1);
-    return print.found(3).broken;
+    return print.found(3).broken.voxels;
   };
   for (const int length : {1, 2, 3, 6}) {
     CAPTURE(length);
     CHECK(broken(3, 3 + length, true) == 4 * length);
     CHECK(broken(3, 3 + length, false) == 0);
+  }
+}
+
+TEST_CASE("of two gaps in rods the larger one tells the place, however the slices come") {
+  constexpr int size = 12;
+  Print print(size, size);
+  for (int k = 0; k < 20; ++k) {
+    const auto rod = [&](int i) { return i / size == 5 && (i % size == 2 || i % size == 8); };
+    const auto lost = [&](int i) { return i % size == 2 ? k >= 4 && k < 6 : k >= 11 && k < 15; };
+    print.add([&](int i) { return rod(i) ? 1.0F : 0.0F; }, [&](int i) { return rod(i) && !lost(i); });
+  }
+  for (const int a_pass : {1, 3, 20}) {
+    model::PrintPieces found = print.found(a_pass);
+    CHECK(found.broken.voxels == 6);
+    CHECK(found.broken.largest == 4);
+    CHECK(found.broken.at.column == 8);
+    CHECK(found.broken.at.row == 5);
+    CHECK(found.broken.at.slice >= 11);
+    CHECK(found.broken.at.slice < 15);
+    CHECK_FALSE(found.broken_at_mm);
+    found.set_places({size, size, 20, 0.5, {-1, -2, 3}}, 1.5);
+    const auto [x, y, z] = found.broken_at_mm.value();
+    CHECK(x == doctest::Approx(3));
+    CHECK(y == doctest::Approx(0.5));
+    CHECK(z == doctest::Approx((3 + 0.5 * found.broken.at.slice) / 1.5));
+    CHECK_FALSE(found.shut_at_mm);
   }
 }
 
@@ -223,10 +249,10 @@ TEST_CASE("holes of a thin wall are holes, and no broken voxels") {
     }
     return print.found(7);
   };
-  CHECK(found(4).broken == 0);
+  CHECK(found(4).broken.voxels == 0);
   CHECK(found(4).holes == 3);
   CHECK(found(4).firm_holes == 3);
-  CHECK(found(1).broken == 0);
+  CHECK(found(1).broken.voxels == 0);
   CHECK(found(1).holes == 1);
 }
 
@@ -260,7 +286,7 @@ TEST_CASE("a fin that loses its upper half is broken, a sharp edge that is round
       const auto part = [&](int i) { return k < 4 || i % size == 8; };
       print.add([&](int i) { return part(i) ? 1.0F : 0.0F; }, [&](int i) { return part(i) && k < 12 - lost; });
     }
-    return print.found(5).broken;
+    return print.found(5).broken.voxels;
   };
   CHECK(broken(2) == 0);  // one row that nothing is left around
   CHECK(broken(3) == 2 * size);

@@ -133,10 +133,14 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   CHECK(answer(cut) == Answer::unsure);
   cut.pieces->part = 1;  // which the voxels are too coarse to tell
   CHECK(words(cut).find("2 %") == std::string::npos);
-  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .broken = 4};
+  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .broken = {.voxels = 4}};
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; walls are cut or missing: 4 voxels that the part fills by half or more do not cure"));
-  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .shut = 8};
+  cut.pieces->broken.at = {.column = 3, .row = 1, .slice = 8};
+  cut.pieces->set_places(model::centred_grid(5, 5, 9, 0.5, 1), 1.25);
+  CHECK(words(cut).ends_with(
+      " voxels that the part fills by half or more do not cure, most at x, y, z = 0.5, -0.5, 4 mm"));
+  cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .shut = {.voxels = 8}};
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; gaps are shut: 8 voxels that the part fills by less than a quarter cure"));
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .holes = 5, .firm_holes = 2};
