@@ -163,7 +163,7 @@ fails 64 '2 inputs are standard input' vam-sdf height - -
 fails 64 '2 inputs are standard input' vam-curethrough model - --target -
 fails 65 'part.vdb: is a volume \(OpenVDB\), not a mesh' vam-slice part.vdb -o x.vdb
 fails 65 'stdin: the mesh is empty' sh -c 'timeout 60 cat /dev/zero | vam-slice - -o x.vdb'
-fails 65 'stdin: not a mesh of a known format' sh -c 'timeout 60 yes | vam-slice - -o x.vdb'
+fails 65 'stdin: not a mesh of a known format; export the part as one of' sh -c 'timeout 60 yes | vam-slice - -o x.vdb'
 for device in zero urandom; do
   fails 66 "/dev/$device: is a device that never ends" vam-slice /dev/$device -o x.vdb
   fails 66 'stdin: is a device that never ends' sh -c "vam-sdf box.off - -o x.ply </dev/$device"
@@ -200,9 +200,9 @@ fails 71 "^vam-sinogram: target: $need" vam-sinogram wide.vdb --angles 8 -o x.ex
 fails 71 "^vam-optimize: wide.vdb: $need" vam-optimize wide.vdb --geometry parallel --method fbp --angles 8 -o x.exr --memory 0.4
 vam-sinogram wide.vdb --angles 2 -o wide.exr
 fails 71 "^vam-dose: wide.exr: $need" vam-dose wide.exr --like wide.vdb -o x.vdb --memory 0.4
-fails 71 '^vam-optimize: part.vdb: needs 0.0156 GiB of memory, but --memory leaves 0 GiB; close other programs' \
+fails 71 '^vam-optimize: part.vdb: needs 0.0156 GiB of memory, but --memory of 0.001 GiB is used up; close other programs' \
   vam-optimize part.vdb --memory 0.001 -o x.exr
-fails 71 'box.off: needs 0.0156 GiB of memory, but --memory leaves 0 GiB' vam-slice box.off --memory 0.001 -o x.vdb
+fails 71 'box.off: needs 0.0156 GiB of memory, but --memory of 0.001 GiB is used up' vam-slice box.off --memory 0.001 -o x.vdb
 mv part.vdb free.vdb
 quiet 'a need that is met' vam-slice box.off --memory=1 --voxel 0.2 -o part.vdb
 same 'the bound is of no consequence, not even for the history' free.vdb part.vdb

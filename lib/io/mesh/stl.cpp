@@ -69,7 +69,8 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
   if (bytes.size() < binary_stl_bytes(bytes)) {
     throw MeshProblem{"neither a mesh of another format nor a whole binary STL, whose header would state " +
                       std::to_string(count) + " triangles (" + std::to_string(binary_stl_bytes(bytes)) +
-                      " bytes): it has " + std::to_string(bytes.size()) + " bytes; export it again"};
+                      " bytes): it has " + std::to_string(bytes.size()) +
+                      " bytes, is truncated or damaged; export it again"};
   }
   if (const std::string_view rest = std::string_view(bytes).substr(binary_stl_bytes(bytes));
       count > 0 && !is_padding(rest)) {
