@@ -45,12 +45,12 @@ void over_blocks(const Slab& slab, const Work& work) {
 
 }  // namespace
 
-void side_by_side(std::span<const float* const> rows, int count, float* to, std::ptrdiff_t stride) {
+void side_by_side(std::span<const float* const> rows, int count, float* to, std::ptrdiff_t stride, int wide) {
   const int given = count_of(rows);
   int i = 0;
   for (; i + 4 <= count; i += 4) {
     float* at = to + i * stride;
-    for (int s = 0; s < lanes; s += 4) {
+    for (int s = 0; s < wide; s += 4) {
       Square square{};
       for (int n = 0; n < 4 && s + n < given; ++n) square.row[n] = load(rows[s + n] + i);
       square = turned(square);
@@ -58,7 +58,7 @@ void side_by_side(std::span<const float* const> rows, int count, float* to, std:
     }
   }
   for (; i < count; ++i) {
-    for (int s = 0; s < lanes; ++s) to[i * stride + s] = s < given ? rows[s][i] : 0.0F;
+    for (int s = 0; s < wide; ++s) to[i * stride + s] = s < given ? rows[s][i] : 0.0F;
   }
 }
 

@@ -27,9 +27,9 @@ struct Slab {
   [[nodiscard]] const float* at(int x, int y) const { return const_cast<Slab*>(this)->at(x, y); }
 };
 
-/// Values 0 .. count - 1 of up to 16 rows side by side, groups of 16 `stride` apart: to[i * stride + s] = rows[s][i],
-/// and 0 for rows that are not there.
-void side_by_side(std::span<const float* const> rows, int count, float* to, std::ptrdiff_t stride);
+/// Values 0 .. count - 1 of up to `wide` rows, a multiple of 4, side by side, groups `stride` apart:
+/// to[i * stride + s] = rows[s][i], and 0 for rows that are not there.
+void side_by_side(std::span<const float* const> rows, int count, float* to, std::ptrdiff_t stride, int wide = lanes);
 
 /// The inverse: rows[s][i] = from[i * stride + s].
 void one_by_one(const float* from, std::ptrdiff_t stride, int count, std::span<float* const> rows);

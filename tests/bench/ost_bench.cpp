@@ -63,7 +63,7 @@ std::vector<metrology::CameraView> read(const std::string& folder) {
   io::ViewSource source(folder, 360.0 / count);
   std::vector<metrology::CameraView> views;
   for (io::CameraFrame frame; source.next(frame);) {
-    if (!metrology::exposure_problem(frame.image).empty()) continue;
+    if (!metrology::exposure_of(frame.image).problem().empty()) continue;
     views.push_back({metrology::corrected(std::move(frame.image), {}, 1, frame.name), frame.angle_deg, 0});
   }
   return views;

@@ -126,11 +126,12 @@ void live(const cli::App& app, const Options& options) {
   std::string problem;  // of the last turn without a volume
   io::CameraFrame frame;
   while (frames.next(frame)) {
-    if (!metrology::exposure_problem(frame.image).empty()) {  // a print continues without a frame or two
+    const metrology::Exposure exposure = metrology::exposure_of(frame.image);
+    if (!exposure.problem().empty()) {  // a print continues without a frame or two
       ++left_out;
       continue;
     }
-    const bool due = turn.push(session.take(frame));
+    const bool due = turn.push(session.take(frame, exposure));
     if (!due) continue;
     Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}, {"frames_left_out", left_out}};
     const std::vector<metrology::CameraView> views = turn.views();

@@ -37,10 +37,10 @@ Session::Session(const cli::App& app, const Options& options)
   (void)optics::camera_view(printer_);  // an impossible bench is no matter of the views
 }
 
-void Session::Readings::add(const Image& frame) {
-  zeros += static_cast<double>(std::count(frame.values.begin(), frame.values.end(), 0.0F));
-  all += static_cast<double>(frame.size());
-  if (!frame.values.empty()) most = std::max(most, *std::max_element(frame.values.begin(), frame.values.end()));
+void Session::Readings::add(const metrology::Exposure& exposure) {
+  zeros += exposure.least == 0 ? exposure.pixels_at_least : 0;
+  all += exposure.pixels;
+  most = std::max(most, exposure.most);
 }
 
 // Noise that is cut off below 0 leaves a background where nothing is, and none within the print. Without noise there
@@ -51,8 +51,8 @@ bool Session::Readings::cut_noise(const metrology::Dirt& dirt) const {
   return zeros > many * all && dirt.has_background && dirt.background > seen * static_cast<double>(most);
 }
 
-metrology::CameraView Session::take(io::CameraFrame frame) {
-  readings_.add(frame.image);
+metrology::CameraView Session::take(io::CameraFrame frame, const metrology::Exposure& exposure) {
+  readings_.add(exposure);
   metrology::CameraView view{metrology::corrected(std::move(frame.image), fields_, options_.binning, frame.name),
                              frame.angle_deg, frame.time_s};
   if (width_ == 0) {

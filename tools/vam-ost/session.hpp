@@ -25,7 +25,7 @@ class Session {
   Session(const cli::App& app, const Options& options);
 
   /// A frame as a view: its size checked, corrected, binned.
-  metrology::CameraView take(io::CameraFrame frame);
+  metrology::CameraView take(io::CameraFrame frame, const metrology::Exposure& exposure);
   /// Live: a turn may show nothing yet, or have gaps; the next one may be better. The axis is found as soon as
   /// something is visible, and again until it is certain.
   struct Attempt {
@@ -57,7 +57,7 @@ class Session {
     double zeros = 0;
     double all = 0;
     float most = 0;
-    void add(const Image& frame);
+    void add(const metrology::Exposure& exposure);
     [[nodiscard]] bool cut_noise(const metrology::Dirt& dirt) const;
   };
   void say_dirt() const;

@@ -18,13 +18,14 @@ std::vector<metrology::CameraView> usable_views(Session& session, io::ViewSource
   };
   io::CameraFrame frame;
   while (source.next(frame)) {
-    const std::string problem = metrology::exposure_problem(frame.image);
+    const metrology::Exposure exposure = metrology::exposure_of(frame.image);
+    const std::string problem = exposure.problem();
     if (!problem.empty()) {
       leave_out(frame.name, problem);
       continue;
     }
     names.push_back(frame.name);
-    views.push_back(session.take(std::move(frame)));
+    views.push_back(session.take(std::move(frame), exposure));
   }
   const std::vector<std::string> unlike = metrology::contrast_problems(views);
   std::vector<metrology::CameraView> usable;

@@ -41,8 +41,8 @@ File read_file(const std::string& path) {
 
 // Those after the first that cannot be read are left to a batch that begins with them.
 std::vector<File> read_files(std::span<const std::string> paths) {
-  constexpr std::size_t most_files = 32;
-  constexpr std::size_t most_bytes = std::size_t{1} << 24;
+  constexpr std::size_t most_files = 128;
+  constexpr std::size_t most_bytes = std::size_t{1} << 26;
   std::vector<File> files{read_file(paths.front())};
   std::size_t bytes = files.front().bytes.size();
   for (std::size_t i = 1; i < std::min(paths.size(), most_files); ++i) {

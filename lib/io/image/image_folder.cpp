@@ -102,7 +102,8 @@ ImageFolder::ImageFolder(const std::string& folder, bool gaps, FolderOf of) {
   }
 }
 
-// Decoded ahead, by batches that double while images are read one after the other.
+// Decoded ahead, by batches that grow while images are read one after the other: a child costs as much as the memory
+// that it is forked with.
 struct ImageFolder::Ahead {
   std::unique_ptr<ImageBatch> batch;
   int next = -1;  // image of the batch
@@ -114,7 +115,7 @@ struct ImageFolder::Ahead {
     next = index + 1;
     try {
       if (!follows || left == 0) {
-        size = follows ? 2 * size : 1;
+        size = follows ? 4 * size : 1;
         const std::size_t rest = paths.size() - index;
         batch = std::make_unique<ImageBatch>(paths.subspan(index, std::min<std::size_t>(rest, size)));
         left = size = batch->count();

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/index.hpp"
+#include "base/slab.hpp"
 
 namespace vam::io {
 
@@ -13,7 +14,26 @@ constexpr std::size_t leaf_bytes = sizeof(LeafStore::Values);
 
 std::uint64_t offset_of(openvdb::Index32 place) { return (std::uint64_t{place} - 1) * leaf_bytes; }
 
+constexpr int side = LeafStore::Leaf::DIM;
+
+/// Of a leaf, where z is fastest and one step along x is 64 values, those of a y: a row of x at every z.
+template <class Value>
+std::array<Value*, side> rows_at(Value* first, std::ptrdiff_t slice) {
+  std::array<Value*, side> rows{};
+  for (int z = 0; z < side; ++z) rows[z] = first + z * slice;
+  return rows;
+}
+
 }  // namespace
+
+void gather_leaf(const float* first, std::ptrdiff_t row, std::ptrdiff_t slice, float* values) {
+  for (int y = 0; y < side; ++y)
+    side_by_side(rows_at(first + y * row, slice), side, values + y * side, side * side, side);
+}
+
+void scatter_leaf(const float* values, float* first, std::ptrdiff_t row, std::ptrdiff_t slice) {
+  for (int y = 0; y < side; ++y) one_by_one(values + y * side, side * side, side, rows_at(first + y * row, slice));
+}
 
 void LeafStore::show(const float* dense, const openvdb::Coord& size) {
   dense_ = dense;
@@ -21,16 +41,20 @@ void LeafStore::show(const float* dense, const openvdb::Coord& size) {
 }
 
 const float* LeafStore::shown(const openvdb::Coord& origin, Values& room) const {
-  const openvdb::Coord last = openvdb::Coord::minComponent(size_ - origin, openvdb::Coord(Leaf::DIM));
-  const bool whole = last == openvdb::Coord(Leaf::DIM);
-  if (!whole) room.fill(0);
+  const openvdb::Coord last = openvdb::Coord::minComponent(size_ - origin, openvdb::Coord(side));
+  if (last == openvdb::Coord(side)) {
+    const std::ptrdiff_t slice = std::ptrdiff_t{size_.x()} * size_.y();
+    gather_leaf(dense_ + origin.z() * slice + std::ptrdiff_t{origin.y()} * size_.x() + origin.x(), size_.x(), slice,
+                room.data());
+    return room.data();
+  }
+  room.fill(0);
   for (int z = 0; z < last.z(); ++z) {
     for (int y = 0; y < last.y(); ++y) {
       const std::size_t row = flat_index(origin.z() + z, size_.y(), origin.y() + y);
       const float* from = dense_ + flat_index(row, size_.x(), origin.x());
       float* to = room.data() + (y << 3) + z;
-      const int n = whole ? static_cast<int>(Leaf::DIM) : last.x();
-      for (int x = 0; x < n; ++x) to[x << 6] = from[x];
+      for (int x = 0; x < last.x(); ++x) to[x << 6] = from[x];
     }
   }
   return room.data();

@@ -41,6 +41,13 @@ struct LeafSlab {
   Coord first_block;
   Coord blocks;  // along each axis
   [[nodiscard]] int rows() const { return blocks.y() * blocks.z(); }
+  // In the dense slices: floats from one row or slice to the next, and before a voxel.
+  [[nodiscard]] std::ptrdiff_t row() const { return box.dim().x(); }
+  [[nodiscard]] std::ptrdiff_t slice() const { return row() * box.dim().y(); }
+  [[nodiscard]] std::ptrdiff_t place(const Coord& at) const {
+    const Coord from = at - box.min();
+    return from.z() * slice() + from.y() * row() + from.x();
+  }
   [[nodiscard]] Coord origin(int row, int i) const {
     const Coord block = first_block.offsetBy(i, row % blocks.y(), row / blocks.y());
     return {block.x() * edge, block.y() * edge, block.z() * edge};
@@ -127,18 +134,20 @@ LeafBlock block_at(const Coord& at, const LeafSlab& slab, const float* in, const
   if (const auto value = shared_value(part, slab.box, in); value && all_finite(&*value, 1)) return {nullptr, *value};
   LeafStore::Values room;
   float values[Leaf::SIZE] = {};
-  if (part.volume() < Leaf::SIZE) {
+  if (part.volume() == Leaf::SIZE) {
+    gather_leaf(in + slab.place(at), slab.row(), slab.slice(), values);
+  } else {
     const Leaf* old = accessor.probeConstLeaf(at);
     if (old != nullptr) {
       std::copy_n(state.leaves->values(*old, room), Leaf::SIZE, values);
     } else {
       std::fill_n(values, Leaf::SIZE, accessor.getValue(at));
     }
+    for_rows(part, slab.box, [&](int x, int y, int z, int n, std::size_t from) {
+      float* to = values + in_leaf(x, y, z);
+      for (int i = 0; i < n; ++i) to[i << 6] = in[from + i];
+    });
   }
-  for_rows(part, slab.box, [&](int x, int y, int z, int n, std::size_t from) {
-    float* to = values + in_leaf(x, y, z);
-    for (int i = 0; i < n; ++i) to[i << 6] = in[from + i];
-  });
   LeafBlock block;
   block.value = values[0];
   if (!all_finite(values, Leaf::SIZE)) {
@@ -218,7 +227,12 @@ void SparseVolume::read_slices(int k0, int count, float* out) const {
       const Leaf* leaf = accessor.probeConstLeaf(at);
       const float* values = leaf != nullptr ? state_->leaves->values(*leaf, room) : nullptr;
       const float tile = leaf != nullptr ? 0.0F : accessor.getValue(at);
-      for_rows(slab.part(at), slab.box, [&](int x, int y, int z, int n, std::size_t to) {
+      const CoordBBox part = slab.part(at);
+      if (values != nullptr && part.volume() == Leaf::SIZE) {
+        scatter_leaf(values, out + slab.place(at), slab.row(), slab.slice());
+        continue;
+      }
+      for_rows(part, slab.box, [&](int x, int y, int z, int n, std::size_t to) {
         if (values == nullptr) {
           std::fill_n(out + to, n, tile);
           return;

@@ -41,18 +41,24 @@ void climb_columns(const ShearedColumns& job) {
 }
 
 void place_tile(const TilePlace& job) {
-  int q = 0;
-  for (int j = 0; j < climb_tile; ++j) {
-    const float row = job.t + static_cast<float>(j) * job.step_y;
-    for (int i = 0; i < climb_tile; ++i, ++q) {
-      const float t = row + static_cast<float>(i) * job.step_x;
-      const float inside = t < 0 ? 0.0F : t > job.last ? job.last : t;
-      const int base = static_cast<int>(inside);
-      const float part = t - static_cast<float>(base);
-      job.base[q] = base;
-      job.low[q] = job.gain[q] * (1 - part);
-      job.high[q] = job.gain[q] * part;
-    }
+  using Whole = int __attribute__((vector_size(vector_floats * 4), may_alias, aligned(4)));
+  Vector i;  // of the vector's lanes, across and down
+  Vector j;
+  for (int n = 0; n < vector_floats; ++n) {
+    i[n] = static_cast<float>(n % climb_tile);
+    j[n] = static_cast<float>(n / climb_tile);
+  }
+  const Vector none = i - i;
+  const Vector last = none + job.last;
+  for (int q = 0; q < climb_tile * climb_tile; q += vector_floats) {
+    const Vector row = job.t + (j + static_cast<float>(q / climb_tile)) * job.step_y;
+    const Vector t = row + (i + static_cast<float>(q % climb_tile)) * job.step_x;
+    const Vector inside = t < none ? none : t > last ? last : t;
+    const Whole base = __builtin_convertvector(inside, Whole);
+    const Vector high = load(job.gain + q) * (t - __builtin_convertvector(base, Vector));
+    *reinterpret_cast<Whole*>(job.base + q) = base;
+    store(job.low + q, load(job.gain + q) - high);
+    store(job.high + q, high);
   }
 }
 

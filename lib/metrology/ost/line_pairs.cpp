@@ -140,6 +140,7 @@ Image absorbed(const Image& s) {
 struct Lines {
   std::vector<Image> now;
   std::array<std::vector<Image>, unknowns> by;  // one unit of each unknown
+  Vector by_at{};                               // the motion after which those are
   RayMask hidden;                               // by specks at either end, [height][column]
 
   [[nodiscard]] bool is_seen(int k, int t) const { return hidden[product(k, now.front().width) + t] == 0; }
@@ -390,17 +391,33 @@ class MovedViews {
     blurred_ = along_parallel_lines(blurred_, basis, blur_of(blurred_));
   }
   [[nodiscard]] Lines lines(const Vector& value) const {
+    Lines made;
+    made.hidden = hidden_;
+    move(value, made);
+    return made;
+  }
+  /// What one unit of a motion makes is kept while the motion is nearly that after which it was found.
+  void move(const Vector& value, Lines& lines) const {
     std::vector<Image> moved = blurred_;
     undo_motion(moved, motion_of(value, basis_), basis_.axis_column);
-    Lines lines{sinograms_of_(moved), {}, hidden_};
-    for (int i = 0; i < pair_motions; ++i) {
-      lines.by[i] = sinograms_of_(slopes(moved, basis_.motion[i], basis_.axis_column));
+    lines.now = sinograms_of_(moved);
+    if (lines.by.front().empty() || !is_near(value, lines.by_at)) {
+      for (int i = 0; i < pair_motions; ++i) {
+        lines.by[i] = sinograms_of_(slopes(moved, basis_.motion[i], basis_.axis_column));
+      }
+      lines.by_at = value;
     }
     restore(lines, value[pair_motions], basis_.even_light);
-    return lines;
   }
 
  private:
+  static bool is_near(const Vector& value, const Vector& other) {
+    constexpr double near_px = 0.1;  // of edges that are blurred by more than one
+    double most = 0;
+    for (int i = 0; i < pair_motions; ++i) most = std::max(most, std::abs(value[i] - other[i]));
+    return most <= near_px;
+  }
+
   const PairBasis& basis_;
   const SinogramsOf& sinograms_of_;
   std::vector<Image> blurred_;
@@ -418,8 +435,9 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
   constexpr double near_px = 1e-2;      // a last step below this leaves far less
   constexpr double near_per_px = 1e-4;  // of the absorption
   constexpr double most = 300;          // of these in one step
+  Lines lines = views.lines(fit.value);
   for (int step = 0; step < steps && !fit.converged; ++step) {
-    const Lines lines = views.lines(fit.value);
+    if (step > 0) views.move(fit.value, lines);
     const Sums sums = sums_of(lines, bound);
     Matrix inverse{};
     if (!inverted(sums.normal, count, inverse)) return {};

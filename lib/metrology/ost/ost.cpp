@@ -30,7 +30,12 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr int slices_a_pass = 128;  // so that memory beside views and volume is that of a part of them
+// Of a pass: all, where that takes little memory beside views and volume; else a part of them.
+int slices_a_pass(int columns, int angles) {
+  constexpr std::size_t little = std::size_t{1} << 26;  // values
+  constexpr std::size_t fewest = 128;
+  return static_cast<int>(std::max(fewest, little / product(columns, angles)));
+}
 
 // Without refraction: the columns as they are, only brought to the virtual pitch by linear interpolation.
 void rescale_columns(const Image& in, const optics::Detector& camera, const optics::Detector& detector, Image& out) {
@@ -194,8 +199,9 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   }
   model::Volume volume{s.grid, std::vector<float>(s.grid.size())};
   Progress progress("reconstructing", s.grid.nz);
-  for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
-    const int count = std::min(slices_a_pass, s.grid.nz - first);
+  const int most = slices_a_pass(s.eye.camera.columns, angles);
+  for (int first = 0; first < s.grid.nz; first += most) {
+    const int count = std::min(most, s.grid.nz - first);
     const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
     const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm, s.axis);
     auto level = level_views(views, rows);

@@ -84,17 +84,25 @@ Image corrected(Image image, const CameraFields& fields, int binning, const std:
   return binned(std::move(image), binning);
 }
 
-std::string exposure_problem(const Image& raw) {
+Exposure exposure_of(const Image& raw) {
   const auto [low, high] = range_of(raw.values);
-  if (!(high > low)) {
-    return std::string(low > 0 ? "without contrast" : "dark") + ", every pixel is " + format_number(low) +
+  Exposure found{low, high, 0, 0, count_of(raw.values)};
+  for (const float v : raw.values) {  // as int: vector code
+    found.pixels_at_least += v == low ? 1 : 0;
+    found.pixels_at_most += v == high ? 1 : 0;
+  }
+  return found;
+}
+
+std::string Exposure::problem() const {
+  if (!(most > least)) {
+    return std::string(least > 0 ? "without contrast" : "dark") + ", every pixel is " + format_number(least) +
            "; check light and exposure";
   }
-  const auto full = std::count(raw.values.begin(), raw.values.end(), high);
   constexpr double allowed = 0.02;
-  const double part = static_cast<double>(full) / static_cast<double>(raw.size());
+  const double part = static_cast<double>(pixels_at_most) / pixels;
   if (part <= allowed) return "";
-  return "saturated, " + format_number(100 * part, 3) + " % of the pixels are at " + format_number(high) +
+  return "saturated, " + format_number(100 * part, 3) + " % of the pixels are at " + format_number(most) +
          "; shorten the exposure";
 }
 

@@ -30,9 +30,17 @@ struct CameraFields {
 /// is not positive.
 [[nodiscard]] Image corrected(Image raw, const CameraFields& fields, int binning, const std::string& subject);
 
-/// Why a frame cannot be measured: no contrast at all (dark), or more than 2 % of its pixels at one and the same
-/// highest value (saturated). Empty when it can.
-[[nodiscard]] std::string exposure_problem(const Image& raw);
+/// The readings of a raw frame.
+struct Exposure {
+  float least = 0, most = 0;
+  int pixels_at_least = 0, pixels_at_most = 0;
+  int pixels = 0;
+
+  /// Why the frame cannot be measured: no contrast at all (dark), or more than 2 % of its pixels at one and the same
+  /// highest value (saturated). Empty when it can.
+  [[nodiscard]] std::string problem() const;
+};
+[[nodiscard]] Exposure exposure_of(const Image& raw);
 /// For each view that has less than a fifth of the contrast (standard deviation) of the median view, what is wrong with
 /// it: the light failed, and only noise is left. Empty for the others.
 [[nodiscard]] std::vector<std::string> contrast_problems(std::span<const CameraView> views);

@@ -127,9 +127,9 @@ TEST_CASE("dark, flat and binning invert the camera model") {
 
 TEST_CASE("dark and saturated frames, and those whose light failed, cannot be measured") {
   Image image(100, 10);
-  CHECK(exposure_problem(image).find("dark, every pixel is 0") == 0);
+  CHECK(exposure_of(image).problem().find("dark, every pixel is 0") == 0);
   for (int x = 0; x < 100; ++x) image(x, 5) = static_cast<float>(x);
-  CHECK(exposure_problem(image).empty());
+  CHECK(exposure_of(image).problem().empty());
   std::vector<CameraView> views(5, {image, 0});
   for (float& v : views[3].image.values) v *= 0.19F;
   for (float& v : views[4].image.values) v *= 0.21F;
@@ -138,7 +138,7 @@ TEST_CASE("dark and saturated frames, and those whose light failed, cannot be me
   for (const std::size_t good : {0, 1, 2, 4}) CHECK(problems[good].empty());
   CHECK(contrast_problems({}).empty());
   for (int x = 0; x < 30; ++x) image(x, 2) = 99;
-  CHECK(exposure_problem(image).find("saturated, 3.1 %") == 0);
+  CHECK(exposure_of(image).problem().find("saturated, 3.1 %") == 0);
 }
 
 TEST_CASE("uniform angles from non-uniform ones reproduce a sinusoid") {

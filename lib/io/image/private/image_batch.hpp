@@ -13,7 +13,7 @@ namespace vam::io {
 /// Reads the files and starts a child that decodes one after the other, ahead of who takes them.
 class ImageBatch {
  public:
-  /// Takes the first path and those after it that can be read, up to 32 files of together 16 MiB. Throws what
+  /// Takes the first path and those after it that can be read, up to 128 files of together 64 MiB. Throws what
   /// read_all() throws of the first, and what Apart does.
   explicit ImageBatch(std::span<const std::string> paths);
   ~ImageBatch();

@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -16,6 +17,11 @@ namespace vam::io {
 /// that they pass, and give an emptied one its memory again.
 using Accessor = openvdb::tree::ValueAccessor2<openvdb::FloatTree, false, 1, 2>;
 using ConstAccessor = openvdb::tree::ValueAccessor2<const openvdb::FloatTree, false, 1, 2>;
+
+/// The 512 values of a leaf whose voxels are all in a dense volume, x fastest, from `first` on, `row` and `slice`
+/// floats apart; and the other way round.
+void gather_leaf(const float* first, std::ptrdiff_t row, std::ptrdiff_t slice, float* values);
+void scatter_leaf(const float* values, float* first, std::ptrdiff_t row, std::ptrdiff_t slice);
 
 /// The first leaves of a tree keep their values, 32 MiB; those of all others go into the file, and OpenVDB has the
 /// leaf without them: values() finds them again, nothing else may read them. A leaf's transient data is its place in
