@@ -32,8 +32,8 @@ namespace {
 
 // Of a pass: all, where that takes little memory beside views and volume; else a part of them.
 int slices_a_pass(int columns, int angles) {
-  constexpr std::size_t little = std::size_t{1} << 26;  // values
-  constexpr std::size_t fewest = 128;
+  constexpr std::size_t little = std::size_t{1} << 25;  // values
+  constexpr std::size_t fewest = 64;
   return static_cast<int>(std::max(fewest, little / product(columns, angles)));
 }
 
