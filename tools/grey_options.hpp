@@ -12,6 +12,7 @@ namespace vam::tool {
 struct GreyChoice {
   bool is_target = false;
   std::string void_rule = "met";
+  std::string band_volume;
   score::GreyOptions how;
 
   /// The circle and the unit are not known yet.
@@ -36,6 +37,13 @@ inline void add_grey_target(cli::App& app, GreyChoice& grey) {
       .needs({"--grey-target"});
   app.option("--dose-low", "DOSE", grey.how.void_limit, cli::non_negative,
              "LOW: upper bound on the dose of the void with --void below.")
+      .needs({"--grey-target"});
+  app.option("--void-band", "EPSILON", grey.how.void_band, cli::non_negative, "--band in the void with --void met.")
+      .needs({"--grey-target"});
+  app.default_is("--band");
+  app.option("--band-volume", "FILE", grey.band_volume,
+             "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
+      .reads()
       .needs({"--grey-target"});
 }
 

@@ -3,18 +3,23 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/memory.hpp"
 #include "base/progress.hpp"
 #include "facts.hpp"
 #include "io/vdb/covered.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
 #include "model/printer.hpp"
 #include "optics/writable_radius.hpp"
+#include "own_grid.hpp"
 #include "score/cured_pieces.hpp"
 #include "score/grey_score.hpp"
 #include "score/score.hpp"
@@ -84,10 +89,55 @@ inline score::Score score_print(const io::SparseVolume& dose, const io::SparseVo
   return result;
 }
 
-/// Against a grey target.
+/// A grey score that takes the band of each voxel beside its dose and target.
+class BandedScore {
+ public:
+  /// band: of a part of the grid, around which it is `around`; nullptr: it is the same for all.
+  BandedScore(score::GreyScore start, const model::Grid& grid, const io::SparseVolume* band, double around)
+      : score_(std::move(start)), grid_(grid), band_(band), around_(static_cast<float>(around)) {
+    if (band == nullptr) return;
+    const auto place = model::place_in(grid, band->grid());
+    if (!place) throw differs_from_target(*band, "--band-volume");
+    place_ = *place;
+  }
+  void add(const float* dose, const float* target, int count) {
+    const std::vector<float> band = next_bands(count);
+    score_.add(dose, target, count, band.empty() ? nullptr : band.data());
+    slices_ += count;
+  }
+  [[nodiscard]] const score::GreyScore& score() const { return score_; }
+
+ private:
+  [[nodiscard]] std::vector<float> next_bands(int count) const {
+    if (band_ == nullptr) return {};
+    std::vector<float> bands(grid_.slice_size() * static_cast<std::size_t>(count), around_);
+    const model::Grid& own = band_->grid();
+    std::vector<float> slice(own.slice_size());
+    for (int n = 0; n < count; ++n) {
+      const int k = slices_ + n - place_[2];
+      if (k < 0 || k >= own.nz) continue;
+      band_->read_slices(k, 1, slice.data());
+      float* to = bands.data() + grid_.slice_size() * static_cast<std::size_t>(n) + place_[0];
+      for (int y = 0; y < own.ny; ++y)
+        std::copy_n(slice.data() + product(y, own.nx), own.nx, to + product(place_[1] + y, grid_.nx));
+    }
+    return bands;
+  }
+
+  score::GreyScore score_;
+  model::Grid grid_;
+  const io::SparseVolume* band_;
+  float around_;
+  std::array<int, 3> place_{};
+  int slices_ = 0;
+};
+
+/// Against a grey target. band: of each voxel; nullptr: it is the same for all.
 inline score::GreyScore score_grey_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
-                                           const score::GreyOptions& how) {
-  return with_volumes(score::GreyScore(how, target.grid().nx, target.grid().ny), dose, target);
+                                           const score::GreyOptions& how, const io::SparseVolume* band) {
+  const model::Grid& grid = target.grid();
+  const BandedScore start(score::GreyScore(how, grid.nx, grid.ny), grid, band, how.band);
+  return with_volumes(start, dose, target).score();
 }
 
 }  // namespace vam::tool

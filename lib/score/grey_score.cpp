@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/figure_text.hpp"
@@ -37,9 +38,10 @@ const std::vector<Figure>& figure_list() {
 }  // namespace
 
 GreyScore::GreyScore(const GreyOptions& options, int width, int height)
-    : options_(options), width_(width), height_(height), worst_(-options.band) {}
+    : options_(options), width_(width), height_(height), worst_(-std::numeric_limits<double>::infinity()) {}
 
-void GreyScore::add(const float* dose, const float* target, int count) {
+void GreyScore::add(const float* dose, const float* target, int count, const float* band) {
+  one_band_ = one_band_ && band == nullptr;
   for (std::size_t i = 0; i < product(count, product(width_, height_)); ++i) {
     const auto in_slice = static_cast<int>(i % product(width_, height_));
     const bool is_void = target[i] <= model::coverage_rounding;
@@ -51,7 +53,9 @@ void GreyScore::add(const float* dose, const float* target, int count) {
     const bool limited = is_void && options_.void_rule == VoidRule::below;
     // Below the limit the void is right, whatever its dose.
     const double size = limited ? std::max(0.0, error - options_.void_limit) : std::abs(error);
-    const double beyond = limited ? error - options_.void_limit : size - options_.band;
+    const double usual = band != nullptr ? static_cast<double>(band[i]) : options_.band;
+    const double allowed = is_void ? options_.void_band.value_or(usual) : usual;
+    const double beyond = limited ? error - options_.void_limit : size - allowed;
     ++(is_void ? void_ : part_);
     wrong_ += beyond > 0 ? 1 : 0;
     worst_ = std::max(worst_, beyond);
@@ -106,9 +110,11 @@ std::string GreyScore::table() const {
 
 std::string GreyScore::verdict() const {
   const double within = 100 * (1 - figure("ver"));
+  const bool alike = one_band_ && (!options_.void_band || options_.void_rule != VoidRule::met);
   return std::string(is_met() ? "met" : "not met") + ": " + format_number(within, 4) + " % of " +
-         std::to_string(part_ + void_) + " voxels are within " + format_number(options_.band, 3) +
-         " of the target, the farthest is " + format_number(largest_, 3) + " away";
+         std::to_string(part_ + void_) + " voxels are within " +
+         (alike ? format_number(options_.band, 3) : "the band given for each") + " of the target, the farthest is " +
+         format_number(largest_, 3) + " away";
 }
 
 }  // namespace vam::score

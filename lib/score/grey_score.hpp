@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,23 +23,26 @@ struct GreyOptions {
   model::Circle circle;  // the writable one: void outside it is not judged
   double band = 0.1;     // epsilon: how far a dose may be from the target
   VoidRule void_rule = VoidRule::met;
-  double void_limit = 0.75;  // of VoidRule::below
-  double unit = 1;           // of the target, in that of the dose
+  double void_limit = 0.75;                        // of VoidRule::below
+  double unit = 1;                                 // of the target, in that of the dose
+  std::optional<double> void_band = std::nullopt;  // of VoidRule::met; none: that of other voxels
 };
 
 class GreyScore {
  public:
   GreyScore(const GreyOptions& options, int width, int height);
 
-  /// `count` row-major slices of dose and target. Throws Fault::data for a dose that is not finite.
-  void add(const float* dose, const float* target, int count);
+  /// `count` row-major slices of dose and target, and of the band of each voxel; nullptr: it is the same for all.
+  /// Throws Fault::data for a dose that is not finite.
+  void add(const float* dose, const float* target, int count, const float* band = nullptr);
 
   [[nodiscard]] static const std::vector<std::string>& names();
   [[nodiscard]] double figure(const std::string& name) const;
   /// Throws Fault::data when no voxel of the target is above 0.
   [[nodiscard]] Json figures() const;
   [[nodiscard]] bool is_met() const { return wrong_ == 0; }
-  /// "not met: 99 % of 1000 voxels are within 0.1 of the target, the farthest is 0.2 away".
+  /// "not met: 99 % of 1000 voxels are within 0.1 of the target, the farthest is 0.2 away"; "within their bands" where
+  /// these are not all the same.
   [[nodiscard]] std::string verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
   [[nodiscard]] std::string table() const;
@@ -49,7 +53,8 @@ class GreyScore {
   int height_;
   std::int64_t part_ = 0, void_ = 0;  // judged
   std::int64_t wrong_ = 0;
-  double worst_ = 0;     // max (E - epsilon)
+  bool one_band_ = true;
+  double worst_;         // max (E - epsilon)
   double largest_ = 0;   // max E
   double squares_ = 0;   // sum of E^2
   double mismatch_ = 0;  // sum of E with the sign of x - f, over the part

@@ -7,23 +7,14 @@
 #include "base/printable.hpp"
 #include "grey_target.hpp"
 #include "io/vdb/gate.hpp"
+#include "own_grid.hpp"
 
 namespace vam::optimize_tool {
 
 namespace {
 
-/// The grid of that name, or the only one.
-io::SparseVolume read_own(const std::string& path, const std::string& name) {
-  std::vector<io::SparseVolume> volumes = io::read_volumes(path);
-  io::require_usable(path, volumes);
-  for (io::SparseVolume& volume : volumes) {
-    if (volume.name() == name || volumes.size() == 1) return std::move(volume);
-  }
-  throw Error{Fault::data, path + ": has several grids, but none is called '" + name + "'"};
-}
-
 io::SparseVolume read_dose(const std::string& path) {
-  io::SparseVolume dose = read_own(path, "dose");
+  io::SparseVolume dose = tool::read_own(path, "dose");
   if (dose.units == "mJ/cm3") return dose;
   throw Error{Fault::data, path + ": the dose is in units of " + excerpt(dose.units) +
                                ", not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
@@ -52,16 +43,15 @@ Inputs read(const Options& options) {
                                  ", but projections have relative doses; divide it by the dose that is to be 1"};
   }
   if (!options.demands.grey) tool::warn_of_grey(in.target.front(), options.input);
-  if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
-  if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));
+  if (!options.weights.empty()) in.weight.push_back(tool::read_own(options.weights, "weight"));
+  if (!options.band_volume.empty()) in.tolerance.push_back(tool::read_own(options.band_volume, "tolerance"));
   for (const std::string& path : options.delivered) in.delivered.push_back(read_dose(path));
   if (!in.insert.empty())
     in.insert.front().extend_to(in.grid(), options.input);  // other programs leave the void around it out
   for (const auto& [volumes, file] :
        {std::pair{&in.weight, &options.weights}, std::pair{&in.tolerance, &options.band_volume}}) {
     if (volumes->empty() || volumes->front().grid() == in.grid()) continue;
-    throw Error{Fault::data, (file->empty() ? options.input : *file) + ": the grid of '" + volumes->front().name() +
-                                 "' differs from that of the target; make both from the same target"};
+    throw tool::differs_from_target(volumes->front(), file->empty() ? options.input : *file);
   }
   return in;
 }

@@ -235,6 +235,7 @@ void settle(const cli::App& app, Options& options) {
   settle_slices(app, options);
   settle_tolerances(app, options);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
+  options.demands.void_below = options.void_rule == "below";
   options.how.offset = options.negative == "offset";
   settle_limit(options, method);
   if (!optimize::reads(method, "--free-surface")) options.demands.free_surface = true;

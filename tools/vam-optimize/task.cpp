@@ -62,6 +62,7 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.history = target.history;
   info.history.push_back(app.history());
   info.extra["vam:threshold_dose"] = format_number(options.demands.window.threshold());
+  if (options.demands.grey && options.response != "linear") info.extra["vam:response"] = options.response;
   // What completes a dose has a scale.
   if (options.turns && !options.delivered.empty()) {
     info.extra["vam:full_scale"] = format_number(full_grey(scene, options), 9);

@@ -34,7 +34,14 @@ std::optional<score::GreyScore> judge_grey(const Volumes& volumes, const model::
   score::GreyOptions how = grey.options();
   how.circle = tool::judged_circle(*target, printer);
   how.unit = tool::grey_unit(*target, *dose, "dose");
-  return tool::score_grey_volumes(*dose, *target, how);
+  tool::require_linear(*dose, "dose");
+  const io::SparseVolume* band = volumes.find("tolerance");
+  std::optional<io::SparseVolume> own;
+  if (!grey.band_volume.empty()) {
+    own = tool::read_own(grey.band_volume, "tolerance");
+    band = &*own;
+  }
+  return tool::score_grey_volumes(*dose, *target, how, band);
 }
 
 /// A dose with its target, and what it is worth.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "grey_target.hpp"
 #include "io/vdb/gate.hpp"
 
 namespace vam::score_tool {
@@ -39,6 +40,8 @@ Inputs read_grids(const Options& options) {
 Inputs read(const Options& options) {
   Inputs in = read_grids(options);
   const std::string& file = options.target.empty() ? options.input : options.target;
+  if (options.grey.is_target && !(options.grey.band_volume.empty() && file == "-"))
+    in.band = tool::band_of(options.grey.band_volume, file);
   in.volumes[in.target_at].extend_to(in.dose().grid(), file);  // around the target there is void
   return in;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "io/vdb/vdb.hpp"
@@ -14,6 +15,7 @@ struct Inputs {
   std::vector<io::SparseVolume> volumes;
   std::size_t dose_at = 0;
   std::size_t target_at = 0;
+  std::optional<io::SparseVolume> band;  // of each voxel of a grey target
   [[nodiscard]] const io::SparseVolume& dose() const { return volumes[dose_at]; }
   [[nodiscard]] const io::SparseVolume& target() const { return volumes[target_at]; }
 };

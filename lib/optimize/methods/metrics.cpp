@@ -25,8 +25,10 @@ model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& probl
   for (std::size_t i = slice % lanes; i < dose[s].values.size(); i += lanes) {
     if (!is_constrained(problem.labels[s][i])) continue;
     const float d = dose[s].values[i];
-    const double error = std::abs(problem.demands.curve.response(d) - problem.target[s].values[i]);
-    const double excess = error - problem.tolerance_at(s, i);
+    const double off = std::abs(problem.demands.curve.response(d) - problem.target[s].values[i]);
+    const double excess = off - problem.tolerance_at(s, i);
+    const bool limited = problem.demands.void_below && problem.labels[s][i] == Label::void_;
+    const double error = limited ? std::max(0.0, excess) : off;
     ++m.part;
     squares += error * error;
     outside += excess > 0 ? 1 : 0;

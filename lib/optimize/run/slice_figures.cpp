@@ -2,6 +2,7 @@
 #include "optimize/run/slice_figures.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vam::optimize {
 
@@ -14,7 +15,7 @@ void SliceFigures::add(const model::DoseMetrics& slice, int times) {
   if (slice.part == 0) return;
   part_ += part;
   iou_ += part * slice.iou;
-  cv_ += part * slice.cv;
+  cv_squared_ += part * slice.cv * slice.cv;
   pw_ = std::min(pw_, slice.pw);
   ipdr_ = std::max(ipdr_, slice.ipdr);
 }
@@ -24,7 +25,7 @@ void SliceFigures::add(const SliceFigures& other) {
   counted_ += other.counted_;
   errors_ += other.errors_;
   iou_ += other.iou_;
-  cv_ += other.cv_;
+  cv_squared_ += other.cv_squared_;
   pw_ = std::min(pw_, other.pw_);
   ipdr_ = std::max(ipdr_, other.ipdr_);
 }
@@ -36,7 +37,7 @@ model::DoseMetrics SliceFigures::mean() const {
   m.ver = counted_ > 0 ? errors_ / counted_ : 0.0;
   if (part_ <= 0) return m;
   m.iou = iou_ / part_;
-  m.cv = cv_ / part_;
+  m.cv = std::sqrt(cv_squared_ / part_);
   m.pw = pw_;
   m.ipdr = ipdr_;
   return m;

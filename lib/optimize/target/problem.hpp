@@ -33,6 +33,7 @@ struct Demands {
   bool free_surface = false;  // the dose at the part's surface need not be the threshold
   bool surface = false;       // voxels on the surface are constrained too: part from half coverage on, else void
   bool grey = false;          // the target is a response for every voxel, to be met within its tolerance
+  bool void_below = false;    // grey: the void errs only by what it is beyond its tolerance
   // of the losses that look at the response
   CureCurve curve = CureCurve::logistic(DoseWindow{}.threshold(), usual_softness);
   double band = 0.1;  // epsilon: how far the response may be from the target, where no tolerance is given
