@@ -19,14 +19,16 @@
 
 namespace vam::tool {
 
-/// Of a target that is to be taken as coverage; whether there was reason to.
-inline bool warn_of_grey(const io::SparseVolume& target, const std::string& path) {
+/// Of a target that is to be taken as coverage; whether there was reason to. remedy: what takes it for what it is.
+inline bool warn_of_grey(const io::SparseVolume& target, const std::string& path,
+                         const std::string& remedy = "--grey-target takes the target as the dose of every voxel") {
   const double share = model::grey_share(target.grid(), [&](int k, float* out) { target.read_slices(k, 1, out); });
   if (share < model::least_grey_share) return false;
   warn(io::input_name(path) +
        ": the target is grey, or its voxels are too coarse for it: " + format_number(100 * share, 2) +
        " % of its voxels above 0 are between 0 and 1 and no surface, and are taken for surface that nothing is asked "
-       "of; --grey-target takes the target as the dose of every voxel");
+       "of; " +
+       remedy);
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "grey_target.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/vdb/nrrd.hpp"
@@ -66,6 +67,8 @@ plot::ImageFigure sections(const Options& options, const io::SparseVolume& volum
   return plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr);
 }
 
+constexpr const char* grey_remedy = "a target that is the dose of every voxel is judged by vam-score --grey-target";
+
 /// With the target around the dose, and how it is judged.
 struct Judged {
   io::SparseVolume target;
@@ -74,6 +77,7 @@ struct Judged {
 
 Judged judged(const Options& options, const io::SparseVolume& dose) {
   Judged made{target_for(options), {}};
+  tool::warn_of_grey(made.target, options.target.empty() ? options.input : options.target, grey_remedy);
   made.target.extend_to(dose.grid(), options.target.empty() ? options.input : options.target);
   made.how.threshold = options.threshold;
   tool::settle_exposure(made.how, dose, made.target, tool::load_printer(options.printer));
@@ -81,7 +85,14 @@ Judged judged(const Options& options, const io::SparseVolume& dose) {
 }
 
 double threshold_of(const Options& options, const io::SparseVolume& dose, const Judged& with) {
-  return options.threshold ? *options.threshold : tool::score_volumes(dose, with.target, with.how).print_threshold();
+  if (options.threshold) return *options.threshold;
+  const double found = tool::score_volumes(dose, with.target, with.how).print_threshold();
+  if (found > 0) return found;
+  throw Error{Fault::data,
+              (options.target.empty() ? options.input : options.target) +
+                  ": no threshold follows from the doses, as no voxel of it is wholly inside the part; give "
+                  "--threshold, or slice it with smaller voxels; " +
+                  grey_remedy};
 }
 
 bool is_movie(const Options& options) { return options.output.ends_with(".mp4"); }
@@ -95,8 +106,8 @@ void write_movie(const Options& options, const io::SparseVolume& dose, const std
   if (options.threshold) {
     exposure.threshold = *options.threshold;
   } else {
+    exposure.threshold = threshold_of(options, dose, with);
     const score::Score result = tool::score_volumes(dose, with.target, with.how);
-    exposure.threshold = result.print_threshold();
     const auto plan = with.how.threshold ? std::nullopt : result.plan();  // for the dose of one turn
     if (plan) exposure.duration = {static_cast<double>(plan->turns), plan->seconds};
   }
@@ -118,7 +129,7 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
   if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view, insert);
   if (!options.compare.empty()) {
     const io::SparseVolume other = io::read_volume(options.compare, volume.name());
-    return plot::view_difference(volume, other, view_tool::file_name(options.compare), options.view);
+    return plot::view_difference(volume, other, view_tool::file_name(options.compare, options.input), options.view);
   }
   return sections(options, volume);
 }
@@ -145,6 +156,18 @@ void refuse(const cli::App& app, const Options& options, const std::string& what
     if (app.given(flag))
       throw Error{Fault::data, options.input + ": " + flag + " does not apply to " + what + "; omit it"};
   }
+}
+
+/// Of a volume, those that another figure has a use for.
+void refuse_unused(const cli::App& app, const Options& options) {
+  const std::vector<std::string> of_sections{"--plane", "--at", "--sheet"};
+  if (options.histogram) {
+    refuse(app, options, "a histogram", of_sections);
+    refuse(app, options, "a histogram", {"--colours"});
+  }
+  if (options.render) refuse(app, options, "a body in three dimensions", of_sections);
+  if (options.render || options.cure) refuse(app, options, "colours that tell cure", {"--colours", "--low", "--high"});
+  if (options.plain) refuse(app, options, "plain pixels", {"--dpi", "--title"});
 }
 
 void show_images(const cli::App& app, Options options, io::FileType type) {
@@ -180,14 +203,17 @@ void run(const cli::App& app, Options& options) {
   if (tool::print_printer(options.printer)) return;
   check(options);
   if (app.given("--title")) options.view.title = options.title;
-  options.view.name = view_tool::file_name(options.input);
+  options.view.name = view_tool::file_name(options.input, options.compare);
   options.view.crop = !options.plain;
   options.view.plane = options.plane == "axial"     ? plot::Plane::axial
                        : options.plane == "coronal" ? plot::Plane::coronal
                                                     : plot::Plane::sagittal;
   const auto type = io::known_file_type(options.input);
   if (!type) return show_other(app, options);
-  if (*type == io::FileType::volume) return show_volume(options, app.history());
+  if (*type == io::FileType::volume) {
+    refuse_unused(app, options);
+    return show_volume(options, app.history());
+  }
   show_images(app, options, *type);
 }
 

@@ -55,7 +55,7 @@ Sides extremes_of(const Volumes& volumes, const model::Circle& circle, const std
   for_each_voxel(volumes, circle,
                  [&](float value, Label label) { (label == Label::part ? sides.inside : sides.outside).add(value); });
   if (!(sides.inside.high >= sides.inside.low)) {
-    throw Error{Fault::data, name + ": the target has no whole voxel inside the part"};
+    throw Error{Fault::data, name + ": the target has no voxel wholly inside the part; slice it with smaller voxels"};
   }
   if (!(sides.outside.high >= sides.outside.low)) {
     throw Error{Fault::data, name + ": the target has no voxel outside the part"};

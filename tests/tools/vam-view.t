@@ -87,6 +87,10 @@ fails 65 'no trace' vam-view table.csv --compare table.csv -o x.png
 printf '%s\n' a,b,c,d,e,f 1,2,3,4,5,6 >wide.csv
 fails 65 'has 6 columns' vam-view wide.csv -o x.png
 ok "two traces" vam-view trace.csv --compare trace.csv -o traces.png
+mkdir -p run1 run2; cp trace.csv run1/; cp trace.csv run2/
+vam-view run1/trace.csv --compare run2/trace.csv --title t -o apart.png
+vam-view trace.csv --compare trace.csv --title t -o alike.png
+ok 'two of one name are told apart by their folders' test "$($png sum apart.png)" != "$($png sum alike.png)"
 fails 64 'exclude each other' vam-view wider.vdb --target small.vdb --cure-map --render -o x.png
 fails 65 "wider.vdb: has no grid 'target'; give the part with --target" vam-view wider.vdb --cure-map -o x.png
 fails 64 'requires --cure-map' vam-view wider.vdb --threshold 1 -o x.png
@@ -181,7 +185,11 @@ fails 64 'jpg' vam-view part.vdb -o x.jpg
 fails 64 '--dpi' vam-view part.vdb --dpi 1 -o x.png
 fails 64 'pixels are more than 32767 a side; reduce --image-size or --dpi' \
   vam-view part.vdb --image-size 4000 --dpi 1200 -o x.png
-fails 64 'must be below' vam-view part.vdb --low 2 --high 1 -o x.png
+fails 64 '^vam-view: --low 2: must be below --high 1$' vam-view part.vdb --low 2 --high 1 -o x.png
+fails 65 '--plane does not apply to a body in three dimensions; omit it' vam-view part.vdb --render --plane coronal -o x.png
+fails 65 '--sheet does not apply to a histogram; omit it' vam-view part.vdb --target part.vdb --dose-histogram --sheet 2 -o x.png
+fails 65 '--high does not apply to colours that tell cure; omit it' vam-view part.vdb --target part.vdb --cure-map --high 1 -o x.png
+fails 65 '--title does not apply to plain pixels; omit it' vam-view part.vdb --plain --title t -o x.png
 fails 64 'part.vdb' vam-view part.vdb -o part.vdb
 fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd
 fails 74 'full' vam-view part.vdb -o /dev/full

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-view/options.hpp"
 
+#include <filesystem>
+
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/stream.hpp"
@@ -10,6 +12,13 @@ namespace vam::view_tool {
 
 std::string file_name(const std::string& path) {
   return path == "-" ? "stdin" : path.substr(path.find_last_of('/') + 1);
+}
+
+std::string file_name(const std::string& path, const std::string& other) {
+  const std::string name = file_name(path);
+  if (other.empty() || name != file_name(other)) return name;
+  const std::string folder = std::filesystem::path(path).parent_path().filename().string();
+  return folder.empty() ? name : folder + "/" + name;
 }
 
 namespace {

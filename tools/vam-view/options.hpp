@@ -32,6 +32,8 @@ struct Options {
 
 /// Without folders; "stdin" for -.
 [[nodiscard]] std::string file_name(const std::string& path);
+/// With its folder where that of `other` is the same, as of two runs.
+[[nodiscard]] std::string file_name(const std::string& path, const std::string& other);
 
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);

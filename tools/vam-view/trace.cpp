@@ -29,8 +29,8 @@ plot::Trace read_trace(const std::string& path, const std::string& name) {
 
 plot::Plot convergence_plot(const Options& options) {
   const bool two = !options.compare.empty();
-  std::vector<plot::Trace> traces{read_trace(options.input, two ? file_name(options.input) : "")};
-  if (two) traces.push_back(read_trace(options.compare, file_name(options.compare)));
+  std::vector<plot::Trace> traces{read_trace(options.input, two ? file_name(options.input, options.compare) : "")};
+  if (two) traces.push_back(read_trace(options.compare, file_name(options.compare, options.input)));
   plot::Plot plot = plot::convergence(traces);
   plot.title = options.view.title.value_or(options.view.name + ": convergence");
   return plot;
