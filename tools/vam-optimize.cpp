@@ -89,6 +89,8 @@ void run(const cli::App& app, Options& options) {
   auto outcome = optimize::optimise(task, *light);
   if (outcome.stop == optimize::StopReason::interrupted) {
     beginning.keep();
+    if (!options.checkpoint.empty())
+      note("vam-optimize: interrupted; " + options.checkpoint + " has its state, from which the same command resumes");
     return;
   }
   const bool void_piece = slices && outcome.metrics.part == 0;

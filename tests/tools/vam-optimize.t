@@ -191,8 +191,8 @@ is "the pixels of interrupted passes" "$(tail -c 200000 passed.exr | cksum)" "$(
 interrupted() {  # interrupted STATE ARGUMENTS...: stopped by a signal once it has left that state; $status
   state=$1; shift
   for seconds in 0.5 1 2 5 20 60; do
-    timeout --preserve-status -s INT $seconds vam-optimize "$@" --iterations 100000 --patience 0 --checkpoint $state \
-      part.vdb -o never.exr
+    timeout --preserve-status -s INT $seconds vam-optimize "$@" --iterations 100000 --patience 0 --checkpoint $state -v \
+      part.vdb -o never.exr 2>.log/interrupted
     status=$?
     [ ! -e $state ] || return 0
   done
@@ -200,6 +200,7 @@ interrupted() {  # interrupted STATE ARGUMENTS...: stopped by a signal once it h
 endless() { timeout 60 vam-optimize --iterations 100000 --patience 0 "$@"; }  # but for the error that is expected
 interrupted run.state
 is "interrupted, it ends by the signal" "$status" 130
+grep -q '^vam-optimize: interrupted; run.state has its state, from which the same command resumes$' .log/interrupted; report $? 'and says how it goes on'
 is "interrupted, it leaves its state and no result" "$(ls run.state never.exr 2>/dev/null)" run.state
 for other in '--angles 90' '--dose-high 0.9' '--weights part.vdb' '--dither 1 --bits 8'; do  # any option counts
   fails 65 'of another job' vam-optimize $other --checkpoint run.state part.vdb -o out.exr
