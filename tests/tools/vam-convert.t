@@ -355,7 +355,19 @@ PY
 }
 # Grey pixels are of the full range whatever is stated, as ffmpeg takes them.
 for name in tv.mp4 pc.mp4 grey.mkv full.mkv; do is "levels of $name" "$(quarters $name)" '0 333 667 1000'; done
-for name in blue.mp4 rgb.mp4 rgb.mkv; do is "luma of $name" "$(quarters $name)" '0 0 114 114'; done
+told='its brightest pixel is 11.4 % of full scale, as of images in blue alone; if that is full intensity, give --full-scale 0.114'
+for name in blue.mp4 rgb.mp4 rgb.mkv; do
+  is "luma of $name" "$(quarters $name)" '0 0 114 114'
+  is 'full blue that is taken for dim light is told' "$(cat quarters.err)" "vam-convert: warning: $name: $told"
+done
+quiet 'blue with its full scale' vam-convert blue.mp4 --full-scale 0.114 --geometry parallel --pixel 0.5 --view-step 90 -o blue.exr
+colour() { python3 -c 'import sys; sys.stdout.buffer.write(bytes([int(c) for c in sys.argv[1:]] * 1024) * 4)' "$@" >colour; }
+colour 255 0 0; film red.mkv rgb24 colour -c:v ffv1 -pix_fmt bgr0; quarters red.mkv >red
+is 'red, too' "$(grep -c 'in red alone; .* --full-scale 0.299$' quarters.err)" 1
+colour 0 255 0; film green.mkv rgb24 colour -c:v ffv1 -pix_fmt bgr0; quarters green.mkv >green
+is 'and green' "$(grep -c 'in green alone; .* --full-scale 0.587$' quarters.err)" 1
+colour 51 51 51; film dim.mkv rgb24 colour -c:v ffv1 -pix_fmt bgr0; quarters dim.mkv >dim
+is 'but not dim grey' "$(cat quarters.err)" ''
 
 # Rays climb: rows above and below the part light it, too.
 sizes() { vam-view "$1" --export /dev/stdout | grep -a '^sizes\|^axis mins' | tr '\n' ' '; }

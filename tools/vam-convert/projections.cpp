@@ -228,6 +228,17 @@ void warn_of_size(const Options& options, const io::ArraySize& size, const model
        std::to_string(projector.rows) + "; they are taken for a part of its image, pixel by pixel");
 }
 
+/// Of frames in one colour, whose full intensity is the luma of that colour, within a level of limited range.
+void warn_of_colour(const Options& options, double peak) {
+  constexpr double level = 1.0 / 219;
+  for (const auto& [colour, luma] : {std::pair{"blue", 0.114}, {"red", 0.299}, {"green", 0.587}}) {
+    if (std::abs(peak - luma) > level) continue;
+    warn(io::input_name(options.input) + ": its brightest pixel is " + format_number(100 * peak, 3) +
+         " % of full scale, as of images in " + colour + " alone; if that is full intensity, give --full-scale " +
+         format_number(luma));
+  }
+}
+
 }  // namespace
 
 void make_projections(const cli::App& app, const Options& options, std::optional<io::FileType> type,
@@ -261,6 +272,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   }
   warn_of_negative(options, least);
   warn_of_light(options, resliced.left_out());
+  if (grey && !options.full_scale) warn_of_colour(options, slices.peak());
   if (frames) warn_of_size(options, slices.size(), printer.projector);
   out.commit();
 }

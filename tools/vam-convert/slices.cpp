@@ -49,6 +49,7 @@ void Slices::collect(const Options& options, const model::Printer& printer) {
   const std::vector<float> table = images_->are_grey() ? intensities(options, printer) : std::vector<float>{};
   Image frame;
   while (images_->next(frame)) {
+    peak_ = std::max(peak_, *std::max_element(frame.values.begin(), frame.values.end()));
     optics::orient(frame, options.orientation);
     respond(table, frame);
     for (int y = frame.height - 1; y >= 0; --y) {

@@ -21,6 +21,8 @@ class Slices {
   /// Slices, angles and columns.
   [[nodiscard]] io::ArraySize size() const;
   [[nodiscard]] const io::StatedViews& views() const { return images_->views(); }
+  /// The greatest level of frames, before the projector's response; 0 of arrays.
+  [[nodiscard]] float peak() const { return peak_; }
   /// Upwards: a row for each angle; false after the last.
   bool next(Image& slice);
 
@@ -31,6 +33,7 @@ class Slices {
   io::ArraySize size_;
   std::vector<Lit> lit_;
   int done_ = 0;
+  float peak_ = 0;
 };
 
 }  // namespace vam::convert_tool
