@@ -274,6 +274,10 @@ index '$d'; fails 65 'odd/frames.csv:4: the last line, of 3 for 4 images' vam-co
 index 's/-180/-170/'; fails 65 'odd: the stage angles are uneven' vam-convert odd $like_even
 : >odd/frames.csv; fails 65 'odd/frames.csv:1: does not begin with' vam-convert odd $like_even
 rm odd/frames.csv; quiet 'without it they make a turn' vam-convert odd $like_even
+vam-convert odd $like_even --verbose 2>err
+is 'which is noted' "$(grep -c 'odd: 4 frames are taken as one turn, 90 degrees each; give --view-step otherwise' err)" 1
+vam-convert even $like_even --verbose 2>err
+is 'but not where it is stated' "$(grep -c 'one turn' err)" 0
 
 # Frames of the projector, to 8 bits: the dose within one level of 255.
 set="--set projector.columns=64 --set projector.rows=48 --set projector.pixel_mm=0.5"
@@ -285,13 +289,16 @@ set="$set --set projector.axis_column=30.5 --set projector.axis_row=21.5"
   vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o film.mkv
   vam-project projector.exr $set --turns 2 --fps 12 --speed 12 --orientation rotate-180 -o turned
   ok 'frames of the projector' vam-convert frames --geometry vial --like part.vdb $set -o back.exr
-  quiet 'a video is the same' vam-convert film.mkv --geometry vial --like part.vdb $set -o film.exr
+  quiet 'a video is the same' vam-convert film.mkv --view-step 1 --geometry vial --like part.vdb $set -o film.exr
+  vam-convert film.mkv --geometry vial --like part.vdb $set -o turn.exr 2>err
   vam-dose film.exr --like part.vdb $set --report film.json -o film.vdb
   is 'whose full grey is the full light' "$(json film.json full_scale)" 1.0
   quiet 'and two turns of turned frames' vam-convert turned --geometry vial --orientation rotate-180 --like part.vdb $set -o turned.exr
   for name in projector back film turned; do vam-dose $name.exr --like part.vdb $set | vam-convert >$name.npy; done
 }
 same 'video and folder' film.npy back.npy
+is 'the step that is assumed of a video is told' "$(cat err)" \
+  'vam-convert: warning: film.mkv: 360 frames are taken as one turn, 1 degrees each; give --view-step otherwise'
 cat >compare.py <<'PY'
 import struct, sys
 def floats(path):

@@ -79,6 +79,17 @@ void plan_turns(const Options& options, const Slices& slices, Plan& plan) {
   }
 }
 
+/// Frames of which nothing states the step may be those of several turns, as videos often are.
+void tell_step(const Options& options, const Slices& slices, bool video) {
+  if (options.view_step_deg || !slices.views().source.empty()) return;
+  const int frames = slices.size().rows;
+  const std::string step = io::input_name(options.input) + ": " + std::to_string(frames) +
+                           " frames are taken as one turn, " + format_number(360.0 / frames, 4) +
+                           " degrees each; give --view-step otherwise";
+  if (video) return warn(step);
+  note(step);
+}
+
 double axis_column(const Options& options, const model::Projector& projector, int columns) {
   const double usual = columns == projector.columns ? projector.axis_column : 0.5 * (columns - 1);
   return options.axis_column.value_or(options.in_vial() ? usual : 0.5 * (columns - 1));
@@ -252,6 +263,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   Slices slices(std::move(images), options, printer);
   Plan plan;
   plan_turns(options, slices, plan);
+  if (frames) tell_step(options, slices, type == io::FileType::video);
   plan_columns(options, printer.projector, slices.size().columns, plan);
   const std::optional<io::SparseVolume> like = volume_like(options);
   std::optional<model::Grid> grid;
