@@ -299,6 +299,19 @@ set="$set --set projector.axis_column=30.5 --set projector.axis_row=21.5"
 same 'video and folder' film.npy back.npy
 is 'the step that is assumed of a video is told' "$(cat err)" \
   'vam-convert: warning: film.mkv: 360 frames are taken as one turn, 1 degrees each; give --view-step otherwise'
+ffmpeg -v error -i film.mkv -c:v ffv1 -vf transpose=clock side.mkv
+ffmpeg -v error -i film.mkv -c:v ffv1 -vf transpose=cclock other.mkv
+for side in 'side 90' 'other 270'; do
+  # shellcheck disable=SC2086
+  quiet "a video for a projector on its side: $side" vam-convert ${side% *}.mkv --orientation rotate-${side#* } --view-step 1 \
+    --geometry vial --like part.vdb $set -o side.exr
+  vam-convert film.exr -o film-slices.npy; vam-convert side.exr -o side-slices.npy
+  same 'is the same' film-slices.npy side-slices.npy
+done
+# shellcheck disable=SC2086
+vam-convert side.mkv --view-step 1 --geometry vial --like part.vdb $set -o side.exr 2>err
+is 'which is told where it is not given' "$(sed 's/.*; //' err | sort -u)" "$(printf '%s\n' 'columns and rows look exchanged' \
+  'columns and rows look exchanged: give --orientation rotate-90 or rotate-270')"
 cat >compare.py <<'PY'
 import struct, sys
 def floats(path):

@@ -57,8 +57,11 @@ void declare_projections(cli::App& app, Options& options) {
   app.option("--axis-row", "PX", options.axis_row, on_image,
              "Row of the images, or slice of the array, on which z = 0 lies.");
   app.default_is("projector.axis_row in images as high as the projector's, else the middle");
-  app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
-             "How the images were turned for the projector; undone first.");
+  app.choice(
+      "--orientation", options.orientation,
+      {"normal", "flip-columns", "flip-rows", "rotate-90", "rotate-180", "rotate-270"},
+      "How the images were turned for the projector, clockwise; undone first. Those for a projector on its side, "
+      "with rows along the axis, are rotate-90 or rotate-270.");
 }
 
 void refuse_given(const cli::App& app, const std::vector<std::string>& flags, const std::string& why) {

@@ -225,10 +225,22 @@ void warn_of_negative(const Options& options, float least) {
        ", and no projector shows intensities below 0; they are kept");
 }
 
-void warn_of_light(const Options& options, double left_out) {
+/// Are they frames of a projector that lies on its side?
+bool is_exchanged(const io::ArraySize& size, const model::Projector& projector) {
+  return size.columns == projector.rows && size.images == projector.columns && size.columns != size.images;
+}
+
+/// What to do about light that lies above or below all slices.
+std::string place_remedy(const io::ArraySize& size, const model::Projector& projector, bool frames) {
+  if (frames && is_exchanged(size, projector)) return "columns and rows look exchanged";
+  return "check --axis-row";
+}
+
+/// remedy: what is to be checked.
+void warn_of_light(const Options& options, double left_out, const std::string& remedy) {
   if (left_out < 1e-3) return;
   warn(io::input_name(options.input) + ": " + format_number(100 * left_out, 3) + " % of the light is above or below " +
-       options.like + " and is left out; check --axis-row");
+       options.like + " and is left out; " + remedy);
 }
 
 /// Of frames that the projector would have shown in another size.
@@ -236,7 +248,9 @@ void warn_of_size(const Options& options, const io::ArraySize& size, const model
   if (!options.in_vial() || (size.columns == projector.columns && size.images == projector.rows)) return;
   warn(io::input_name(options.input) + ": images of " + std::to_string(size.columns) + " x " +
        std::to_string(size.images) + " pixels, but the projector has " + std::to_string(projector.columns) + " x " +
-       std::to_string(projector.rows) + "; they are taken for a part of its image, pixel by pixel");
+       std::to_string(projector.rows) +
+       (is_exchanged(size, projector) ? "; columns and rows look exchanged: give --orientation rotate-90 or rotate-270"
+                                      : "; they are taken for a part of its image, pixel by pixel"));
 }
 
 /// Of frames in one colour, whose full intensity is the luma of that colour, within a level of limited range.
@@ -283,7 +297,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
     progress.tick();
   }
   warn_of_negative(options, least);
-  warn_of_light(options, resliced.left_out());
+  warn_of_light(options, resliced.left_out(), place_remedy(slices.size(), printer.projector, frames));
   if (grey && !options.full_scale) warn_of_colour(options, slices.peak());
   if (frames) warn_of_size(options, slices.size(), printer.projector);
   out.commit();

@@ -34,6 +34,25 @@ void respond(const std::vector<float>& table, Image& image) {
   }
 }
 
+/// By a quarter of a turn, as one sees it: row 0 is at the top.
+Image quarter_turned(const Image& image, bool clockwise) {
+  Image turned(image.height, image.width);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (clockwise) turned(image.height - 1 - y, x) = image(x, y);
+      if (!clockwise) turned(y, image.width - 1 - x) = image(x, y);
+    }
+  }
+  return turned;
+}
+
+/// As it was before it was turned for the projector.
+void upright(Image& frame, const std::string& orientation) {
+  if (orientation == "rotate-90") frame = quarter_turned(frame, false);
+  if (orientation == "rotate-270") frame = quarter_turned(frame, true);
+  optics::orient(frame, orientation);
+}
+
 }  // namespace
 
 Slices::Slices(std::unique_ptr<Images> images, const Options& options, const model::Printer& printer)
@@ -50,7 +69,7 @@ void Slices::collect(const Options& options, const model::Printer& printer) {
   Image frame;
   while (images_->next(frame)) {
     peak_ = std::max(peak_, *std::max_element(frame.values.begin(), frame.values.end()));
-    optics::orient(frame, options.orientation);
+    upright(frame, options.orientation);
     respond(table, frame);
     for (int y = frame.height - 1; y >= 0; --y) {
       const float* begin = frame.row(y);
