@@ -401,6 +401,18 @@ is 'have the slices of the stack' "$(sizes risen.exr)" "$(sizes climb.exr)"
 vam-convert sino.npy --geometry parallel --pixel 0.2 --like part.vdb -o short.exr 2>err
 is 'slices that end within the volume are reported' \
   "$(grep -c 'sino.npy: its slices are at z = .* mm, those of part.vdb at .*, and the rest is dark; check --slice-height' err)" 1
+npy make frames.npy '<f4' 72,48,64
+npy make dense.npy '<f4' 64,72,48
+npy make tall.npy '<f4' 96,72,64
+remedy() {  # remedy FILE [OPTION...]: what is to be done about its light above and below the part
+  # shellcheck disable=SC2086
+  vam-convert "$@" --geometry vial --like part.vdb $set -o x.exr 2>err; sed -n 's/.*is left out; //p' err
+}
+is 'an array in the order of frames' "$(remedy frames.npy)" 'check --axes, as its sizes fit the projector in the order azx, and --axis-row'
+is 'and of VAMToolbox' "$(remedy dense.npy)" 'check --axes, as its sizes fit the projector in the order xaz, and --axis-row'
+is 'not where no order fits' "$(remedy tall.npy)" 'check --axis-row'
+is 'nor where it was given' "$(remedy frames.npy --axes azx)" 'check --axis-row'
+rm -f x.exr
 
 # What is said of foreign frames moves them.
 middle() { vam-convert frames --geometry parallel --pixel 0.5 "$@" -o m.exr; vam-view m.exr --export /dev/stdout | grep -a '^sizes\|^axis mins\|^spacings' | tr '\n' ' '; }

@@ -2,7 +2,9 @@
 #include "vam-convert/projections.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -230,10 +232,29 @@ bool is_exchanged(const io::ArraySize& size, const model::Projector& projector) 
   return size.columns == projector.rows && size.images == projector.columns && size.columns != size.images;
 }
 
+/// The order of the axes in which an array that was read as zax is as wide and high as the projector's image; empty
+/// where there is none, or this one is.
+std::string fitting_axes(const io::ArraySize& size, const model::Projector& projector) {
+  const std::array<int, 3> sizes{size.images, size.rows, size.columns};
+  const auto fits = [&](const std::string& order) {
+    return sizes[order.find('z')] == projector.rows && sizes[order.find('x')] == projector.columns;
+  };
+  if (fits("zax")) return "";
+  for (const char* order : {"azx", "xaz", "zxa", "axz", "xza"}) {
+    if (fits(order)) return order;
+  }
+  return "";
+}
+
 /// What to do about light that lies above or below all slices.
-std::string place_remedy(const io::ArraySize& size, const model::Projector& projector, bool frames) {
-  if (frames && is_exchanged(size, projector)) return "columns and rows look exchanged";
-  return "check --axis-row";
+std::string place_remedy(const Options& options, const Slices& slices, const model::Projector& projector, bool frames) {
+  if (frames) {
+    return is_exchanged(slices.size(), projector) ? "columns and rows look exchanged" : "check --axis-row";
+  }
+  const bool own = !options.axes.empty() || slices.views().top_first;  // an order that was given or stated
+  const std::string axes = own ? "" : fitting_axes(slices.size(), projector);
+  if (axes.empty()) return "check --axis-row";
+  return "check --axes, as its sizes fit the projector in the order " + axes + ", and --axis-row";
 }
 
 /// remedy: what is to be checked.
@@ -297,7 +318,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
     progress.tick();
   }
   warn_of_negative(options, least);
-  warn_of_light(options, resliced.left_out(), place_remedy(slices.size(), printer.projector, frames));
+  warn_of_light(options, resliced.left_out(), place_remedy(options, slices, printer.projector, frames));
   if (grey && !options.full_scale) warn_of_colour(options, slices.peak());
   if (frames) warn_of_size(options, slices.size(), printer.projector);
   out.commit();
