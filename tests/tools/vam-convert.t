@@ -78,6 +78,12 @@ fails 64 'vam-convert: low.nrrd: a volume or stack is written as .npy; vam-view 
 npy make grey.npy '<u1' 3,4,5
 vam-convert grey.npy --voxel 0.5 --stretch-z 1 -o grey.vdb 2>err
 is 'grey levels taken as coverage are told' "$(cat err)" 'vam-convert: warning: grey.npy: its values reach 59, where a full voxel is 1; if they are grey levels, give --full-scale 255'
+npy make zero.npy '|u1' 1,1,1
+vam-convert zero.npy --voxel 0.5 --stretch-z 1 -o zero.vdb 2>err
+is 'an empty target is told' "$(cat err)" 'vam-convert: warning: zero.npy: its values reach 0, where a full voxel is 1, and nothing of it is part; check the array'
+vam-convert grey.npy --voxel 0.5 --stretch-z 1 --full-scale 65535 -o zero.vdb 2>err
+is 'and one by a wrong scale' "$(grep -c 'reach 0.0009.*, and nothing of it is part; check the array and --full-scale$' err)" 1
+quiet 'but not other empty volumes' vam-convert zero.npy --voxel 0.5 --grid weight -o zero.vdb
 printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 3 3 3\nencoding: raw\ndata file: a.raw\n' >detached.nrrd
 fails 65 'detached.nrrd: has its values in another file' vam-convert detached.nrrd --voxel 1 -o x.vdb
 fails 64 'voxel: 1e-5 is out of range; give 0.0001 to 1000' vam-convert ramp.npy --voxel 1e-5 --stretch-z 1 -o x.vdb

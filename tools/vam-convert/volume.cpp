@@ -16,6 +16,7 @@
 #include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/dose_metrics.hpp"
 #include "model/magnification.hpp"
 #include "vam-convert/images.hpp"
 
@@ -114,6 +115,15 @@ std::string scale_doubt(const Options& options, float most) {
          ", where a full voxel is 1; if they are grey levels, give --full-scale " + std::to_string(full);
 }
 
+/// Of a target that is void everywhere.
+std::string void_doubt(const Options& options, float most) {
+  const bool target = options.grid.empty() || options.grid == "target";
+  if (!target || model::label_of(most) != model::Label::void_) return "";
+  return io::input_name(options.input) + ": its values reach " + format_number(static_cast<double>(most)) +
+         ", where a full voxel is 1, and nothing of it is part; check the array" +
+         (options.full_scale ? " and --full-scale" : "");
+}
+
 }  // namespace
 
 /// Of a file that states its voxels, as NRRD does: both, where they differ.
@@ -166,6 +176,8 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   if (!edges.empty()) warn(edges);
   const std::string scale = scale_doubt(options, most);
   if (!scale.empty()) warn(scale);
+  const std::string empty = void_doubt(options, most);
+  if (!empty.empty()) warn(empty);
 }
 
 }  // namespace vam::convert_tool
