@@ -184,6 +184,23 @@ document.getElementById('green').textContent = count > 0.01 * copy.width * copy.
 PAGE
 } >green.html
 is 'the insert is drawn in green' "$(look --dump-dom "file://$PWD/green.html" | grep -o '<p id="green">[^<]*')" '<p id="green">seen'
+box 20 12 8 >box.off
+vam-report box.off -o box.html
+{
+  sed 's/<meta http-equiv="Content-Security-Policy"[^>]*>//; s|</body></html>||' box.html
+  cat <<'PAGE'
+<p id="flat"></p><script>
+const copy = document.createElement('canvas'), flat = copy.getContext('2d'), view = document.querySelector('canvas');
+copy.width = view.width; copy.height = view.height; flat.drawImage(view, 0, 0);
+const values = flat.getImageData(0, 0, copy.width, copy.height).data, counts = new Array(256).fill(0);
+for (let i = 0; i < values.length; i += 4) ++counts[values[i]];
+counts[255] = 0;
+const drawn = counts.reduce((a, b) => a + b), faces = counts.sort((a, b) => b - a).slice(0, 3).reduce((a, b) => a + b);
+document.getElementById('flat').textContent = drawn > 1000 && faces > 0.95 * drawn ? 'flat' : `${faces} of ${drawn}`;
+</script></body></html>
+PAGE
+} >flat.html
+is 'the faces of a box are of one grey each' "$(look --dump-dom "file://$PWD/flat.html" | grep -o '<p id="flat">[^<]*')" '<p id="flat">flat'
 look --dump-dom "file://$PWD/inspection.html" >/dev/null
 is 'no message on the console for an inspection' "$(grep -c CONSOLE .log/browser.err)" 0
 is 'the slider moves; both bodies are drawn and rotate' "$(grep -o '<p id="judged">[^<]*' dom.html)" \

@@ -22,22 +22,42 @@ for (const box of document.querySelectorAll('.series')) {
 const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 const vertexShader = `#version 300 es
 in vec3 p; in vec3 n; in vec3 c; uniform mat3 turn; uniform vec3 middle; uniform vec2 zoom; uniform float depth;
-out vec3 place; out vec3 normal; out vec3 colour;
-void main() { vec3 q = turn * (p - middle); place = q; normal = turn * n; colour = c; gl_Position = vec4(q.xy * zoom, -q.z * depth, 1.0); }`;
+out vec3 normal; out vec3 colour;
+void main() { vec3 q = turn * (p - middle); normal = turn * n; colour = c; gl_Position = vec4(q.xy * zoom, -q.z * depth, 1.0); }`;
 const fragmentShader = `#version 300 es
-precision highp float; in vec3 place; in vec3 normal; in vec3 colour; out vec4 shown;
-void main() {  // smooth, but at sharp edges as the triangle lies
-  vec3 even = normalize(cross(dFdx(place), dFdy(place))), round = normalize(normal);
-  float light = 0.35 + 0.65 * mix(abs(even.z), abs(round.z), smoothstep(0.8, 0.97, abs(dot(even, round)))); shown = vec4(colour * light, 1.0); }`;
-function normals(points, triangles) {
-  const sums = new Float32Array(points.length);
+precision highp float; in vec3 normal; in vec3 colour; out vec4 shown;
+void main() { shown = vec4(colour * (0.35 + 0.65 * abs(normalize(normal).z)), 1.0); }`;
+function faceNormals(points, triangles) {  // as long as the faces are large
+  const faces = new Float32Array(triangles.length);
   for (let t = 0; t < triangles.length; t += 3) {
     const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
     const u = [0, 1, 2].map(i => points[b + i] - points[a + i]), v = [0, 1, 2].map(i => points[c + i] - points[a + i]);
-    const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    for (const corner of [a, b, c]) for (let i = 0; i < 3; ++i) sums[corner + i] += n[i];
+    faces.set([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], t);
   }
+  return faces;
+}
+// Of each corner of each triangle: the sum over the faces around it that are within 30 degrees of its own, so that
+// sharp edges stay sharp.
+function normals(points, triangles) {
+  const faces = faceNormals(points, triangles), sums = new Float32Array(3 * triangles.length);
+  const last = new Int32Array(points.length / 3).fill(-1), next = new Int32Array(triangles.length);
+  triangles.forEach((point, corner) => { next[corner] = last[point]; last[point] = corner; });
+  const times = (s, t) => faces[s] * faces[t] + faces[s + 1] * faces[t + 1] + faces[s + 2] * faces[t + 2];
+  const long = faces.map((_, t) => t % 3 ? 0 : Math.sqrt(times(t, t)));
+  triangles.forEach((point, corner) => {
+    const own = corner - corner % 3;
+    for (let other = last[point]; other >= 0; other = next[other]) {
+      const face = other - other % 3;
+      if (times(own, face) < Math.cos(Math.PI / 6) * long[own] * long[face]) continue;
+      for (let i = 0; i < 3; ++i) sums[3 * corner + i] += faces[face + i];
+    }
+  });
   return sums;
+}
+function ofCorners(values, triangles) {
+  const spread = new values.constructor(3 * triangles.length);
+  triangles.forEach((point, corner) => { for (let i = 0; i < 3; ++i) spread[3 * corner + i] = values[3 * point + i]; });
+  return spread;
 }
 function programOf(gl) {
   const program = gl.createProgram();
@@ -58,11 +78,9 @@ function loaded(gl, low, side, [positions, colours, corners]) {
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
     gl.enableVertexAttribArray(at); gl.vertexAttribPointer(at, 3, type, scaled, 0, 0);
   };
-  attribute(0, points, gl.FLOAT, false);
+  attribute(0, ofCorners(points, triangles), gl.FLOAT, false);
   attribute(1, normals(points, triangles), gl.FLOAT, false);
-  attribute(2, bytes(colours), gl.UNSIGNED_BYTE, true);
-  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
+  attribute(2, ofCorners(bytes(colours), triangles), gl.UNSIGNED_BYTE, true);
   return {array, count: triangles.length};
 }
 function draw(view) {
@@ -79,7 +97,7 @@ function draw(view) {
   gl.uniform2f(uniform('zoom'), scale * Math.min(1, wide), scale * Math.min(1, 1 / wide));
   gl.uniform1f(uniform('depth'), 0.5 / reach);
   gl.bindVertexArray(layer.array);
-  gl.drawElements(gl.TRIANGLES, layer.count, gl.UNSIGNED_INT, 0);
+  gl.drawArrays(gl.TRIANGLES, 0, layer.count);
 }
 function turn(view, yaw, pitch) {
   view.yaw += yaw;
