@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/aligned_memory.hpp"
+#include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/per_slice.hpp"
 #include "device/os/interrupt.hpp"
