@@ -8,6 +8,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/stats/median.hpp"
+#include "base/stats/range.hpp"
 #include "metrology/ost/private/body_paths.hpp"
 #include "metrology/ost/private/hidden_rays.hpp"
 #include "metrology/ost/private/line_ends.hpp"
@@ -34,9 +35,9 @@ double typical_difference(const std::vector<Image>& sinograms) {
 }
 
 float brightest(const std::vector<Image>& sinograms) {
-  float most = 0;
-  for (const Image& s : sinograms) most = std::max(most, *std::max_element(s.values.begin(), s.values.end()));
-  return most;
+  std::vector<float> most(sinograms.size());
+  parallel_for(count_of(sinograms), [&](int k) { most[k] = stats::range_of(sinograms[k].values).second; });
+  return std::max(0.0F, *std::max_element(most.begin(), most.end()));
 }
 
 /// Noise of a ray and the contrast that a bubble must have beside it.

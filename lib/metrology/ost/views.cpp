@@ -13,6 +13,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/stats/median.hpp"
+#include "base/stats/range.hpp"
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/cubic.hpp"
@@ -25,27 +26,6 @@ void require_same_size(const Image& image, const Image& field, const std::string
   if (field.values.empty() || (field.width == image.width && field.height == image.height)) return;
   throw Error{Fault::data,
               subject + ": " + size_text(image) + " pixels, but the " + name + " field has " + size_text(field)};
-}
-
-// The least and the largest value, several side by side: vector code, six times as fast as one after the other.
-std::pair<float, float> range_of(std::span<const float> values) {
-  constexpr std::size_t together = 16;
-  std::array<float, together> low{};
-  std::array<float, together> high{};
-  low.fill(values.front());
-  high.fill(values.front());
-  std::size_t i = 0;
-  for (; i + together <= values.size(); i += together) {
-    for (std::size_t n = 0; n < together; ++n) {
-      low[n] = std::min(low[n], values[i + n]);
-      high[n] = std::max(high[n], values[i + n]);
-    }
-  }
-  for (; i < values.size(); ++i) {
-    low[0] = std::min(low[0], values[i]);
-    high[0] = std::max(high[0], values[i]);
-  }
-  return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
 }
 
 Image binned(Image image, int binning) {
@@ -85,7 +65,7 @@ Image corrected(Image image, const CameraFields& fields, int binning, const std:
 }
 
 Exposure exposure_of(const Image& raw) {
-  const auto [low, high] = range_of(raw.values);
+  const auto [low, high] = stats::range_of(raw.values);
   Exposure found{low, high, 0, 0, count_of(raw.values)};
   for (const float v : raw.values) {  // as int: vector code
     found.pixels_at_least += v == low ? 1 : 0;

@@ -7,7 +7,7 @@ namespace vam::metrology {
 
 inline constexpr int climb_heights = 64;  // slices of one tile
 inline constexpr int climb_tile = 8;      // voxel columns of one tile across and down
-inline constexpr int climb_step = 32;     // heights a call are a multiple of it, whole vectors
+inline constexpr int climb_step = 16;     // heights a call are a multiple of it, whole vectors
 
 /// Detector columns at other heights: out[c][z] = in[c](first + slope * z), linear, for z = 0 ... heights - 1.
 /// `in` can be read from first - 1 to the last height + 2, slope is within 0.94 and 1.06.
