@@ -54,7 +54,8 @@ std::vector<std::string> limits() {
       "coverage of the voxels, but they leave no room that stays free of light: where no voxel between insert and part "
       "is more than three quarters free a warning states on which share of the lines between them (clearance_shut in "
       "the "
-      "report); a clearance of two voxels is free wherever it lies. The report contains its size, its "
+      "report); a clearance of two voxels is free wherever it lies. At the insert's sharp "
+      "edges and corners the clearance is up to 0.4 voxels less. The report contains its size, its "
       "centre and the number of its voxels in contact with the part.",
       "Within the writable radius resin is lit from all stage angles, beyond it from some. A part that extends beyond "
       "it is refused unless --extent resin is given; vam-optimize then uses the available rays and constrains the "

@@ -16,7 +16,8 @@ namespace vam::solid {
 
 /// The insert grown by a clearance, slice by slice. Growing takes for the coverage of a voxel the largest of
 /// c(u) + clearance - |v - u| over the voxels u of the insert's surface, in voxels: exact for faces along the grid, to
-/// a tenth of a voxel for others; 0 leaves the insert as it is.
+/// a tenth of a voxel for others, and up to 0.4 voxels too near at sharp edges and corners; 0 leaves the insert as it
+/// is.
 class GrownInsert {
  public:
   /// `read` gives slice k of the insert's coverage; it is called in ascending order. stretch_z: of both, so that the
