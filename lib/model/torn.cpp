@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
+#include <bit>
+#include <cstdint>
 #include <utility>
 
 #include "base/index.hpp"
@@ -14,34 +15,33 @@ namespace {
 
 constexpr std::uint8_t print = printed::part | printed::cured;
 
-/// What is left around a voxel, in three rows of three slices.
-class Neighbourhood {
- public:
-  static constexpr int size = 27;
-  void set(int i) { left_[i] = true; }
-  [[nodiscard]] int pieces() const {
-    Neighbourhood rest = *this;
-    int pieces = 0;
-    for (int i = 0; i < size; ++i) {
-      if (!rest.left_[i]) continue;
-      ++pieces;
-      rest.clear(i);
-    }
-    return pieces;
-  }
+constexpr int around = 27;  // a voxel and its neighbours, in three rows of three slices
 
- private:
-  void clear(int i) {
-    left_[i] = false;
-    for (int j = 0; j < size; ++j) {
-      const bool near =
-          std::abs(i % 3 - j % 3) <= 1 && std::abs(i / 3 % 3 - j / 3 % 3) <= 1 && std::abs(i / 9 - j / 9) <= 1;
-      if (near && left_[j]) clear(j);
+/// Of each of them those that it touches, as bits.
+constexpr std::array<std::uint32_t, around> touching = [] {
+  const auto apart = [](int i, int j) { return i > j ? i - j : j - i; };
+  std::array<std::uint32_t, around> all{};
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < around; ++j) {
+      const bool near = apart(i % 3, j % 3) <= 1 && apart(i / 3 % 3, j / 3 % 3) <= 1 && apart(i / 9, j / 9) <= 1;
+      if (near) all[i] |= std::uint32_t{1} << j;
     }
   }
+  return all;
+}();
 
-  std::array<bool, size> left_{};
-};
+/// In how many pieces these bits are.
+int pieces_of(std::uint32_t bits) {
+  int pieces = 0;
+  for (; bits != 0; ++pieces) {
+    for (std::uint32_t open = bits & -bits; open != 0;) {
+      const std::uint32_t near = touching[std::countr_zero(open)] & bits;
+      bits &= ~near;
+      open = (open & (open - 1)) | (near & ~(open & -open));
+    }
+  }
+  return pieces;
+}
 
 /// Of three slices of bits, what is lost and left.
 class Voxels {
@@ -59,12 +59,12 @@ class Voxels {
   [[nodiscard]] bool is_torn(std::size_t at) const { return is_lost(at) && pieces_around(at) != 1; }
   /// Of what is left.
   [[nodiscard]] int pieces_around(std::size_t at) const {
-    Neighbourhood around;
+    std::uint32_t left = 0;
     for_neighbours(at, [&](int n, std::uint8_t voxel) {
-      if (is_left(voxel)) around.set(n);
+      left |= std::uint32_t{is_left(voxel)} << n;
       return false;
     });
-    return around.pieces();
+    return pieces_of(left);
   }
   [[nodiscard]] bool is_rim(std::size_t at) const {
     return is_left(slices_[1][at]) && for_neighbours(at, [this](int, std::uint8_t voxel) { return is_lost(voxel); });
@@ -76,7 +76,7 @@ class Voxels {
   bool for_neighbours(std::size_t at, const Visit& visit) const {
     const int x = static_cast<int>(at % static_cast<std::size_t>(width_));
     const int y = static_cast<int>(at / static_cast<std::size_t>(width_));
-    for (int n = 0; n < 27; ++n) {
+    for (int n = 0; n < around; ++n) {
       const std::uint8_t* slice = slices_[n / 9];
       const int u = x + n % 3 - 1;
       const int v = y + n / 3 % 3 - 1;
