@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/index.hpp"
@@ -93,8 +92,8 @@ inline score::Score score_print(const io::SparseVolume& dose, const io::SparseVo
 class BandedScore {
  public:
   /// band: of a part of the grid, around which it is `around`; nullptr: it is the same for all.
-  BandedScore(score::GreyScore start, const model::Grid& grid, const io::SparseVolume* band, double around)
-      : score_(std::move(start)), grid_(grid), band_(band), around_(static_cast<float>(around)) {
+  BandedScore(const score::GreyScore& start, const model::Grid& grid, const io::SparseVolume* band, double around)
+      : score_(start), grid_(grid), band_(band), around_(static_cast<float>(around)) {
     if (band == nullptr) return;
     const auto place = model::place_in(grid, band->grid());
     if (!place) throw differs_from_target(*band, "--band-volume");

@@ -15,6 +15,8 @@ constexpr std::size_t leaf_bytes = sizeof(LeafStore::Values);
 std::uint64_t offset_of(openvdb::Index32 place) { return (std::uint64_t{place} - 1) * leaf_bytes; }
 
 constexpr int side = LeafStore::Leaf::DIM;
+constexpr std::ptrdiff_t column = side;          // values from one y to the next
+constexpr std::ptrdiff_t layer = side * column;  // and from one x
 
 /// Of a leaf, where z is fastest and one step along x is 64 values, those of a y: a row of x at every z.
 template <class Value>
@@ -27,12 +29,11 @@ std::array<Value*, side> rows_at(Value* first, std::ptrdiff_t slice) {
 }  // namespace
 
 void gather_leaf(const float* first, std::ptrdiff_t row, std::ptrdiff_t slice, float* values) {
-  for (int y = 0; y < side; ++y)
-    side_by_side(rows_at(first + y * row, slice), side, values + y * side, side * side, side);
+  for (int y = 0; y < side; ++y) side_by_side(rows_at(first + y * row, slice), side, values + y * column, layer, side);
 }
 
 void scatter_leaf(const float* values, float* first, std::ptrdiff_t row, std::ptrdiff_t slice) {
-  for (int y = 0; y < side; ++y) one_by_one(values + y * side, side * side, side, rows_at(first + y * row, slice));
+  for (int y = 0; y < side; ++y) one_by_one(values + y * column, layer, side, rows_at(first + y * row, slice));
 }
 
 void LeafStore::show(const float* dense, const openvdb::Coord& size) {
