@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/error.hpp"
 #include "cli/app.hpp"
 #include "score/grey_score.hpp"
 
@@ -15,8 +16,10 @@ struct GreyChoice {
   std::string band_volume;
   score::GreyOptions how;
 
-  /// The circle and the unit are not known yet.
+  /// The circle and the unit are not known yet. Throws Fault::usage for a band of a void that has another rule.
   [[nodiscard]] score::GreyOptions options() const {
+    if (how.void_band && void_rule != "met")
+      throw Error{Fault::usage, "--void " + void_rule + ": stands for --void-band; omit it"};
     score::GreyOptions chosen = how;
     chosen.void_rule = void_rule == "met"     ? score::VoidRule::met
                        : void_rule == "below" ? score::VoidRule::below
@@ -45,6 +48,7 @@ inline void add_grey_target(cli::App& app, GreyChoice& grey) {
              "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
       .reads()
       .needs({"--grey-target"});
+  app.default_is("the grid 'tolerance' of the target file, if present");
 }
 
 }  // namespace vam::tool

@@ -2,10 +2,7 @@
 // A target that is a dose for every voxel is not taken for coverage in silence.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -15,7 +12,6 @@
 #include "io/stream/input_name.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/grey_share.hpp"
-#include "own_grid.hpp"
 
 namespace vam::tool {
 
@@ -41,21 +37,6 @@ inline void require_linear(const io::SparseVolume& dose, const std::string& file
                                excerpt(response->second) +
                                " of the resin, and doses are judged here; see the report of vam-optimize, or use "
                                "--resin-response linear there"};
-}
-
-/// The band of each voxel: of a file of its own, else of a grid 'tolerance' beside the target; none: it is the same for
-/// all.
-inline std::optional<io::SparseVolume> band_of(const std::string& file, const std::string& target_file) {
-  std::vector<io::SparseVolume> found;
-  if (!file.empty()) {
-    found.push_back(read_own(file, "tolerance"));
-  } else {
-    for (io::SparseVolume& volume : io::read_volumes(target_file)) {
-      if (volume.name() == "tolerance") found.push_back(std::move(volume));
-    }
-  }
-  if (found.empty()) return std::nullopt;
-  return std::move(found.front());
 }
 
 /// What a target's 1 is in the unit of the dose: a target prescribes relative doses unless it states otherwise.

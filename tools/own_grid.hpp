@@ -22,7 +22,7 @@ inline io::SparseVolume read_own(const std::string& path, const std::string& nam
   throw Error{Fault::data, path + ": has several grids, but none is called '" + name + "'"};
 }
 
-/// Of a grid of `file` that must lie on that of the target.
+/// Of a grid that must lie on that of the target. file: begins the message.
 inline Error differs_from_target(const io::SparseVolume& volume, const std::string& file) {
   return {Fault::data, file + ": the grid of '" + volume.name() +
                            "' differs from that of the target; make both from the same target"};

@@ -96,7 +96,7 @@ class BandedScore {
       : score_(start), grid_(grid), band_(band), around_(static_cast<float>(around)) {
     if (band == nullptr) return;
     const auto place = model::place_in(grid, band->grid());
-    if (!place) throw differs_from_target(*band, "--band-volume");
+    if (!place) throw differs_from_target(*band, "target");
     place_ = *place;
   }
   void add(const float* dose, const float* target, int count) {

@@ -21,7 +21,7 @@ void run(const cli::App& app, const Options& options) {
     check_export(app, options);
     return type == io::FileType::volume ? convert_tool::export_volume(options) : convert_tool::export_stack(options);
   }
-  io::require_content(options.input);
+  if (options.input != "-") io::require_content(options.input);  // a socket cannot be looked at
   check_import(app, options);
   if (options.voxel_mm) return convert_tool::make_volume(app, options, type);
   convert_tool::make_projections(app, options, type, printer);

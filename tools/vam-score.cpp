@@ -96,7 +96,7 @@ void score_grey(const Options& options, const model::Printer& printer,
   how.circle = tool::judged_circle(in.target(), printer);
   how.unit = tool::grey_unit(in.target(), in.dose(), options.input);
   tool::require_linear(in.dose(), options.input);
-  const score::GreyScore result = tool::score_grey_volumes(in.dose(), in.target(), how, in.band ? &*in.band : nullptr);
+  const score::GreyScore result = tool::score_grey_volumes(in.dose(), in.target(), how, in.band());
   io::write_report(options.report, "vam-score-grey/1", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "grey_target.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "plot/save.hpp"
 #include "plot/view.hpp"
@@ -84,15 +86,14 @@ Judged judged(const Options& options, const io::SparseVolume& dose) {
   return made;
 }
 
-double threshold_of(const Options& options, const io::SparseVolume& dose, const Judged& with) {
-  if (options.threshold) return *options.threshold;
-  const double found = tool::score_volumes(dose, with.target, with.how).print_threshold();
+/// Throws Fault::data where the doses give none.
+double threshold_of(const Options& options, const score::Score& result) {
+  (void)result.figures();  // refuses a part without voxels, and doses of 0
+  const double found = result.print_threshold();
   if (found > 0) return found;
-  throw Error{Fault::data,
-              (options.target.empty() ? options.input : options.target) +
-                  ": no threshold follows from the doses, as no voxel of it is wholly inside the part; give "
-                  "--threshold, or slice it with smaller voxels; " +
-                  grey_remedy};
+  throw Error{Fault::data, io::input_name(options.input) +
+                               ": no threshold follows from the doses, as part of the part receives none; give "
+                               "--threshold, or compute the projections again"};
 }
 
 bool is_movie(const Options& options) { return options.output.ends_with(".mp4"); }
@@ -106,8 +107,8 @@ void write_movie(const Options& options, const io::SparseVolume& dose, const std
   if (options.threshold) {
     exposure.threshold = *options.threshold;
   } else {
-    exposure.threshold = threshold_of(options, dose, with);
     const score::Score result = tool::score_volumes(dose, with.target, with.how);
+    exposure.threshold = threshold_of(options, result);
     const auto plan = with.how.threshold ? std::nullopt : result.plan();  // for the dose of one turn
     if (plan) exposure.duration = {static_cast<double>(plan->turns), plan->seconds};
   }
@@ -122,7 +123,9 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
   const io::SparseVolume* insert = held ? &*held : nullptr;
   if (options.cure || (options.render && !options.target.empty())) {
     const Judged with = judged(options, volume);
-    const double threshold = threshold_of(options, volume, with);
+    const double threshold = options.threshold
+                                 ? *options.threshold
+                                 : threshold_of(options, tool::score_volumes(volume, with.target, with.how));
     if (!options.cure) return view_tool::print_figure(volume, with.target, threshold, options.view, insert);
     return plot::view_cure(volume, with.target, threshold, with.how.circle, options.view, insert);
   }

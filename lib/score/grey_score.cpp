@@ -113,8 +113,8 @@ std::string GreyScore::verdict() const {
   const bool alike = one_band_ && (!options_.void_band || options_.void_rule != VoidRule::met);
   return std::string(is_met() ? "met" : "not met") + ": " + format_number(within, 4) + " % of " +
          std::to_string(part_ + void_) + " voxels are within " +
-         (alike ? format_number(options_.band, 3) : "the band given for each") + " of the target, the farthest is " +
-         format_number(largest_, 3) + " away";
+         (alike ? format_number(options_.band, 3) + " of the target" : std::string("their bands around the target")) +
+         ", the farthest is " + format_number(largest_, 3) + " away";
 }
 
 }  // namespace vam::score

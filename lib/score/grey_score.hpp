@@ -41,8 +41,8 @@ class GreyScore {
   /// Throws Fault::data when no voxel of the target is above 0.
   [[nodiscard]] Json figures() const;
   [[nodiscard]] bool is_met() const { return wrong_ == 0; }
-  /// "not met: 99 % of 1000 voxels are within 0.1 of the target, the farthest is 0.2 away"; "within their bands" where
-  /// these are not all the same.
+  /// "not met: 99 % of 1000 voxels are within 0.1 of the target, the farthest is 0.2 away"; "within their bands around
+  /// the target" where these are not all the same.
   [[nodiscard]] std::string verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
   [[nodiscard]] std::string table() const;

@@ -140,7 +140,7 @@ set -- --grey-target --void met --void-band 0.5 --band 0.2
 vam-optimize "$@" --angles 60 --iterations 10 --report want.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o void.vdb
 vam-score "$@" void.vdb --target coarse.vdb --report is.json >.log/score
 holds 'with a band of the void the error rate is that of vam-optimize' "($(json is.json ver) - $(json want.json ver)) ^ 2 < 1e-8"
-grep -q 'are within the band given for each of the target' .log/score; report $? 'and the verdict says so'
+grep -q 'are within their bands around the target' .log/score; report $? 'and the verdict says so'
 vam-convert coarse.vdb -o coarse.npy
 python3 - <<'EOF'
 import struct
@@ -157,6 +157,7 @@ vam-score --grey-target --band 0.3 banded.vdb --target alike.vdb --report one.js
 holds 'and that of the same band for all' "($(json is.json ver) - $(json one.json ver)) ^ 2 + ($(json is.json pw) - $(json one.json pw)) ^ 2 < 1e-12"
 fails 65 "the grid of '.*' differs from that of the target" vam-score --grey-target --band-volume part.vdb banded.vdb --target alike.vdb
 vam-optimize --grey-target --resin-response logistic --angles 60 --iterations 2 coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o response.vdb
+fails 64 '--void free: stands for --void-band' vam-score --grey-target --void free --void-band 0.5 banded.vdb --target alike.vdb
 fails 65 "response 'logistic' of the resin, and doses are judged here" vam-score --grey-target response.vdb --target coarse.vdb
 # Once the resin is known, the dose is in mJ/cm3 and the target still relative.
 absorbs='--set resin.absorption_per_mm=0.05'

@@ -270,8 +270,10 @@ void warn_of_size(const Options& options, const io::ArraySize& size, const model
   warn(io::input_name(options.input) + ": images of " + std::to_string(size.columns) + " x " +
        std::to_string(size.images) + " pixels, but the projector has " + std::to_string(projector.columns) + " x " +
        std::to_string(projector.rows) +
-       (is_exchanged(size, projector) ? "; columns and rows look exchanged: give --orientation rotate-90 or rotate-270"
-                                      : "; they are taken for a part of its image, pixel by pixel"));
+       (!is_exchanged(size, projector) ? "; they are taken for a part of its image, pixel by pixel"
+        : options.orientation == "normal"
+            ? "; columns and rows look exchanged: give --orientation rotate-90 or rotate-270"
+            : "; columns and rows look exchanged: check --orientation"));
 }
 
 /// Of frames in one colour, whose full intensity is the luma of that colour, within a level of limited range.

@@ -64,12 +64,11 @@ void estimate(Plan& plan, Coarse judged) {
   plan.unjudged_low_mm = grid.z_mm(judged.unresolved().first - 0.5) / plan.stretch_z;
   plan.unjudged_high_mm = grid.z_mm(judged.unresolved().end - 0.5) / plan.stretch_z;
   if (!judged.is_judged()) return;
-  const model::Grid voxels = grid;  // of the estimate
   plan.preview = preview_of(std::move(judged), plan.coarseness);
   plan.pieces = plan.preview->outcome.pieces;
   if (!plan.pieces) return;
   plan.pieces->set_solids(plan.surface);
-  plan.pieces->set_places(voxels, plan.stretch_z);
+  plan.pieces->set_places(plan.preview->grid, plan.stretch_z);
 }
 
 }  // namespace

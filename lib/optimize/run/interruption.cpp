@@ -22,7 +22,7 @@ void begin(Archive& to, RecordTag record) {
 }  // namespace
 
 void exchange(Archive& archive, const RunMark& mark) {
-  constexpr int magic = 0x564D4F34;
+  constexpr int magic = 0x564D4F35;
   int given_magic = magic;
   archive(given_magic);
   if (given_magic != magic)

@@ -67,7 +67,7 @@ Preview preview(const PreviewTask& wanted) {
   task.around = [&](std::span<const Slab> inserts) { return light::make_operator(setup, inserts); };
   std::vector<Image> frames;
   task.write = [&](int, const Image& image) { frames.push_back(image); };
-  Preview made{optimise(task, *light::make_operator(setup)), {}};
+  Preview made{lit.grid, optimise(task, *light::make_operator(setup)), {}};
   Trial trial;
   trial.printer = wanted.printer;
   trial.tolerances = wanted.tolerances;

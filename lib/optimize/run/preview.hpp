@@ -21,6 +21,7 @@ struct PreviewTask {
 };
 
 struct Preview {
+  model::Grid grid;  // all that the light reaches: the voxels of the outcome
   VolumeOutcome outcome;
   Trials trials;
 };

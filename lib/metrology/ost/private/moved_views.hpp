@@ -22,7 +22,7 @@ struct Lines {
   [[nodiscard]] bool is_seen(int k, int t) const { return hidden[product(k, now.front().width) + t] == 0; }
 };
 
-/// Blurred, so that no edge is sharper than what is sampled between the angles. All is referred to.
+/// Blurred, so that no edge is sharper than what is sampled between the angles. basis and sinograms_of are referred to.
 class MovedViews {
  public:
   MovedViews(const std::vector<Image>& level, const PairBasis& basis, const SinogramsOf& sinograms_of);
