@@ -176,4 +176,21 @@ fails 65 '^vam-plan: shape cylinder:diameter=1000,height=2: is 1e[+]06 x 1e[+]06
 fails 65 'box.off: no part fits the cylinder that can be written, of .* mm radius and 48.* mm height, with pixels' \
   vam-plan box.off --set projector.columns=1 --set projector.axis_column=0 --set projector.lens_distance_mm=120
 fails 73 'missing/plan.json' vam-plan box.off --no-preview --report missing/plan.json
+
+# A slot of 0.6 mm that diffusion shuts: where most of it is, in mm of the part.
+python3 - >slot.off <<'END'
+points, faces = [], []
+for low, high in [((-4, -4, 0), (2.4, 4, 6)), ((3, -4, 0), (4, 4, 6)), ((2.4, -4, 0), (3, 4, 2))]:
+    first = len(points)
+    points += [(x, y, z) for z in (low[2], high[2]) for y in (low[1], high[1]) for x in (low[0], high[0])]
+    faces += [[first + i for i in face] for face in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))]
+print("OFF\n%d %d 0" % (len(points), len(faces)))
+for point in points: print(*point)
+for face in faces: print(4, *face)
+END
+vam-plan slot.off --set resin.psf_mm=0.35 --set projector.telecentric=true --report slot.json >.log/slot
+holds 'the place of a shut slot is in the slot' "$(python3 -c '
+import json
+x, y, z = json.load(open("slot.json"))["shut_at_mm"]
+print(int(2.3 < x < 3.1 and -4 < y < 4 and 1.8 < z < 6.1))')"
 done_testing
