@@ -15,7 +15,8 @@
 
 namespace vam::tool {
 
-/// Of a target that is to be taken as coverage; whether there was reason to. remedy: what takes it for what it is.
+/// Warns where a target that is taken as coverage looks like doses, and returns whether it does. remedy: ends the
+/// warning.
 inline bool warn_of_grey(const io::SparseVolume& target, const std::string& path,
                          const std::string& remedy = "--grey-target takes the target as the dose of every voxel") {
   const double share = model::grey_share(target.grid(), [&](int k, float* out) { target.read_slices(k, 1, out); });
@@ -28,8 +29,7 @@ inline bool warn_of_grey(const io::SparseVolume& target, const std::string& path
   return true;
 }
 
-/// The resin's response that the projections of a dose were made for is what a dose is judged by in --grey-target; only
-/// the dose itself is.
+/// --grey-target judges doses. Throws Fault::data for one whose projections were made for a response of the resin.
 inline void require_linear(const io::SparseVolume& dose, const std::string& file) {
   const auto response = dose.metadata.find("vam:response");
   if (response == dose.metadata.end()) return;

@@ -88,9 +88,9 @@ Judged judged(const Options& options, const io::SparseVolume& dose) {
 
 /// Throws Fault::data where the doses give none.
 double threshold_of(const Options& options, const score::Score& result) {
-  (void)result.figures();  // refuses a part without voxels, and doses of 0
   const double found = result.print_threshold();
   if (found > 0) return found;
+  (void)result.figures();  // refuses a part without voxels, and doses of 0
   throw Error{Fault::data, io::input_name(options.input) +
                                ": no threshold follows from the doses, as part of the part receives none; give "
                                "--threshold, or compute the projections again"};

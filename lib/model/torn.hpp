@@ -71,7 +71,7 @@ class TornSets {
   /// A set that is torn if these pieces stay apart.
   struct Undecided {
     std::int64_t voxels;  // that are not counted as torn
-    VoxelPlace at;        // one of them
+    VoxelPlace at;        // one of the set
     std::vector<Piece> pieces;
   };
 

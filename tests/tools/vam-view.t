@@ -185,6 +185,16 @@ fails 64 'jpg' vam-view part.vdb -o x.jpg
 fails 64 '--dpi' vam-view part.vdb --dpi 1 -o x.png
 fails 64 'pixels are more than 32767 a side; reduce --image-size or --dpi' \
   vam-view part.vdb --image-size 4000 --dpi 1200 -o x.png
+vam-convert part.vdb -o part.npy
+python3 - <<'END'
+import struct
+data = open('part.npy', 'rb').read()
+start = 10 + struct.unpack('<H', data[8:10])[0]
+open('dark.npy', 'wb').write(data[:start] + bytes(len(data) - start))
+END
+vam-convert dark.npy --voxel 0.4 --stretch-z 1 --grid dose -o dark.vdb 2>.log/dark
+vam-convert part.npy --voxel 0.4 --stretch-z 1 -o lit.vdb 2>.log/lit
+fails 65 'the dose is 0 everywhere' vam-view dark.vdb --target lit.vdb --cure-map -o x.png
 fails 64 '^vam-view: --low 2: must be below --high 1$' vam-view part.vdb --low 2 --high 1 -o x.png
 fails 65 '--plane does not apply to a body in three dimensions; omit it' vam-view part.vdb --render --plane coronal -o x.png
 fails 65 '--sheet does not apply to a histogram; omit it' vam-view part.vdb --target part.vdb --dose-histogram --sheet 2 -o x.png
