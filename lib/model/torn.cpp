@@ -18,7 +18,7 @@ constexpr std::uint8_t print = printed::part | printed::cured;
 constexpr int around = 27;  // a voxel and its neighbours, in three rows of three slices
 
 /// Of each of them those that it touches, as bits.
-constexpr std::array<std::uint32_t, around> touching = [] {
+constexpr std::array<std::uint32_t, around> neighbours = [] {
   const auto apart = [](int i, int j) { return i > j ? i - j : j - i; };
   std::array<std::uint32_t, around> all{};
   for (int i = 0; i < around; ++i) {
@@ -35,7 +35,7 @@ int pieces_of(std::uint32_t bits) {
   int pieces = 0;
   for (; bits != 0; ++pieces) {
     for (std::uint32_t open = bits & -bits; open != 0;) {
-      const std::uint32_t near = touching[std::countr_zero(open)] & bits;
+      const std::uint32_t near = neighbours[std::countr_zero(open)] & bits;
       bits &= ~near;
       open = (open & (open - 1)) | (near & ~(open & -open));
     }
