@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "model/bit_slice.hpp"
 
 namespace vam::model {
 
@@ -138,8 +139,8 @@ bool FieldPieces::joins(const VoxelPair& pair, const std::vector<float>& slice) 
 }
 
 void FieldPieces::add(std::vector<float> slice) {
-  const auto runs = runs_of(width_, height_, [&](std::size_t i) { return static_cast<double>(slice[i]) >= level_; });
-  counter_.add(runs, [&](const VoxelPair& pair) { return joins(pair, slice); });
+  counter_.add(reaching(width_, height_, slice.data(), level_).runs(),
+               [&](const VoxelPair& pair) { return joins(pair, slice); });
   last_ = std::move(slice);
 }
 

@@ -9,7 +9,7 @@
 
 namespace vam::model {
 
-/// Voxels of a row that are of a solid: [begin, end).
+/// Voxels of a row that are of a solid: [begin, end). Those of a slice come in order [BitSlice::runs].
 struct VoxelRun {
   int row, begin, end;
 };
@@ -19,22 +19,6 @@ struct VoxelPlace {
   int column = 0, row = 0, slice = 0;
   bool operator==(const VoxelPlace&) const = default;
 };
-
-/// The runs of a slice, row by row, of the voxels with solid(pixel).
-template <class Solid>
-[[nodiscard]] std::vector<VoxelRun> runs_of(int width, int height, const Solid& solid) {
-  std::vector<VoxelRun> runs;
-  for (int row = 0; row < height; ++row) {
-    const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
-    for (int x = 0; x < width; ++x) {
-      if (!solid(first + static_cast<std::size_t>(x))) continue;
-      const int begin = x;
-      while (x < width && solid(first + static_cast<std::size_t>(x))) ++x;
-      runs.push_back({row, begin, x});
-    }
-  }
-  return runs;
-}
 
 /// Two voxels of a row and its neighbour rows, or of neighbouring slices.
 struct VoxelPair {
@@ -54,7 +38,7 @@ void for_near_runs(const std::vector<VoxelRun>& runs, const std::vector<VoxelRun
 /// Sets of runs. Voxels that share a face are of one set. Runs are numbered in the order in which they come.
 class RunSets {
  public:
-  /// The next slice, as of runs_of().
+  /// The next slice, as of BitSlice::runs().
   void add(const std::vector<VoxelRun>& slice, const Joins& joins);
   /// The last slice, and the number of its first run.
   [[nodiscard]] const std::vector<VoxelRun>& last() const { return last_; }
@@ -99,7 +83,7 @@ class RunSets {
 class PieceCounter {
  public:
   explicit PieceCounter(std::int64_t least_voxels) : least_(least_voxels) {}
-  /// The next slice, as of runs_of().
+  /// The next slice, as of BitSlice::runs().
   void add(const std::vector<VoxelRun>& slice, const Joins& joins);
   [[nodiscard]] int count() const;
 

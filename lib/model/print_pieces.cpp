@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "model/bit_slice.hpp"
 
 namespace vam::model {
 
@@ -84,7 +85,8 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
   std::vector<std::function<void()>> work;
   work.emplace_back([&] {
     for (const Slice& slice : slices) {
-      part_.add(runs_of(width_, height_, [&](std::size_t i) { return (slice[i] & printed::trace) != 0; }), at_corners);
+      const auto has_trace = [&](std::size_t i) { return (slice[i] & printed::trace) != 0; };
+      part_.add(BitSlice(width_, height_, has_trace, false).runs(), at_corners);
     }
   });
   work.emplace_back([&] { add_field(part_at_half_, [&](std::size_t i) { return coverage[i]; }); });

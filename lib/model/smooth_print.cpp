@@ -13,15 +13,8 @@ namespace vam::model {
 namespace {
 
 constexpr double rough = 0.02;  // of the dose
-constexpr int thin = 2;         // voxels in a row
-constexpr int reach = thin;     // slices beyond which nothing is looked at
 
 }  // namespace
-
-bool SmoothPrint::has_part(int k, int x, int y) const {
-  const bool in = k >= 0 && k < count_of(slices_) && x >= 0 && x < width_ && y >= 0 && y < height_;
-  return in && slices_[k].part[product(y, width_) + static_cast<std::size_t>(x)] != 0;
-}
 
 float firm_dose(float coverage, float dose, double threshold) {
   const auto least = static_cast<float>((1 - rough) * threshold);
@@ -38,19 +31,20 @@ float other_dose(double factor, float coverage, float dose, double threshold) {
   return stays ? dose : other;
 }
 
-/// Along the 13 lines through a voxel and its neighbours.
-bool SmoothPrint::is_thin(int k, int x, int y) const {
-  const bool is = has_part(k, x, y);
-  const auto steps = [&](int dx, int dy, int dz) {  // to its end in a direction
-    int n = 1;
-    while (n <= reach && has_part(k + n * dz, x + n * dx, y + n * dy) == is) ++n;
-    return n;
-  };
+/// Along the 13 lines through the voxel and its neighbours.
+bool SmoothPrint::is_thin(const Around& around, std::size_t at) const {
+  const std::uint8_t is = around[reach][at];
   for (int line = 0; line < 13; ++line) {
-    const int dx = line % 3 - 1;
-    const int dy = line / 3 % 3 - 1;
     const int dz = line / 9 - 1;
-    if (steps(dx, dy, dz) + steps(-dx, -dy, -dz) <= thin + 1) return true;
+    const std::ptrdiff_t in_slice = (line / 3 % 3 - 1) * static_cast<std::ptrdiff_t>(row_) + line % 3 - 1;
+    const auto goes_on = [&](int steps) {
+      return around[static_cast<std::size_t>(reach + steps * dz)][static_cast<std::ptrdiff_t>(at) + steps * in_slice] ==
+             is;
+    };
+    const bool on = goes_on(1);
+    const bool back = goes_on(-1);
+    if (on && back) continue;
+    if (!(on && goes_on(2)) && !(back && goes_on(-2))) return true;
   }
   return false;
 }
@@ -58,13 +52,20 @@ bool SmoothPrint::is_thin(int k, int x, int y) const {
 std::vector<float> SmoothPrint::smooth(int first, int last) const {
   const std::size_t size = product(width_, height_);
   std::vector<float> smoothed(product(std::max(last - first, 0), size));
+  const std::vector<std::uint8_t> beyond(product(row_, height_ + 2 * reach), 0);
   parallel_for(std::max(last - first, 0), [&](int n) {
     const Slice& slice = slices_[first + n];
+    Around around{};
+    for (int k = 0; k < count_of(around); ++k) {
+      const int at = first + n + k - reach;
+      around[k] = (at >= 0 && at < count_of(slices_) ? slices_[at].part : beyond).data();
+    }
     for (int y = 0; y < height_; ++y) {
       for (int x = 0; x < width_; ++x) {
         const std::size_t i = product(y, width_) + static_cast<std::size_t>(x);
-        const float firm = firm_dose(slice.part[i], slice.dose[i], threshold_);
-        const bool stays = firm == slice.dose[i] || is_thin(first + n, x, y);
+        const std::size_t at = product(y + reach, row_) + static_cast<std::size_t>(x + reach);
+        const float firm = firm_dose(slice.part[at], slice.dose[i], threshold_);
+        const bool stays = firm == slice.dose[i] || is_thin(around, at);
         smoothed[product(n, size) + i] = stays ? slice.dose[i] : firm;
       }
     }
@@ -76,9 +77,13 @@ std::vector<float> SmoothPrint::add(int count, const float* coverage, const floa
   const std::size_t size = product(width_, height_);
   for (int n = 0; n < count; ++n) {
     const std::size_t first = product(n, size);
-    Slice slice{std::vector<std::uint8_t>(size), std::vector<float>(dose + first, dose + first + size)};
-    for (std::size_t i = 0; i < size; ++i)
-      slice.part[i] = coverage[first + i] >= static_cast<float>(half_surface) ? 1 : 0;
+    Slice slice{std::vector<std::uint8_t>(product(row_, height_ + 2 * reach)),
+                std::vector<float>(dose + first, dose + first + size)};
+    for (int y = 0; y < height_; ++y) {
+      const float* from = coverage + first + product(y, width_);
+      std::uint8_t* to = slice.part.data() + product(y + reach, row_) + reach;
+      for (int x = 0; x < width_; ++x) to[x] = from[x] >= static_cast<float>(half_surface) ? 1 : 0;
+    }
     slices_.push_back(std::move(slice));
   }
   const int known = std::max(count_of(slices_) - reach, returned_);

@@ -2,6 +2,8 @@
 // The dose of a print without the roughness of its faces, which has handles that are no holes.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,22 +22,25 @@ namespace vam::model {
 class SmoothPrint {
  public:
   /// threshold: more than 0.
-  SmoothPrint(int width, int height, double threshold) : width_(width), height_(height), threshold_(threshold) {}
+  SmoothPrint(int width, int height, double threshold)
+      : width_(width), height_(height), row_(width + 2 * reach), threshold_(threshold) {}
   /// The next slices, row-major: coverage 0...1, and dose. Returns the doses of those whose neighbours are known.
   [[nodiscard]] std::vector<float> add(int count, const float* coverage, const float* dose);
   /// Those of the last ones, up to two, beyond which is nothing.
   [[nodiscard]] std::vector<float> rest() const;
 
  private:
+  static constexpr int reach = 2;  // voxels and slices beyond which nothing is looked at
   struct Slice {
-    std::vector<std::uint8_t> part;  // at least half covered
+    std::vector<std::uint8_t> part;  // at least half covered? With a margin of `reach` that is not
     std::vector<float> dose;
   };
   [[nodiscard]] std::vector<float> smooth(int first, int last) const;
-  [[nodiscard]] bool has_part(int k, int x, int y) const;
-  [[nodiscard]] bool is_thin(int k, int x, int y) const;
+  /// Of a slice, `reach` before and after it: Slice::part.
+  using Around = std::array<const std::uint8_t*, 2 * reach + 1>;
+  [[nodiscard]] bool is_thin(const Around& around, std::size_t at) const;
 
-  int width_, height_;
+  int width_, height_, row_;  // row_: of Slice::part
   double threshold_;
   std::vector<Slice> slices_;
   int returned_ = 0;  // of these

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "model/bit_slice.hpp"
 
 namespace vam::model {
 
@@ -43,61 +44,68 @@ int pieces_of(std::uint32_t bits) {
   return pieces;
 }
 
-/// Of three slices of bits, what is lost and left.
+/// Of three slices, what is lost and left.
 class Voxels {
  public:
-  Voxels(Torn what, int width, int height, const std::uint8_t* const* slices)
-      : gap_(what == Torn::gap), width_(width), height_(height), slices_(slices) {}
+  Voxels(Torn what, int width, int height, const std::uint8_t* const* slices) {
+    const bool gap = what == Torn::gap;
+    const auto is_lost = [gap](std::uint8_t voxel) {
+      return gap ? (voxel & (printed::edge | printed::cured)) == printed::cured : (voxel & print) == printed::part;
+    };
+    const auto is_left = [gap](std::uint8_t voxel) { return (voxel & print) == (gap ? 0 : print); };
+    for (int k = 0; k < 3; ++k) {
+      const std::uint8_t* slice = slices[k];
+      if (slice == nullptr) {
+        lost_.emplace_back(width, height);
+        left_.emplace_back(width, height, gap);
+      } else {
+        lost_.emplace_back(
+            width, height, [&](std::size_t at) { return is_lost(slice[at]); }, false);
+        left_.emplace_back(
+            width, height, [&](std::size_t at) { return is_left(slice[at]); }, gap);
+      }
+    }
+  }
 
-  [[nodiscard]] bool is_lost(std::uint8_t voxel) const {
-    return gap_ ? (voxel & (printed::edge | printed::cured)) == printed::cured : (voxel & print) == printed::part;
-  }
-  [[nodiscard]] bool is_left(std::uint8_t voxel) const {
-    return gap_ ? (voxel & print) == 0 : (voxel & print) == print;
-  }
-  [[nodiscard]] bool is_lost(std::size_t at) const { return is_lost(slices_[1][at]); }
-  [[nodiscard]] bool is_torn(std::size_t at) const { return is_lost(at) && pieces_around(at) != 1; }
-  /// Of what is left.
-  [[nodiscard]] int pieces_around(std::size_t at) const {
+  [[nodiscard]] const BitSlice& lost() const { return lost_[1]; }
+  /// Of what is left, among the voxel and its 26 neighbours.
+  [[nodiscard]] int pieces_around(int x, int y) const {
     std::uint32_t left = 0;
-    for_neighbours(at, [&](int n, std::uint8_t voxel) {
-      left |= std::uint32_t{is_left(voxel)} << n;
-      return false;
-    });
+    for (int row = around / 3 - 1; row >= 0; --row) left = left << 3U | left_[row / 3].some(x - 1, y + row % 3 - 1, 3);
     return pieces_of(left);
   }
-  [[nodiscard]] bool is_rim(std::size_t at) const {
-    return is_left(slices_[1][at]) && for_neighbours(at, [this](int, std::uint8_t voxel) { return is_lost(voxel); });
+  /// Left, with a lost one among its 26 neighbours.
+  [[nodiscard]] BitSlice rim() const {
+    BitSlice rim(lost().width(), lost().height());
+    if (std::none_of(lost_.begin(), lost_.end(), [](const BitSlice& slice) { return slice.any(); })) return rim;
+    for (int y = 0; y < rim.height(); ++y) {
+      const auto lost_at = [&](int n) {
+        BitSlice::Word any = 0;
+        for (const BitSlice& slice : lost_) any |= slice.row(y - 1)[n] | slice.row(y)[n] | slice.row(y + 1)[n];
+        return any;
+      };
+      constexpr int last = BitSlice::word_bits - 1;
+      for (int n = 0; n < rim.words(); ++n) {
+        const BitSlice::Word here = lost_at(n);
+        const BitSlice::Word before = n > 0 ? lost_at(n - 1) >> last : 0;
+        const BitSlice::Word after = n + 1 < rim.words() ? lost_at(n + 1) << last : 0;
+        rim.row(y)[n] = left_[1].row(y)[n] & (here | here << 1U | here >> 1U | before | after);
+      }
+    }
+    return rim;
   }
 
  private:
-  /// visit(n, voxel) of it and its 26 neighbours, until one returns true, which is returned.
-  template <class Visit>
-  bool for_neighbours(std::size_t at, const Visit& visit) const {
-    const int x = static_cast<int>(at % static_cast<std::size_t>(width_));
-    const int y = static_cast<int>(at / static_cast<std::size_t>(width_));
-    for (int n = 0; n < around; ++n) {
-      const std::uint8_t* slice = slices_[n / 9];
-      const int u = x + n % 3 - 1;
-      const int v = y + n / 3 % 3 - 1;
-      const bool in = slice != nullptr && u >= 0 && u < width_ && v >= 0 && v < height_;
-      if (visit(n, in ? slice[product(v, width_) + static_cast<std::size_t>(u)] : std::uint8_t{0})) return true;
-    }
-    return false;
-  }
-
-  bool gap_;
-  int width_, height_;
-  const std::uint8_t* const* slices_;
+  std::vector<BitSlice> lost_, left_;
 };
 
 /// Of the lost run with this number.
-void add_torn(TornSlice& slice, std::size_t lost_run, const Voxels& voxels, int width) {
+void add_torn(TornSlice& slice, std::size_t lost_run, const Voxels& voxels) {
   const VoxelRun run = slice.lost[lost_run];
   bool goes_on = false;
   std::int64_t torn = 0;
   for (int x = run.begin; x < run.end; ++x) {
-    const int pieces = voxels.pieces_around(product(run.row, width) + static_cast<std::size_t>(x));
+    const int pieces = voxels.pieces_around(x, run.row);
     if (pieces != 1 && !goes_on) {
       slice.torn.push_back({run.row, x, x});
       slice.lost_run.push_back(lost_run);
@@ -117,23 +125,16 @@ void add_torn(TornSlice& slice, std::size_t lost_run, const Voxels& voxels, int 
 TornSlice torn_slice(Torn what, int width, int height, const std::uint8_t* const* slices) {
   const Voxels voxels(what, width, height, slices);
   TornSlice found;
-  found.lost = runs_of(width, height, [&](std::size_t at) { return voxels.is_lost(at); });
-  for (std::size_t run = 0; run < found.lost.size(); ++run) add_torn(found, run, voxels, width);
-  bool any = !found.lost.empty();
-  for (const int k : {0, 2}) {
-    const std::uint8_t* slice = slices[k];
-    any = any || (slice != nullptr && std::any_of(slice, slice + product(width, height),
-                                                  [&](std::uint8_t voxel) { return voxels.is_lost(voxel); }));
-  }
-  if (any) found.rim = runs_of(width, height, [&](std::size_t at) { return voxels.is_rim(at); });
+  found.lost = voxels.lost().runs();
+  for (std::size_t run = 0; run < found.lost.size(); ++run) add_torn(found, run, voxels);
+  found.rim = voxels.rim().runs();
   return found;
 }
 
 std::vector<std::size_t> torn_voxels(Torn what, int width, int height, const std::uint8_t* const* slices) {
-  const Voxels voxels(what, width, height, slices);
   std::vector<std::size_t> torn;
-  for (std::size_t at = 0; at < product(width, height); ++at) {
-    if (voxels.is_torn(at)) torn.push_back(at);
+  for (const VoxelRun& run : torn_slice(what, width, height, slices).torn) {
+    for (int x = run.begin; x < run.end; ++x) torn.push_back(product(run.row, width) + static_cast<std::size_t>(x));
   }
   return torn;
 }

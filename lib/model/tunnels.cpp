@@ -2,6 +2,8 @@
 #include "model/tunnels.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -19,13 +21,13 @@ using Parts = std::array<int, 8>;
 
 constexpr bool is_solid(float value) { return value >= 0; }
 
-void join(int a, int b, Parts& parts) {
+constexpr void join(int a, int b, Parts& parts) {
   const int from = std::max(parts[a], parts[b]);
   std::replace(parts.begin(), parts.end(), from, std::min(parts[a], parts[b]));
 }
 
 /// By the edges of the cell.
-Parts along_edges(const Corners& corners) {
+constexpr Parts along_edges(const Corners& corners) {
   Parts parts{};
   std::iota(parts.begin(), parts.end(), 0);
   for (int n = 0; n < 8; ++n) {
@@ -37,7 +39,7 @@ Parts along_edges(const Corners& corners) {
 }
 
 /// How many there are of the solid, or of the rest.
-int count_of(const Parts& parts, const Corners& corners, bool solid) {
+constexpr int parts_of(const Parts& parts, const Corners& corners, bool solid) {
   int count = 0;
   for (int n = 0; n < 8; ++n) count += parts[n] == n && is_solid(corners[n]) == solid ? 1 : 0;
   return count;
@@ -50,13 +52,13 @@ struct Face {
 constexpr std::array<Face, 3> low_faces{{{0, 2, 4, 6}, {0, 1, 4, 5}, {0, 1, 2, 3}}};
 constexpr std::array<int, 3> to_high_face{1, 2, 4};
 
-bool is_ambiguous(const Face& face, const Corners& corners) {
+constexpr bool is_ambiguous(const Face& face, const Corners& corners) {
   const bool solid = is_solid(corners[face.a]);
   return is_solid(corners[face.d]) == solid && is_solid(corners[face.b]) != solid && is_solid(corners[face.c]) != solid;
 }
 
 /// Whether at its saddle an ambiguous face is solid: its solid corners hang together there, else the others.
-bool is_solid_at_saddle(const Face& face, const Corners& corners) {
+constexpr bool is_solid_at_saddle(const Face& face, const Corners& corners) {
   const auto value = [&](int corner) { return static_cast<double>(corners[corner]); };
   const double way = value(face.a) * value(face.d) - value(face.b) * value(face.c);
   return is_solid(corners[face.a]) ? way >= 0 : way <= 0;
@@ -69,7 +71,7 @@ void join_across(const Face& face, const Corners& corners, Parts& parts) {
 }
 
 /// Of the solid in a face: its pieces, as none has a hole.
-int pieces_of(const Face& face, const Corners& corners) {
+constexpr int pieces_of(const Face& face, const Corners& corners) {
   if (is_ambiguous(face, corners) && !is_solid_at_saddle(face, corners)) return 2;
   return is_solid(corners[face.a]) || is_solid(corners[face.b]) || is_solid(corners[face.c]) ||
                  is_solid(corners[face.d])
@@ -104,6 +106,55 @@ void join_inside(const Corners& corners, Parts& parts) {
   }
 }
 
+/// What a cell adds to the Euler characteristic with the faces, edges and corner at its low sides, if its solid is in
+/// so many pieces less tunnels.
+constexpr int euler_of(int of_cell, const Corners& corners) {
+  int euler = of_cell - (is_solid(corners[0]) ? 1 : 0);
+  for (const Face& face : low_faces) euler -= pieces_of(face, corners);
+  for (const int end : to_high_face) euler += is_solid(corners[0]) || is_solid(corners[end]) ? 1 : 0;
+  return euler;
+}
+
+/// Of a cell that is cut by one surface, which meets no face twice, only which corners are solid tells.
+struct Cut {
+  bool is_plain = false;
+  int euler = 0;
+};
+
+/// By the solid corners, as bits.
+constexpr std::array<Cut, 256> cuts = [] {
+  std::array<Cut, 256> all{};
+  for (unsigned solid = 0; solid < all.size(); ++solid) {
+    Corners corners{};
+    for (unsigned n = 0; n < 8; ++n) corners[n] = (solid >> n & 1U) != 0 ? 1.0F : -1.0F;
+    const Parts parts = along_edges(corners);
+    all[solid].is_plain = parts_of(parts, corners, true) <= 1 && parts_of(parts, corners, false) <= 1;
+    for (const Face& face : low_faces) all[solid].is_plain = all[solid].is_plain && !is_ambiguous(face, corners);
+    all[solid].euler = euler_of(1, corners);
+  }
+  return all;
+}();
+
+/// visit(x) of the cells between columns x and x + 1, rows y and y + 1 of two slices that have corners of both kinds.
+template <class Visit>
+void for_cut_cells(const BitSlice& low, const BitSlice& high, int y, const Visit& visit) {
+  const std::array<const BitSlice::Word*, 4> rows{low.row(y), low.row(y + 1), high.row(y), high.row(y + 1)};
+  const auto all = [&](int n) { return rows[0][n] & rows[1][n] & rows[2][n] & rows[3][n]; };
+  const auto any = [&](int n) { return rows[0][n] | rows[1][n] | rows[2][n] | rows[3][n]; };
+  for (int n = 0; n < low.words(); ++n) {
+    // Bits with the next higher ones, the first of the next word for the last of this one.
+    const auto with_next = [&](const auto& of) {
+      return std::pair{of(n), of(n) >> 1U | (n + 1 < low.words() ? of(n + 1) << (BitSlice::word_bits - 1) : 0)};
+    };
+    const auto [all_here, all_there] = with_next(all);
+    const auto [any_here, any_there] = with_next(any);
+    for (BitSlice::Word cut = (any_here | any_there) & ~(all_here & all_there); cut != 0; cut &= cut - 1) {
+      const int x = n * BitSlice::word_bits + std::countr_zero(cut) - 1;
+      if (x < low.width()) visit(x);
+    }
+  }
+}
+
 /// Of the runs that of this voxel. There is one.
 std::size_t run_of(const std::vector<VoxelRun>& runs, int x, int y) {
   const auto after =
@@ -123,61 +174,60 @@ void TunnelCounter::add_cell(const std::array<float, 8>& values, double level, i
   const Parts edges = along_edges(corners);
   Parts parts = edges;
   int of_cell = 1;
-  if (count_of(edges, corners, true) > 1 || count_of(edges, corners, false) > 1) {
+  if (parts_of(edges, corners, true) > 1 || parts_of(edges, corners, false) > 1) {
     for (std::size_t n = 0; n < low_faces.size(); ++n) {
       const Face& low = low_faces[n];
       const int up = to_high_face[n];
       join_across(low, corners, parts);
       join_across({low.a + up, low.b + up, low.c + up, low.d + up}, corners, parts);
     }
-    const int rest_at_faces = count_of(parts, corners, false);
-    if (rest_at_faces > 1 || count_of(parts, corners, true) > 1) join_inside(corners, parts);
-    of_cell = count_of(parts, corners, true) - (rest_at_faces - count_of(parts, corners, false));
+    const int rest_at_faces = parts_of(parts, corners, false);
+    if (rest_at_faces > 1 || parts_of(parts, corners, true) > 1) join_inside(corners, parts);
+    of_cell = parts_of(parts, corners, true) - (rest_at_faces - parts_of(parts, corners, false));
     for (int n = 0; n < 8; ++n) {
       const auto corner = [&](int m) { return Corner{x + (m & 1), y + (m >> 1 & 1), m >= 4}; };
       if (edges[n] == n && parts[n] != n) layer.joins.push_back({corner(parts[n]), corner(n), is_solid(corners[n])});
     }
   }
-  layer.euler += of_cell - (is_solid(corners[0]) ? 1 : 0);
-  for (const Face& face : low_faces) layer.euler -= pieces_of(face, corners);
-  for (const int end : to_high_face) layer.euler += is_solid(corners[0]) || is_solid(corners[end]) ? 1 : 0;
+  layer.euler += euler_of(of_cell, corners);
 }
 
-/// nullptr: beyond the volume.
+/// Cells with a corner that is solid and one that is not. nullptr: beyond the volume.
 TunnelCounter::Layer TunnelCounter::layer(const float* below, const float* above) const {
-  Layer made;
-  made.solid.assign(product(width_ + 2, height_ + 2), 0);
-  const auto value = [&](const float* slice, int x, int y) {  // with the margin
-    const bool in = slice != nullptr && x > 0 && x <= width_ && y > 0 && y <= height_;
-    return in ? slice[product(y - 1, width_) + static_cast<std::size_t>(x - 1)] : 0.0F;
+  const auto bits = [this](const float* slice) {
+    return slice == nullptr ? BitSlice(width_, height_) : reaching(width_, height_, slice, level_);
   };
-  const auto reaches = [this](float v) { return static_cast<double>(v) >= level_; };
-  for (int y = 0; y <= height_; ++y) {
-    Corners corners{};
-    for (int x = -1; x <= width_; ++x) {
-      int solid = 0;
-      for (int n = 0; n < 8; n += 2) {
-        corners[n] = corners[n + 1];
-        corners[n + 1] = value(n < 4 ? below : above, x + 1, y + (n >> 1 & 1));
-        solid += (reaches(corners[n]) ? 1 : 0) + (reaches(corners[n + 1]) ? 1 : 0);
-      }
-      made.solid[product(y, width_ + 2) + static_cast<std::size_t>(x + 1)] = reaches(corners[5]) ? 1 : 0;
-      if (solid > 0 && solid < 8) add_cell(corners, level_, x, y, made);
+  const BitSlice low = bits(below);
+  Layer made{bits(above), {}, 0};
+  const auto value = [&](const float* slice, int x, int y) {
+    const bool in = slice != nullptr && x >= 0 && x < width_ && y >= 0 && y < height_;
+    return in ? slice[product(y, width_) + static_cast<std::size_t>(x)] : 0.0F;
+  };
+  const auto add = [&](int x, int y) {
+    const unsigned solid = low.some(x, y, 2) | low.some(x, y + 1, 2) << 2U | made.solid.some(x, y, 2) << 4U |
+                           made.solid.some(x, y + 1, 2) << 6U;
+    const Cut& cut = cuts[solid];
+    if (cut.is_plain) {
+      made.euler += cut.euler;
+      return;
     }
-  }
+    Corners values{};
+    for (int n = 0; n < 8; ++n) values[n] = value(n < 4 ? below : above, x + (n & 1), y + (n >> 1 & 1));
+    add_cell(values, level_, x, y, made);
+  };
+  for (int y = -1; y < height_; ++y) for_cut_cells(low, made.solid, y, [&](int x) { add(x, y); });
   return made;
 }
 
 void TunnelCounter::add(int count, const float* slices) {
   if (count == 0) return;
   const std::size_t size = product(width_, height_);
-  const std::size_t first = added_.size();
-  added_.resize(first + static_cast<std::size_t>(count));
+  std::vector<Layer> layers(count, Layer{BitSlice(width_, height_), {}, 0});
   const float* before = last_.empty() ? nullptr : last_.data();
   parallel_for(count, [&](int k) {
-    added_[first + static_cast<std::size_t>(k)] =
-        layer(k > 0 ? slices + product(k - 1, size) : before, slices + product(k, size));
+    layers[k] = layer(k > 0 ? slices + product(k - 1, size) : before, slices + product(k, size));
   });
+  std::move(layers.begin(), layers.end(), std::back_inserter(added_));
   const float* last = slices + product(count - 1, size);
   last_ = std::vector<float>(last, last + size);
 }
@@ -205,16 +255,13 @@ std::int64_t TunnelCounter::Pieces::count() const {
 
 void TunnelCounter::connect(const Layer& layer) {
   euler_ += layer.euler;
-  for (const bool solid : {true, false}) {
-    const auto runs = runs_of(width_ + 2, height_ + 2, [&](std::size_t i) { return (layer.solid[i] != 0) == solid; });
-    (solid ? solid_ : rest_).add(runs, layer.joins, solid);
-  }
+  solid_.add(layer.solid.runs(), layer.joins, true);
+  rest_.add(layer.solid.runs(false, true), layer.joins, false);
 }
 
 void TunnelCounter::connect() {
   if (rest_.sets.runs() == 0) {  // what lies below the volume
-    const Layer margin{std::vector<std::uint8_t>(product(width_ + 2, height_ + 2), 0), {}, 0};
-    connect(margin);
+    connect(Layer{BitSlice(width_, height_), {}, 0});
   }
   for (const Layer& layer : std::exchange(added_, {})) connect(layer);
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/bit_slice.hpp"
 #include "model/pieces.hpp"
 
 namespace vam::model {
@@ -14,7 +15,7 @@ namespace vam::model {
 /// lowest up. Its tunnels are pieces + cavities - Euler characteristic, cavities being the pieces of the rest that are
 /// closed in. What hangs together across a face between four voxels its saddle tells [NIE91], and inside a cell between
 /// eight that of a section [CHE95]. Beyond the volume the field is 0. Memory: three slices, and of those that are not
-/// yet connected a byte a voxel.
+/// yet connected a bit a voxel.
 class TunnelCounter {
  public:
   TunnelCounter(int width, int height, double level) : width_(width), height_(height), level_(level) {}
@@ -26,7 +27,7 @@ class TunnelCounter {
   [[nodiscard]] std::int64_t tunnels() const;
 
  private:
-  /// A corner of a cell between two slices, in the volume with a margin of one voxel.
+  /// A corner of a cell between two slices, in the volume or its margin of one voxel.
   struct Corner {
     int x, y;
     bool above;
@@ -38,7 +39,7 @@ class TunnelCounter {
   };
   /// A slice, and the cells between the one below and it.
   struct Layer {
-    std::vector<std::uint8_t> solid;  // with the margin
+    BitSlice solid;
     std::vector<Join> joins;
     std::int64_t euler = 0;
   };

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lib/model/printed_volume.hpp"
+#include "model/bit_slice.hpp"
 
 using namespace vam;
 using namespace vam::test;
@@ -21,10 +22,8 @@ namespace {
 int counted(const Solid& solid, std::int64_t least) {
   model::PieceCounter counter(least);
   for (int z = 0; z < solid.nz; ++z) {
-    counter.add(
-        model::runs_of(solid.nx, solid.ny,
-                       [&](std::size_t i) { return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0; }),
-        [](const model::VoxelPair&) { return true; });
+    const auto is = [&](std::size_t i) { return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0; };
+    counter.add(model::BitSlice(solid.nx, solid.ny, is, false).runs(), [](const model::VoxelPair&) { return true; });
   }
   return counter.count();
 }
