@@ -5,6 +5,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "model/bit_slice.hpp"
 #include "model/dose_metrics.hpp"
 
 namespace vam::model {
@@ -13,26 +14,19 @@ namespace {
 
 constexpr std::int64_t least_voxels = 8;
 
-/// Of a slice with its margin; null: one of the margin alone.
+/// Of a slice with its margin.
 std::vector<VoxelRun> free_runs(const Grid& grid, const float* slice) {
-  std::vector<VoxelRun> runs;
-  for (int y = 0; y < grid.ny + 2; ++y) {
-    const bool margin = slice == nullptr || y == 0 || y == grid.ny + 1;
-    const float* row = margin ? nullptr : slice + product(y - 1, grid.nx);
-    int begin = 0;
-    for (int x = 1; row != nullptr && x <= grid.nx; ++x) {
-      if (!half_covered(row[x - 1])) continue;
-      if (begin < x) runs.push_back({y, begin, x});
-      begin = x + 1;
-    }
-    runs.push_back({y, begin, grid.nx + 2});
-  }
-  return runs;
+  return BitSlice(
+             grid.nx, grid.ny, [&](std::size_t pixel) { return half_covered(slice[pixel]); }, false)
+      .runs(false, true);
 }
+
+/// Of the margin below and above the volume.
+std::vector<VoxelRun> margin_runs(const Grid& grid) { return BitSlice(grid.nx, grid.ny).runs(false, true); }
 
 }  // namespace
 
-CavityFinder::CavityFinder(const Grid& grid) : grid_(grid) { add(free_runs(grid_, nullptr)); }
+CavityFinder::CavityFinder(const Grid& grid) : grid_(grid) { add(margin_runs(grid_)); }
 
 void CavityFinder::add(int count, const float* slices) {
   std::vector<std::vector<VoxelRun>> runs(static_cast<std::size_t>(count));
@@ -43,9 +37,8 @@ void CavityFinder::add(int count, const float* slices) {
 void CavityFinder::add(const std::vector<VoxelRun>& runs) {
   open_.add(runs, by_faces_only);
   for (const VoxelRun& run : runs)
-    rows_.push_back({run.end - run.begin,
-                     {(run.begin + run.end) / 2, run.row, slices_},
-                     run.begin == 0 || run.end == grid_.nx + 2});
+    rows_.push_back(
+        {run.end - run.begin, {(run.begin + run.end) / 2, run.row, slices_}, run.begin < 0 || run.end > grid_.nx});
   ++slices_;
   for (std::size_t run = 0; run < rows_.size(); ++run) {
     Row& whole = rows_[open_.set_of(run)];
@@ -63,7 +56,7 @@ void CavityFinder::add(const std::vector<VoxelRun>& runs) {
     if (voxels <= closed_.largest) return;
     closed_.largest = voxels;
     const auto& [x, y, z] = rows_[set].at;
-    closed_.at_mm = {grid_.x_mm(x - 1), grid_.y_mm(y - 1), grid_.z_mm(z - 1)};
+    closed_.at_mm = {grid_.x_mm(x), grid_.y_mm(y), grid_.z_mm(z)};
   });
   std::vector<Row> last(runs.size());
   for (std::size_t run = 0; run < rows_.size(); ++run) {
@@ -74,7 +67,7 @@ void CavityFinder::add(const std::vector<VoxelRun>& runs) {
 
 Cavities CavityFinder::found() const {
   CavityFinder all = *this;
-  all.add(free_runs(grid_, nullptr));
+  all.add(margin_runs(grid_));
   return all.closed_;
 }
 

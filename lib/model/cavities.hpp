@@ -30,7 +30,7 @@ class CavityFinder {
   [[nodiscard]] Cavities found() const;
 
  private:
-  /// The longest row of a cavity, in the volume with a margin of one voxel.
+  /// The longest row of a cavity.
   struct Row {
     int length = 0;
     std::array<int, 3> at{};
@@ -41,7 +41,7 @@ class CavityFinder {
   Grid grid_;
   RunSets open_;           // that reach the last slice
   std::vector<Row> rows_;  // of each run
-  int slices_ = 0;
+  int slices_ = -1;        // so far, without the margin below
   Cavities closed_;
 };
 
