@@ -75,7 +75,7 @@ std::vector<VoxelRun> BitSlice::runs(bool of, bool with_margin) const {
 
 BitSlice reaching(int width, int height, const float* slice, double level) {
   const float least = least_reaching(level);
-  return {width, height, [&](std::size_t pixel) { return slice[pixel] >= least; }, false};
+  return {width, height, false, [&](std::size_t pixel) { return slice[pixel] >= least; }};
 }
 
 }  // namespace vam::model

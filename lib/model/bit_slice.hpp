@@ -25,9 +25,9 @@ class BitSlice {
 
   /// No voxel is of the set, or each one.
   BitSlice(int width, int height, bool all = false);
-  /// Those with is(pixel); and the margin?
+  /// Those with is(pixel), and the margin or not.
   template <class Is>
-  BitSlice(int width, int height, const Is& is, bool margin) : BitSlice(width, height, margin) {
+  BitSlice(int width, int height, bool margin, const Is& is) : BitSlice(width, height, margin) {
     std::vector<std::uint8_t> of_row(product(words_, word_bits), 0);
     for (int y = 0; y < height_; ++y) {
       const std::size_t first = product(y, width_);

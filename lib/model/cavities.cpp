@@ -16,8 +16,7 @@ constexpr std::int64_t least_voxels = 8;
 
 /// Of a slice with its margin.
 std::vector<VoxelRun> free_runs(const Grid& grid, const float* slice) {
-  return BitSlice(
-             grid.nx, grid.ny, [&](std::size_t pixel) { return half_covered(slice[pixel]); }, false)
+  return BitSlice(grid.nx, grid.ny, false, [&](std::size_t pixel) { return half_covered(slice[pixel]); })
       .runs(false, true);
 }
 

@@ -86,7 +86,7 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
   work.emplace_back([&] {
     for (const Slice& slice : slices) {
       const auto has_trace = [&](std::size_t i) { return (slice[i] & printed::trace) != 0; };
-      part_.add(BitSlice(width_, height_, has_trace, false).runs(), at_corners);
+      part_.add(BitSlice(width_, height_, false, has_trace).runs(), at_corners);
     }
   });
   work.emplace_back([&] { add_field(part_at_half_, [&](std::size_t i) { return coverage[i]; }); });

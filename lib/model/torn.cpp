@@ -59,10 +59,8 @@ class Voxels {
         lost_.emplace_back(width, height);
         left_.emplace_back(width, height, gap);
       } else {
-        lost_.emplace_back(
-            width, height, [&](std::size_t at) { return is_lost(slice[at]); }, false);
-        left_.emplace_back(
-            width, height, [&](std::size_t at) { return is_left(slice[at]); }, gap);
+        lost_.emplace_back(width, height, false, [&](std::size_t at) { return is_lost(slice[at]); });
+        left_.emplace_back(width, height, gap, [&](std::size_t at) { return is_left(slice[at]); });
       }
     }
   }

@@ -32,8 +32,7 @@ TEST_CASE("bits of a slice are its voxels, row by row, and its margin") {
       const int height = 4;
       const auto slice = random_slice(width, height, of_64, random);
       const bool margin = random() % 2 != 0;
-      const BitSlice bits(
-          width, height, [&](std::size_t pixel) { return slice[pixel] > 0; }, margin);
+      const BitSlice bits(width, height, margin, [&](std::size_t pixel) { return slice[pixel] > 0; });
       const auto is = [&](int x, int y) {
         if (x < 0 || y < 0 || x >= width || y >= height) return margin;
         return slice[static_cast<std::size_t>(y * width + x)] > 0;

@@ -23,7 +23,7 @@ int counted(const Solid& solid, std::int64_t least) {
   model::PieceCounter counter(least);
   for (int z = 0; z < solid.nz; ++z) {
     const auto is = [&](std::size_t i) { return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0; };
-    counter.add(model::BitSlice(solid.nx, solid.ny, is, false).runs(), [](const model::VoxelPair&) { return true; });
+    counter.add(model::BitSlice(solid.nx, solid.ny, false, is).runs(), [](const model::VoxelPair&) { return true; });
   }
   return counter.count();
 }
