@@ -32,6 +32,12 @@ inline double stretch_z(const Facts& facts) {
   return found == facts.end() ? 1.0 : model::parse_stretch(found->second).value();
 }
 
+/// Of a volume 'scatter': who gives a dose that is named so does not mean it.
+inline void require_scatter(const std::string& path, const std::string& units) {
+  if (units != "mJ/cm3") return;
+  throw Error{Fault::data, path + ": its values are a dose in mJ/cm3, not scattering; give a volume of vam-ost"};
+}
+
 /// Heights of the part instead of those of the stretched volume.
 inline void unstretch(model::TriangleSoup& mesh, const Facts& facts) {
   const double factor = stretch_z(facts);

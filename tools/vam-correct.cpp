@@ -124,9 +124,10 @@ struct Dose {
 Dose read_doses(const std::vector<std::string>& paths, const Options& options, const char* flag) {
   const std::size_t wanted = options.column_offset_px ? 3 : 1;
   if (paths.size() != wanted) {
-    throw Error{Fault::usage, std::string(flag) + ": is given " + std::to_string(paths.size()) + " times, not " +
-                                  std::to_string(wanted) +
-                                  (wanted == 3 ? ", as --column-offset requires" : "; three need --column-offset")};
+    throw Error{Fault::usage, std::string(flag) + ": " + std::to_string(paths.size()) +
+                                  (paths.size() == 1 ? " file" : " files") +
+                                  (wanted == 3 ? ", not the three that --column-offset requires"
+                                               : ", not one; three require --column-offset")};
   }
   io::SparseVolume first = read_dose(paths.front());
   metrology::PlannedDose planned{{io::dense_volume(first)}, options.column_offset_px.value_or(1)};
@@ -210,6 +211,7 @@ void run(const cli::App& app, Options& options) {
   options.limits.deviation = std::log(options.max_factor);
   const metrology::ScatterCurve curve = curve_of(options.curve);
   const io::SparseVolume seen = io::read_volume(options.scatter, "scatter");
+  tool::require_scatter(options.scatter, seen.units);
   const model::Volume scatter = io::dense_volume(seen);
   std::optional<model::Volume> sigma;
   if (!options.uncertainty.empty()) sigma = io::dense_volume(io::read_volume(options.uncertainty, "uncertainty"));

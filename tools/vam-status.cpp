@@ -18,6 +18,7 @@
 #include "io/settings/flip_log.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
+#include "vam-status/correction.hpp"
 #include "vam-status/light_view.hpp"
 #include "vam-status/page.hpp"
 #include "vam-status/progress.hpp"
@@ -100,6 +101,8 @@ std::optional<status_tool::LightView> light_of(const Options& o, const status_to
   }
 }
 
+constexpr std::size_t most_said = 120;  // of why the light is as it was
+
 void run(const Options& o) {
   if (o.with_parent) device::end_with_parent();
   status_tool::RunFolder run(o.run);
@@ -112,7 +115,9 @@ void run(const Options& o) {
     more = o.watch && !run.progress().outcome && !run.progress().abandoned;
     if (!o.page.empty()) io::write_text(o.page, status_tool::page(name, run, light ? &*light : nullptr, o.period_s));
     if (o.page.empty() || o.watch) {
-      const std::string line = status_tool::status_line(run.progress(), run.printer().stage.speed_deg_s);
+      std::string line = status_tool::status_line(run.progress(), run.printer().stage.speed_deg_s);
+      if (const std::string light = status_tool::correction_text(run); !light.empty())
+        line += "  light " + light.substr(0, most_said);
       std::cout << (in_place ? "\r\033[K" : "") << line << (in_place && more ? "" : "\n") << std::flush;
       if (!std::cout) throw Error{Fault::io, "stdout: cannot be written"};
     }

@@ -46,8 +46,10 @@ is 'a volume in which nothing scatters' "$? $(grep -c 'clear.vdb: the sensitivit
 is 'doubt is reported, and no dose is written' "$(json held.json verdict) $(ls none.vdb 2>/dev/null)" 'hold '
 fails 1 'sensitivity is 0.9.*, beyond 0.952 to 1.05' correct scatter.vdb --acted dose.vdb --max-factor 1.05 -o none.vdb
 fails 65 "relative.vdb: the dose is in units of 'relative'" correct scatter.vdb --acted relative.vdb -o none.vdb
-fails 64 'acted: is given 3 times, not 1; three need --column-offset' correct scatter.vdb --acted dose.vdb --acted dose.vdb --acted dose.vdb -o none.vdb
-fails 64 'acted: is given 1 times, not 3, as --column-offset requires' correct scatter.vdb --acted dose.vdb --column-offset 1 -o none.vdb
+vam-convert dose.npy --voxel 0.2 --grid scatter --value-unit mJ/cm3 -o lit.vdb
+fails 65 'lit.vdb: its values are a dose in mJ/cm3, not scattering' correct lit.vdb --acted dose.vdb -o none.vdb
+fails 64 'acted: 3 files, not one; three require --column-offset' correct scatter.vdb --acted dose.vdb --acted dose.vdb --acted dose.vdb -o none.vdb
+fails 64 'acted: 1 file, not the three that --column-offset requires' correct scatter.vdb --acted dose.vdb --column-offset 1 -o none.vdb
 fails 65 'small.vdb: has other voxels than dose.vdb' correct scatter.vdb --acted dose.vdb --acted small.vdb --acted dose.vdb --column-offset 1 -o none.vdb
 fails 64 'axis-sigma' correct scatter.vdb --acted dose.vdb --axis-sigma 1 -o none.vdb
 fails 66 'absent.vdb' correct absent.vdb --acted dose.vdb -o none.vdb

@@ -21,17 +21,19 @@ echo '{"schema":"vam-resin/1","isovalue":0.04}' >resin.json
 fails 65 'resin.json: not a record of vam-calibrate working-curve' print --correct --until 'missing<=1' --resin resin.json --run none
 fails 64 'turns: is 2, but the sinogram is planned for' print --correct --until 'missing<=1' --resin curve.json --turns 2 --run none
 
-one_print() {  # one_print RUN: with the options of vam-print that follow
+one_print() {  # one_print RUN: with the options of vam-print that follow; the camera of the run `lost` dies at turn 3
   run=$1; shift; rm -f truth
   vam-sim-camera --die-with-parent --cure --cure-voxel 0.25 --cure-delay 1 --inhibitor-diffusion 0 --follow truth \
     --flips "$run/flips.jsonl" --projected whole.mkv --columns 66 --rows 46 --noise 0.002 --background 0.01 \
     --set resin.absorption_per_mm=0.07 --set projector.max_intensity_mw_cm2=2.6 >address 2>camera.err &
   camera=$!
   await test -s address
+  [ $run != lost ] || { while ! lit_for 1080 && kill -0 $camera; do sleep 0.1; done; kill -9 $camera; } 2>/dev/null &
   print --run "$run" "$@" 2>errors
   status=$?
   kill $camera; wait $camera 2>/dev/null
 }
+lit_for() { grep '"event":"flip"' "$run/flips.jsonl" 2>/dev/null | tail -n 1 | sed -nE 's/.*"angle_deg":([0-9.]+).*/\1/p' | awk -v least="$1" '{ last = $1 } END { exit !(last >= least) }'; }
 one_print corrected --correct --until 'missing<=0.01' --resin curve.json --turns 14
 sed 's/^/# /' errors
 cut -c 1-180 corrected/renewed.jsonl | sed 's/^/# /'
@@ -40,4 +42,19 @@ ok 'new light was made' grep -q '"event":"renewed"' corrected/renewed.jsonl
 is 'for each turn that the log of flips has' "$(grep -c '"event":"frames",.*turn-[0-9]*[.]exr' corrected/flips.jsonl | awk '{ print ($1 >= 1) }')" 1
 is 'within one turn' "$(sed -nE 's/.*"event":"renewed".*"seconds":([0-9.]+).*/\1/p' corrected/renewed.jsonl | awk '$1 > 6' | wc -l)" 0
 ok 'all is in the run folder, with its hashes' sh -c 'cd corrected && sha256sum --check --quiet SHA256SUMS && ls renewed/sensitivity.vdb plan.json'
+holds 'how often is in the summary' "$(json corrected/summary.json correction.renewed) == $(grep -c '"event":"renewed"' corrected/renewed.jsonl)"
+vam-status corrected >line
+ok 'its state names the turn at which it ended, and the sensitivity' awk '{ for (i = 1; i < NF; ++i) if ($i == "turn" && $(i + 2) == "of") off = $(i + 1) - $(i + 3) } END { exit !(off * off < 0.01 && /(light from turn .* sensitivity|light as before)/) }' line
+sed 's/"critical_dose_mj_cm3":60/"critical_dose_mj_cm3":20/' curve.json >other.json
+one_print open --correct --until 'missing<=50' --resin other.json --turns 14
+is 'with the record of another resin it goes on as planned' "$status $(json open/summary.json outcome)" '0 stopped by vam-ost'
+ok 'and says so' grep -q 'not corrected: .*sensitivity.*renewed.jsonl' errors
+is 'why, without names of scratch files' "$(grep -c '"event":"hold".*vam-renew[.]' open/renewed.jsonl)" 0
+one_print lost --correct --until 'missing<=0.01' --resin curve.json --turns 14
+sed 's/^/# /' errors
+is 'without its camera it is completed in open loop' "$status $(json lost/summary.json outcome)" '1 complete, in open loop'
+ok 'which it says at once, and at the end' sh -c 'grep -q "warning: .*; the print goes on in open loop from turn [3-9].*, as planned, to turn" errors && grep -q "nothing was measured after turn" errors'
+holds 'and in the summary' "$(json lost/summary.json correction.open_loop_from) >= 3"
+planned=$(awk -F'[:,]' '/"turns"/ { t = $2 } /"multiplier"/ { m = $2 } END { n = int(t * m); print n < t * m ? n + 1 : n }' lost/plan.json)
+holds 'for the turns of the plan' "$(json lost/summary.json reached.turns) >= $planned - 0.1 && $(json lost/summary.json reached.turns) <= $planned + 0.1"
 done_testing

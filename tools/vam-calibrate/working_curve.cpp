@@ -67,6 +67,7 @@ void measure_working_curve(const WorkingCurveOptions& options) {
   std::vector<double> turn_s;
   for (const std::string& file : files) {
     const io::SparseVolume sparse = io::read_volume(file, "scatter");
+    tool::require_scatter(file, sparse.units);
     const auto turns = tool::stated_number(sparse.metadata, "vam:turns");
     if (!turns && !one) throw Error{Fault::data, file + ": does not state its turns; use volumes of vam-ost --live"};
     turn_s.push_back(tool::stated_number(sparse.metadata, "vam:turn_s").value_or(0));

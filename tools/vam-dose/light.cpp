@@ -111,6 +111,7 @@ Light::Light(io::StackReader& first, const model::StackInfo& info, const Options
     throw Error{Fault::data, options.shown.front() + ": no light was shown in this run" +
                                  (options.before_s ? " before that time; check --before" : "")};
   }
+  require_all_sinograms(options);
 }
 
 Light::~Light() = default;

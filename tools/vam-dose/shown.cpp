@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
@@ -175,6 +176,24 @@ std::vector<double> shown_turns(const Options& options, const std::string& sinog
                    [&](double sum, double one) { return sum + intensity * one; });
   }
   return turns;
+}
+
+void require_all_sinograms(const Options& options) {
+  std::set<std::string> given;
+  for (const std::string& input : options.inputs) given.insert(input == "-" ? "" : io::sha256_of(input));
+  for (const std::string& run : options.shown) {
+    io::FlipLog log(run);
+    log.read();
+    if (options.before_s) log.end_at(*options.before_s);
+    for (const io::ShownSinogram& one : log.sinograms()) {
+      if (one.sha256.empty() || given.contains("") || given.contains(one.sha256)) continue;
+      const std::size_t images = log.shown_of(one.sha256).size();
+      if (images == 0) continue;
+      throw Error{Fault::usage, "--shown: " + run + " showed " + std::to_string(images) + " images of " +
+                                    (one.name.empty() ? "another sinogram" : excerpt(one.name)) + " (SHA-256 " +
+                                    one.sha256.substr(0, 8) + "...), which is not given; give all that were shown"};
+    }
+  }
 }
 
 void weigh(const std::vector<double>& turns, std::span<Image> sinograms) {

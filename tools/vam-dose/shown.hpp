@@ -36,6 +36,9 @@ void take_full_scale(Options& options);
                                               const std::optional<double>& full_scale, const model::StackInfo& info,
                                               const model::Printer& printer);
 
+/// Throws Fault::usage where a run of --shown showed a sinogram that is not given: the dose would lack its light.
+void require_all_sinograms(const Options& options);
+
 /// Multiplies each row by its turns; nothing when `turns` is empty.
 void weigh(const std::vector<double>& turns, std::span<Image> sinograms);
 

@@ -34,6 +34,13 @@ void Live::offer(Offer frames) {
   auto offer = std::make_unique<Offer>(std::move(frames));
   const std::lock_guard lock(offering_);
   offer_.swap(offer);
+  note_unused(offer.get(), "others took their place");
+}
+
+void Live::note_unused(const Offer* offer, const std::string& why) {
+  if (offer == nullptr || offer->taken) return;
+  log_("frames-refused",
+       {{"message", "the frames of " + offer->facts.value("sinogram", "") + " were not shown: " + why}});
 }
 
 // The screen does not wait for a thread that just offers others: these come a turn later.
@@ -90,6 +97,10 @@ device::PlayTally Live::play_through(double hold_s, bool forever) {
 
 device::PlayTally Live::ended(const device::PlayTally& tally) {
   if (relay_ != nullptr) relay_->open();
+  {
+    const std::lock_guard lock(offering_);
+    note_unused(offer_.get(), "the print ended before");
+  }
   log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});
   log_.sync();
   return tally;

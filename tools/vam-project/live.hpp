@@ -31,7 +31,7 @@ class Live {
   /// A line of the log that is no flip.
   void note(const std::string& event, const Json& facts) { log_(event, facts); }
   /// Frames in place of those that are shown, from the next turn on; from any thread. Others that have not been shown
-  /// yet are dropped.
+  /// yet are dropped, which is logged.
   struct Offer {
     device::ScreenFrames frames;  // once taken those they have replaced, whose memory is given back elsewhere
     Json facts;                   // what of them is logged then
@@ -50,6 +50,7 @@ class Live {
  private:
   void begin();
   int take_offer(int turn);
+  void note_unused(const Offer* offer, const std::string& why);
   [[nodiscard]] device::Lamp* lamp();
   device::PlayTally ended(const device::PlayTally& tally);
   std::function<void(const device::FlipRecord&)> logger();

@@ -82,8 +82,11 @@ void add_live(cli::App& app, Options& all) {
       "Look for new projections in this folder while printing: a sinogram (EXR) that appears in it takes the place "
       "of the one that is shown, from the next turn on, without a dark image. It must have the same columns, "
       "angles and poses and be for the same printer; one that is not is reported in the log, and the frames "
-      "stay, as they do while new ones are late. It is shown at the full scale of the first one; what exceeds "
-      "that is clipped and counted in the log.");
+      "stay, as they do while new ones are late. A sinogram that states its full scale, as those of vam-optimize "
+      "--turns do, is shown at it, another one at that of the first; what exceeds that is clipped and counted in the "
+      "log. A file named turn-N.exr is for turn N only, and refused once that has begun. Names that begin with a dot "
+      "are "
+      "passed over.");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error. Every second it is brought to the disk.");

@@ -104,8 +104,10 @@ void FlipLog::take(const Json& event) {
     if (event.at("event") == "display") begin_run();
     if (event.at("event") == "sinogram" && proof_) proof_->require_armed(event);
     if (event.at("event") == "sinogram" || event.at("event") == "frames") {
-      sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale")});
+      sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale"), event.value("sinogram", "")});
       sinogram_ = count_of(sinograms_) - 1;
+      if (event.at("event") == "frames" && event.contains("turns"))
+        end_turn_ = event.at("turn").get<double>() + event.at("turns").get<double>();
       if (!seals_since_s_ && event.value("seals", false)) seals_since_s_ = event.at("t_monotonic_s").get<double>();
     }
     if (event.at("event") != "flip") return rules_.note(event, place());

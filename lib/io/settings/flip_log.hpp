@@ -23,6 +23,7 @@ struct ShownImage {
 struct ShownSinogram {
   std::string sha256;     // empty: it came through a pipe
   double full_scale = 0;  // its value at full intensity
+  std::string name = {};  // of its file, where it then was
 };
 
 /// The log of a print, also of one that goes on.
@@ -45,6 +46,8 @@ class FlipLog {
   void end_at(double t_monotonic_s);
   /// The sinograms that were shown, one after the other; the first of a print, and those that took its place.
   [[nodiscard]] const std::vector<ShownSinogram>& sinograms() const { return sinograms_; }
+  /// The turn at which the print ends, as the last sinogram that took the place of another states it.
+  [[nodiscard]] const std::optional<double>& end_turn() const { return end_turn_; }
   /// Vertical blanks from the last run-up turn on: those at which the image changed late, of all.
   [[nodiscard]] long missed() const { return missed_; }
   [[nodiscard]] long blanks() const { return blanks_; }
@@ -80,7 +83,7 @@ class FlipLog {
   int sinogram_ = -1;          // that is shown
   std::optional<int> sealed_;  // flips up to the last seal
   std::optional<double> seals_since_s_;
-  std::optional<double> end_s_;
+  std::optional<double> end_s_, end_turn_;
   long missed_ = 0;
   long blanks_ = 0;
 };

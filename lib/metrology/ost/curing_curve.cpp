@@ -160,6 +160,16 @@ void widen(stats::Measured& number, const stats::Measured& one, const stats::Mea
   number.sigma = std::hypot(number.sigma, 0.5 * (one.value - other.value));
 }
 
+/// Throws Fault::data unless the critical dose is.
+CuringCurve known(const CuringCurve& curve) {
+  constexpr double most = 0.1;
+  const stats::Measured& dose = curve.critical_dose_mj_cm3;
+  if (dose.sigma <= most * dose.value) return curve;
+  throw Error{Fault::data, "working curve: the critical dose is not known, " + format_number(dose.value, 3) + " +- " +
+                               format_number(dose.sigma, 3) +
+                               " mJ/cm3; state which turns had light, or give more volumes"};
+}
+
 double dose_at(const model::Volume& dose, const std::array<double, 3>& place) {
   return static_cast<double>(model::value_at(dose, place[0], place[1], place[2]));
 }
@@ -214,7 +224,7 @@ CuringCurve fit_curing_curve(const std::vector<CuringReading>& readings, double 
                              std::optional<double> isovalue) {
   if (readings.empty()) throw Error{Fault::data, "working curve: no voxels of even dose; use a staircase of doses"};
   CuringCurve curve = curve_of(readings, lit_turns, isovalue, inhibited[0]);
-  if (!curve.delay_turns) return curve;
+  if (!curve.delay_turns) return known(curve);
   const CuringCurve low = curve_of(readings, lit_turns, isovalue, inhibited[1]);
   const CuringCurve high = curve_of(readings, lit_turns, isovalue, inhibited[2]);
   widen(curve.critical_dose_mj_cm3, low.critical_dose_mj_cm3, high.critical_dose_mj_cm3);
@@ -222,7 +232,7 @@ CuringCurve fit_curing_curve(const std::vector<CuringReading>& readings, double 
   widen(curve.rate_per_mj_cm3, low.rate_per_mj_cm3, high.rate_per_mj_cm3);
   widen(curve.saturation, low.saturation, high.saturation);
   widen(*curve.delay_turns, *low.delay_turns, *high.delay_turns);
-  return curve;
+  return known(curve);
 }
 
 Json to_json(const CuringCurve& curve, double turn_s) {

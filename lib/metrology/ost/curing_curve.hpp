@@ -41,7 +41,7 @@ struct CuringCurve {
 
 /// isovalue: none is half of the saturation, as [OST22 section S2] found it. lit_turns: after so many the light went
 /// off. The delay is fitted where the readings are of several turns with light. Throws Fault::data where the readings
-/// do not show the rise of the curve.
+/// do not show the rise of the curve, or the critical dose to 10 %.
 [[nodiscard]] CuringCurve fit_curing_curve(const std::vector<CuringReading>& readings, double lit_turns,
                                            std::optional<double> isovalue);
 

@@ -154,8 +154,8 @@ std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRang
   }
   const double most_change = limits.change + 3 * before.sigma;
   if (!(std::abs(std::log(range.mean / before.mean)) <= most_change)) {
-    found.push_back("the sensitivity is " + format_number(range.mean, 3) + ", and was " +
-                    format_number(before.mean, 3) + " before, a change of more than " + percent(most_change));
+    found.push_back("the sensitivity is " + format_number(range.mean, 3) + ", where " + format_number(before.mean, 3) +
+                    " was expected, a difference of more than " + percent(most_change));
   }
   if (!(fit.rms <= limits.rms)) {
     found.push_back("the densities differ from those of any smooth sensitivity by " + format_number(fit.rms, 3) +

@@ -6,7 +6,7 @@
 
 namespace vam::solid::build {
 
-void require(bool holds, const char* line) {
+void require(bool holds, const std::string& line) {
   if (!holds) throw Error{Fault::usage, line};
 }
 

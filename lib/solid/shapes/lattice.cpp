@@ -7,6 +7,7 @@
 
 #include "base/index.hpp"
 #include "base/simd.hpp"
+#include "base/text.hpp"
 #include "solid/shapes/private/builders.hpp"
 #include "solid/shapes/private/gyroid_kernel.hpp"
 #include "solid/shapes/private/sdf.hpp"
@@ -24,8 +25,9 @@ Field gyroid(Values v) {
   const double half_sheet = v[1] / 2;
   const double radius = v[2] / 2;
   const double half = v[3] / 2;
-  require(v[1] <= 0.2 * v[0],
-          "shape gyroid: sheet must not exceed 0.2 times cell (beyond it the offset surface is not smooth)");
+  require(v[1] <= 0.2 * v[0], "shape gyroid: sheet is " + format_number(v[1]) + " mm, more than 0.2 times cell, " +
+                                  format_number(0.2 * v[0]) +
+                                  " mm, beyond which the offset surface is not smooth; reduce it");
   // Exact well beyond the sheet's surface, but not near the extrema of F (1.5), where Newton's steps go astray.
   const double near = std::min(1.6 * k * half_sheet, 1.25 / std::numbers::sqrt3);
   const GyroidDistances distances = VAM_KERNEL(gyroid_distances, simd_level());

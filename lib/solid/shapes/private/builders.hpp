@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "solid/shapes/field.hpp"
 
@@ -36,7 +37,7 @@ Field screwdriver(Values v);
 Field handle(Values v);
 
 /// Throws Fault::usage with the line unless it holds.
-void require(bool holds, const char* line);
+void require(bool holds, const std::string& line);
 
 /// A solid from its field, its box, its radius about the z axis and its largest curvature; the ball is that of the box.
 Field solid(std::function<double(const Point&)> value, const Point& low, const Point& high, double radius_mm,
