@@ -24,6 +24,7 @@ struct Truth {
   sim::SimResin resin;
   double turn_s = 12;
   int turns = 9;
+  int lit_turns = 9;
   double noise = 0.01;  // of the saturation, in a reading
 };
 
@@ -40,7 +41,7 @@ std::vector<metrology::CuringReading> staircase(const Truth& truth, unsigned see
     for (int part = 0; part < parts; ++part) {
       for (int k = 0; k < steps; ++k) {
         const double per_turn = truth.resin.critical_dose_mj_cm3 * (0.08 + 0.03 * k);
-        resin.absorbed()[k] += static_cast<float>(per_turn / parts);
+        if (turn < truth.lit_turns) resin.absorbed()[k] += static_cast<float>(per_turn / parts);
       }
       resin.react(truth.turn_s / parts);
       if (part != parts / 2) continue;
@@ -98,6 +99,18 @@ TEST_CASE("The delay of a prompt resin is none, within its sigma") {
     const auto curve = metrology::fit_curing_curve(staircase(truth, seed), 1e9, std::nullopt);
     REQUIRE(curve.delay_turns);
     CHECK(std::abs(curve.delay_turns->value) < 3 * curve.delay_turns->sigma);
+  }
+}
+
+TEST_CASE("A working curve whose light went off earlier than stated is refused") {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    Truth truth = drawn(seed);
+    truth.turns = 9;
+    truth.lit_turns = 5;
+    const auto readings = staircase(truth, seed);
+    const auto curve = metrology::fit_curing_curve(readings, truth.lit_turns, std::nullopt);
+    CHECK(curve.critical_dose_mj_cm3.value == doctest::Approx(truth.resin.critical_dose_mj_cm3).epsilon(0.05));
+    CHECK(fault_of([&] { (void)metrology::fit_curing_curve(readings, 1e9, std::nullopt); }) == Fault::data);
   }
 }
 
