@@ -32,7 +32,7 @@ inline double stretch_z(const Facts& facts) {
   return found == facts.end() ? 1.0 : model::parse_stretch(found->second).value();
 }
 
-/// Of a volume 'scatter': who gives a dose that is named so does not mean it.
+/// Throws Fault::data for a volume 'scatter' in units of mJ/cm3, which is a dose of that name; other units pass.
 inline void require_scatter(const std::string& path, const std::string& units) {
   if (units != "mJ/cm3") return;
   throw Error{Fault::data, path + ": its values are a dose in mJ/cm3, not scattering; give a volume of vam-ost"};

@@ -44,7 +44,9 @@ cli::Manual manual() {
        "the state (preparing; run-up, dark; printing; ended, with the outcome; or the time since the last log entry, "
        "if the end of the print was not logged), turn and stage angle, the fraction of the exposure delivered, "
        "the number of missed vertical blanks and, with live metrology (vam-print --until), the fractions of the part "
-       "that are cured and missing. With --watch it repeats this until the print ends; on a terminal the line is "
+       "that are cured and missing; of a print that corrects itself (vam-print --correct) also what its next light "
+       "will be, or why it stays as it is, and as the number of turns that at which the light ends. With --watch it "
+       "repeats this until the print ends; on a terminal the line is "
        "refreshed in place.",
        "--page writes a page for a browser, which refreshes itself: these figures, the newest camera image, the vial "
        "from above with the dose so far and the current projection, the projected image, and the ages of the "
@@ -101,8 +103,6 @@ std::optional<status_tool::LightView> light_of(const Options& o, const status_to
   }
 }
 
-constexpr std::size_t most_said = 120;  // of why the light is as it was
-
 void run(const Options& o) {
   if (o.with_parent) device::end_with_parent();
   status_tool::RunFolder run(o.run);
@@ -116,8 +116,7 @@ void run(const Options& o) {
     if (!o.page.empty()) io::write_text(o.page, status_tool::page(name, run, light ? &*light : nullptr, o.period_s));
     if (o.page.empty() || o.watch) {
       std::string line = status_tool::status_line(run.progress(), run.printer().stage.speed_deg_s);
-      if (const std::string light = status_tool::correction_text(run); !light.empty())
-        line += "  light " + light.substr(0, most_said);
+      if (const std::string said = status_tool::correction_text(run); !said.empty()) line += "  light " + briefly(said);
       std::cout << (in_place ? "\r\033[K" : "") << line << (in_place && more ? "" : "\n") << std::flush;
       if (!std::cout) throw Error{Fault::io, "stdout: cannot be written"};
     }

@@ -34,6 +34,12 @@ one_print() {  # one_print RUN: with the options of vam-print that follow; the c
   kill $camera; wait $camera 2>/dev/null
 }
 lit_for() { grep '"event":"flip"' "$run/flips.jsonl" 2>/dev/null | tail -n 1 | sed -nE 's/.*"angle_deg":([0-9.]+).*/\1/p' | awk -v least="$1" '{ last = $1 } END { exit !(last >= least) }'; }
+fails 64 'dark-turns: requires --view-step' vam-print whole.exr --display null: --uncalibrated --dark-turns 1 --run none
+fails 64 'dark-turns: conflicts with --until' print --until 'missing<=1' --isovalue 0.04 --dark-turns 1 --run none
+one_print dark --turns 2 --dark-turns 1
+sed 's/^/# /' errors
+is 'the light goes off after two turns, the stage after three' "$(grep '"frame":[0-9]' dark/flips.jsonl | tail -n 1 | sed -E 's/.*"angle_deg":([0-9.]+).*/\1/' | awk '{ print ($1 > 700 && $1 <= 720) }') $(tail -n 1 dark/angles.jsonl | sed -E 's/.*"angle_deg": ?([0-9.]+).*/\1/' | awk '{ print ($1 > 1079) }')" '1 1'
+holds 'with views of all three' "$(ls dark/views | wc -l) > 175"
 one_print corrected --correct --until 'missing<=0.01' --resin curve.json --turns 14
 sed 's/^/# /' errors
 cut -c 1-180 corrected/renewed.jsonl | sed 's/^/# /'
@@ -45,7 +51,7 @@ ok 'all is in the run folder, with its hashes' sh -c 'cd corrected && sha256sum 
 holds 'how often is in the summary' "$(json corrected/summary.json correction.renewed) == $(grep -c '"event":"renewed"' corrected/renewed.jsonl)"
 vam-status corrected >line
 ok 'its state names the turn at which it ended, and the sensitivity' awk '{ for (i = 1; i < NF; ++i) if ($i == "turn" && $(i + 2) == "of") off = $(i + 1) - $(i + 3) } END { exit !(off * off < 0.01 && /(light from turn .* sensitivity|light as before)/) }' line
-sed 's/"critical_dose_mj_cm3":60/"critical_dose_mj_cm3":20/' curve.json >other.json
+sed 's/"critical_dose_mj_cm3":60/"critical_dose_mj_cm3":20/; s/"delay_s":1/"delay_s":100/' curve.json >other.json
 one_print open --correct --until 'missing<=50' --resin other.json --turns 14
 is 'with the record of another resin it goes on as planned' "$status $(json open/summary.json outcome)" '0 stopped by vam-ost'
 ok 'and says so' grep -q 'not corrected: .*sensitivity.*renewed.jsonl' errors

@@ -38,7 +38,8 @@ std::vector<std::string> description() {
       "change the light. The full scale is that of the print; a resumption may have had another one, and another "
       "intensity, which are converted. Where a print showed several sinograms (vam-project --frames-from), each "
       "SINOGRAM "
-      "counts for the time in which it was shown. An image on which the projector hung counts at the angle "
+      "counts for the time in which it was shown, and one that is not given is refused. An image on which the "
+      "projector hung counts at the angle "
       "where it began. A warning names the print that a resumption continues if it is not given. The report then "
       "contains dose_shown instead of "
       "dose_per_turn, and shown_turns, the mean number of turns over the stage angles.",

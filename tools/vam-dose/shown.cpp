@@ -179,7 +179,7 @@ std::vector<double> shown_turns(const Options& options, const std::string& sinog
 }
 
 void require_all_sinograms(const Options& options) {
-  std::set<std::string> given;
+  std::set<std::string> given;  // "" from a pipe, which is the only one of its print [require_sinogram_of]
   for (const std::string& input : options.inputs) given.insert(input == "-" ? "" : io::sha256_of(input));
   for (const std::string& run : options.shown) {
     io::FlipLog log(run);

@@ -32,8 +32,10 @@ void Live::add(const GreyImage& levels) {
 
 void Live::offer(Offer frames) {
   auto offer = std::make_unique<Offer>(std::move(frames));
-  const std::lock_guard lock(offering_);
-  offer_.swap(offer);
+  {
+    const std::lock_guard lock(offering_);
+    offer_.swap(offer);
+  }
   note_unused(offer.get(), "others took their place");
 }
 
@@ -97,10 +99,12 @@ device::PlayTally Live::play_through(double hold_s, bool forever) {
 
 device::PlayTally Live::ended(const device::PlayTally& tally) {
   if (relay_ != nullptr) relay_->open();
+  std::unique_ptr<Offer> last;
   {
     const std::lock_guard lock(offering_);
-    note_unused(offer_.get(), "the print ended before");
+    offer_.swap(last);
   }
+  note_unused(last.get(), "the print ended before");
   log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});
   log_.sync();
   return tally;

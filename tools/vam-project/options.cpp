@@ -85,8 +85,7 @@ void add_live(cli::App& app, Options& all) {
       "stay, as they do while new ones are late. A sinogram that states its full scale, as those of vam-optimize "
       "--turns do, is shown at it, another one at that of the first; what exceeds that is clipped and counted in the "
       "log. A file named turn-N.exr is for turn N only, and refused once that has begun. Names that begin with a dot "
-      "are "
-      "passed over.");
+      "are passed over.");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error. Every second it is brought to the disk.");

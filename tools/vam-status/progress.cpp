@@ -180,7 +180,7 @@ void RunFolder::read_flips() {
   if (const auto shown = flips_->shown(); !shown.empty()) {  // angles.jsonl may be cut
     progress_.angle_deg = std::max(progress_.angle_deg, shown.back().angle_deg);
   }
-  if (flips_->end_turn()) progress_.turns = *flips_->end_turn();
+  if (flips_->end_turn()) progress_.turns = std::min(progress_.turns, *flips_->end_turn());
   double lit_s = 0;
   for (const io::ShownImage& image : flips_->shown()) lit_s += image.seconds;
   const double wanted_deg = 360 * progress_.turns - progress_.from_deg;

@@ -123,6 +123,7 @@ void FlipLog::take(const Json& event) {
 void FlipLog::begin_run() {
   if (!flips_.empty()) flips_.back().last = true;
   sinogram_ = -1;
+  end_turn_.reset();
 }
 
 template <class Counts>

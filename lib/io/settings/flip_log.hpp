@@ -46,7 +46,8 @@ class FlipLog {
   void end_at(double t_monotonic_s);
   /// The sinograms that were shown, one after the other; the first of a print, and those that took its place.
   [[nodiscard]] const std::vector<ShownSinogram>& sinograms() const { return sinograms_; }
-  /// The turn at which the print ends, as the last sinogram that took the place of another states it.
+  /// The turn at which the print ends, as the last sinogram that took the place of another states it; that may be
+  /// beyond the print's own turns, at which it ends in any case.
   [[nodiscard]] const std::optional<double>& end_turn() const { return end_turn_; }
   /// Vertical blanks from the last run-up turn on: those at which the image changed late, of all.
   [[nodiscard]] long missed() const { return missed_; }

@@ -160,14 +160,14 @@ void widen(stats::Measured& number, const stats::Measured& one, const stats::Mea
   number.sigma = std::hypot(number.sigma, 0.5 * (one.value - other.value));
 }
 
-/// Throws Fault::data unless the critical dose is.
+/// The curve; throws Fault::data where its critical dose is less certain than any use of it needs.
 CuringCurve known(const CuringCurve& curve) {
-  constexpr double most = 0.1;
+  constexpr double most = 0.1;  // of the dose; good measurements have 0.02, and prints differ by 0.05
   const stats::Measured& dose = curve.critical_dose_mj_cm3;
   if (dose.sigma <= most * dose.value) return curve;
   throw Error{Fault::data, "working curve: the critical dose is not known, " + format_number(dose.value, 3) + " +- " +
                                format_number(dose.sigma, 3) +
-                               " mJ/cm3; state which turns had light, or give more volumes"};
+                               " mJ/cm3; state which turns had light (--lit-from, --lit-turns), or give more volumes"};
 }
 
 double dose_at(const model::Volume& dose, const std::array<double, 3>& place) {
