@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "device/os/interrupt.hpp"

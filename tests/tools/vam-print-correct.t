@@ -54,7 +54,7 @@ ok 'its state names the turn at which it ended, and the sensitivity' awk '{ for 
 sed 's/"critical_dose_mj_cm3":60/"critical_dose_mj_cm3":20/; s/"delay_s":1/"delay_s":100/' curve.json >other.json
 one_print open --correct --until 'missing<=50' --resin other.json --turns 14
 is 'with the record of another resin it goes on as planned' "$status $(json open/summary.json outcome)" '0 stopped by vam-ost'
-ok 'and says so' grep -q 'not corrected: .*sensitivity.*renewed.jsonl' errors
+ok 'and says so' grep -q 'not corrected: vam-dose: flips.jsonl: no light .*; see .*renewed.jsonl' errors
 is 'why, without names of scratch files' "$(grep -c '"event":"hold".*vam-renew[.]' open/renewed.jsonl)" 0
 one_print lost --correct --until 'missing<=0.01' --resin curve.json --turns 14
 sed 's/^/# /' errors
