@@ -38,8 +38,7 @@ bool SmoothPrint::is_thin(const Around& around, std::size_t at) const {
     const int dz = line / 9 - 1;
     const std::ptrdiff_t in_slice = (line / 3 % 3 - 1) * static_cast<std::ptrdiff_t>(row_) + line % 3 - 1;
     const auto goes_on = [&](int steps) {
-      return around[static_cast<std::size_t>(reach + steps * dz)][static_cast<std::ptrdiff_t>(at) + steps * in_slice] ==
-             is;
+      return around[reach + steps * dz][static_cast<std::ptrdiff_t>(at) + steps * in_slice] == is;
     };
     const bool on = goes_on(1);
     const bool back = goes_on(-1);
