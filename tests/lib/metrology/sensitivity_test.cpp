@@ -123,7 +123,7 @@ TEST_CASE("The sensitivity that made the densities of a turn is found, within it
   const SensitivityFit past = fit_sensitivity(scatter, nullptr, {later}, curve, carried_on(fit.field, {}), 0);
   const auto changed = doubts(past, range_of(past.field, dose.middle(), 60), range, {});
   REQUIRE(changed.size() == 1);
-  CHECK(changed.front().find(" before, a change of more than") != std::string::npos);
+  CHECK(changed.front().find(" was expected, a difference of more than") != std::string::npos);
 }
 
 TEST_CASE("Densities are of the print's heights, doses of the stretched ones") {
