@@ -35,6 +35,9 @@ one_print() {  # one_print RUN: with the options of vam-print that follow; the c
 }
 lit_for() { grep '"event":"flip"' "$run/flips.jsonl" 2>/dev/null | tail -n 1 | sed -nE 's/.*"angle_deg":([0-9.]+).*/\1/p' | awk -v least="$1" '{ last = $1 } END { exit !(last >= least) }'; }
 fails 64 'dark-turns: requires --view-step' vam-print whole.exr --display null: --uncalibrated --dark-turns 1 --run none
+fails 64 'dark-turns: .08. is not a whole number' print --dark-turns 08 --run none
+fails 64 'dark-turns: .two. is not a whole number' print --dark-turns two --run none
+fails 64 'turns' print --turns two --dark-turns 1 --run none
 fails 64 'dark-turns: conflicts with --until' print --until 'missing<=1' --isovalue 0.04 --dark-turns 1 --run none
 one_print dark --turns 2 --dark-turns 1
 sed 's/^/# /' errors
@@ -63,4 +66,24 @@ ok 'which it says at once, and at the end' sh -c 'grep -q "warning: .*; the prin
 holds 'and in the summary' "$(json lost/summary.json correction.open_loop_from) >= 3"
 planned=$(awk -F'[:,]' '/"turns"/ { t = $2 } /"multiplier"/ { m = $2 } END { n = int(t * m); print n < t * m ? n + 1 : n }' lost/plan.json)
 holds 'for the turns of the plan' "$(json lost/summary.json reached.turns) >= $planned - 0.1 && $(json lost/summary.json reached.turns) <= $planned + 0.1"
+# vam-ost is lost first, then vam-print itself is killed.
+camera_up() {
+  rm -f truth
+  vam-sim-camera --die-with-parent --follow truth --columns 66 --rows 46 >address 2>camera.err &
+  camera=$!
+  await test -s address
+}
+run=ost-killed
+rm -f address; camera_up
+(exec vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --view-step 6 --target part.vdb --correct \
+  --until 'missing<=0.01' --resin curve.json --turns 14 --run $run 2>errors) &
+printing=$!
+until lit_for 90 || ! kill -0 $printing 2>/dev/null; do sleep 0.1; done
+pkill -KILL -f -- "-o $run/[o]st"
+await grep -q 'open loop from turn' errors
+ok 'without vam-ost it goes on in open loop, too' lit_for 90
+kill -9 $printing; wait $printing 2>/dev/null
+await flock -n $run/events.jsonl true
+ok 'one that is killed then leaves nothing that prints' sh -c "flock -n $run/events.jsonl true && ! pgrep -f -- '$run/[f]lips.jsonl'"
+kill $camera
 done_testing
