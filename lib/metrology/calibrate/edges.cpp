@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"
@@ -97,6 +100,14 @@ class BandModel {
   std::vector<double> signal_;
 };
 
+/// On either side of it is half of what is above the ground.
+std::ptrdiff_t half_of_light(const std::vector<double>& signal, double ground) {
+  std::vector<double> before(signal.size());
+  std::transform_inclusive_scan(signal.begin(), signal.end(), before.begin(), std::plus<>(),
+                                [ground](double light) { return light - ground; });
+  return std::lower_bound(before.begin(), before.end(), 0.5 * before.back()) - before.begin();
+}
+
 }  // namespace
 
 Steepest steepest(const std::vector<double>& column, const std::vector<double>& signal) {
@@ -109,13 +120,16 @@ Steepest steepest(const std::vector<double>& column, const std::vector<double>& 
     smooth[i] = (signal[a] + signal[i] + signal[b]) / 3;
   }
   const auto [low, high] = std::minmax_element(smooth.begin(), smooth.end());
-  // The half height, seen from either end: the slope may be steeper inside where noise helps it.
-  const double half = 0.5 * (*low + *high);
+  // Half the height of either half of the light, seen from its end: absorption and refraction may make one edge several
+  // times as bright as the other, and the slope may be steeper inside where noise helps it.
+  const auto middle = smooth.begin() + half_of_light(smooth, *low);
+  const double rises = 0.5 * (*low + *std::max_element(smooth.begin(), middle + 1));
+  const double falls = 0.5 * (*low + *std::max_element(middle, smooth.end()));
   Steepest edges;
   std::size_t first = 0;
-  while (first < n && smooth[first] < half) ++first;
+  while (first < n && smooth[first] < rises) ++first;
   std::size_t last = n;
-  while (last > first && smooth[last - 1] < half) --last;
+  while (last > first && smooth[last - 1] < falls) --last;
   for (std::size_t i = 1; i < n; ++i) noise += std::abs(signal[i] - signal[i - 1]);
   noise /= static_cast<double>(n - 1);
   edges.clear = first > 0 && last < n && last > first + 3 && *high - *low > 3 * noise;

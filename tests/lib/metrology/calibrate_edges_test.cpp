@@ -6,6 +6,7 @@
 #include "coverage.hpp"
 #include "fault_of.hpp"
 #include "metrology/calibrate/cut_off.hpp"
+#include "metrology/calibrate/private/edges.hpp"
 #include "metrology/calibrate/vial_place.hpp"
 #include "oracle/calibration_scans.hpp"
 #include "trials.hpp"
@@ -91,6 +92,18 @@ TEST_CASE("Vial edges: the tangent column is further out than the vial") {
   CHECK(found.edge_px.value == doctest::Approx(tangent_px).epsilon(3e-4));
   CHECK(found.radius_mm.value == doctest::Approx(truth.radius_mm).epsilon(3e-4));
   CHECK(found.blur_px.value == doctest::Approx(truth.blur_px).epsilon(0.2));
+}
+
+TEST_CASE("Vial edges: each is sought at half of its own side's light") {
+  std::vector<double> column, signal;
+  for (int i = 0; i < 60; ++i) {
+    column.push_back(2 * i);
+    signal.push_back(i < 10 || i >= 50 ? 20 : 45 + 55 * std::exp((10 - i) / 6.0));  // 100 at one edge, 45 at the other
+  }
+  const Steepest edges = steepest(column, signal);
+  CHECK(edges.clear);
+  CHECK(std::abs(edges.rise - 19) <= 2);
+  CHECK(std::abs(edges.fall - 99) <= 2);
 }
 
 TEST_CASE("Vial edges: a sweep without an edge, a dark one, and an image without rows are errors") {
