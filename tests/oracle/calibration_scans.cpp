@@ -11,12 +11,11 @@ namespace vam::oracle {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int nodes = 300;  // from either edge to the axis
-constexpr int views = 600;  // lines of sight of the camera
+constexpr int nodes = 600;   // from either edge to the axis
+constexpr int views = 2000;  // lines of sight of the camera
 
-double noisy(double value, double read_noise, Random& random) {
+double noisy(double value, double read_noise, double electrons, Random& random) {
   std::normal_distribution<double> unit;
-  constexpr double electrons = 10;  // a unit of light
   return value + std::sqrt(read_noise * read_noise + std::max(value, 0.0) / electrons) * unit(random);
 }
 
@@ -65,15 +64,17 @@ std::vector<Path> sights_of(const Bench& bench, double edge_mm, double turn_rad)
   return paths;
 }
 
-// Of a sheet of light, on all lines of sight: each sees it where they cross, if that is in the resin.
-double seen(const Path& sheet, const std::vector<Path>& sights) {
+// Of a sheet of light, on all lines of sight: each sees it where they cross, if that is in the resin, as bright as what
+// is left of it on its way from where it enters.
+double seen(const Path& sheet, const std::vector<Path>& sights, double absorption_per_mm) {
   double sum = 0;
   for (const Path& sight : sights) {
     const Plane between{sight.from.x - sheet.from.x, sight.from.y - sheet.from.y};
     const double slant = cross(sheet.direction, sight.direction);
     const double along = cross(between, sight.direction) / slant;
     const double deep = cross(between, sheet.direction) / slant;
-    if (along > 0 && along < sheet.length && deep > 0 && deep < sight.length) sum += sight.light / std::abs(slant);
+    if (along > 0 && along < sheet.length && deep > 0 && deep < sight.length)
+      sum += sight.light / std::abs(slant) * std::exp(-absorption_per_mm * along);
   }
   return sheet.light * sum;
 }
@@ -94,7 +95,7 @@ SweepBench::SweepBench(const SweepTruth& truth) : truth_(truth) {
     const double root = static_cast<double>(i) / nodes;
     for (const int side : {0, 1}) {
       const double x_mm = (side == 0 ? -1 : 1) * edge_mm_ * (1 - root * root);
-      table_[side].push_back(seen(path_of(*trace(bench, x_mm), 0), sights) / (2 * inner_mm));
+      table_[side].push_back(seen(path_of(*trace(bench, x_mm), 0), sights, truth.absorption_per_mm) / (2 * inner_mm));
     }
   }
 }
@@ -130,7 +131,8 @@ Image SweepBench::frame(double line_column, double width_px, const std::vector<d
       }
     }
     light *= 100 / weights;
-    for (int x = 0; x < columns; ++x) image(x, row) = static_cast<float>(noisy(20 + light, truth_.noise, random));
+    for (int x = 0; x < columns; ++x)
+      image(x, row) = static_cast<float>(noisy(20 + light, truth_.noise, truth_.electrons, random));
   }
   return image;
 }
@@ -142,7 +144,7 @@ Image bright_band(const BandTruth& truth, Random& random) {
     for (int x = 0; x < truth.columns; ++x) {
       const auto edge = [&](double at) { return 0.5 * std::erfc((at - x) / truth.blur_px / std::sqrt(2.0)); };
       const double part = edge(middle - truth.half_width) - edge(middle + truth.half_width);
-      image(x, y) = static_cast<float>(noisy(truth.ground + truth.light * part, truth.noise, random));
+      image(x, y) = static_cast<float>(noisy(truth.ground + truth.light * part, truth.noise, 10, random));
     }
   }
   return image;

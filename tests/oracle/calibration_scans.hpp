@@ -23,13 +23,15 @@ struct SweepTruth {
   double wall_mm = 0;
   double glass_index = 1.53;
   double resin_index = 1.53;
+  double absorption_per_mm = 0;            // of the projector's light, from where it enters the resin
   double axis_column = 511.5;              // at height 0
   double tilt_rad = 0;                     // upper end towards higher columns
   double blur_px = 1.5;                    // Gaussian sigma of the line
   double camera_mm = 200;                  // of its lens from the axis
   double camera_rad = 1.5707963267948966;  // counter-clockwise from the projector, seen from above
   double slope = 0;                        // of the camera's gain, per radian that the light turns in the vial
-  double noise = 2;                        // of a pixel; the brightest are about 100, with shot noise on top
+  double noise = 2;                        // of a pixel; the brightest are about 100
+  double electrons = 10;                   // a unit of light, for the shot noise on top
 };
 
 /// What the camera sees of a lit line of width_px columns; rows have their middles at height_mm, top first.

@@ -141,9 +141,9 @@ metrology::VialEdges combine(const std::vector<double>& angles, const std::vecto
   return out;
 }
 
-double radius_in_clear_resin_mm(const metrology::SweepScan& scan, model::Printer printer) {
+metrology::VialEdges in_clear_resin(const metrology::SweepScan& scan, model::Printer printer) {
   printer.resin.absorption_per_mm = 0;
-  return metrology::find_edges(scan, printer).radius_mm.value;
+  return metrology::find_edges(scan, printer);
 }
 
 }  // namespace
@@ -155,13 +155,18 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   std::size_t positions = 0;
   double cut_off_mm = 0;   // by how much the correction changes the radius
   double absorbed_mm = 0;  // and the absorption
+  double absorbed_px = 0;  // the axis
   for (const auto& [angle, sweep] : sweeps.by_angle) {
     const metrology::SweepScan scan = to_scan(options, sweeps, sweep, true);
     const metrology::SweepScan plain = to_scan(options, sweeps, sweep, false);
     angles.push_back(static_cast<double>(angle));
     all.push_back(metrology::find_edges(scan, printer));
     positions = scan.column.size();
-    if (all.size() == 1) absorbed_mm = all.back().radius_mm.value - radius_in_clear_resin_mm(scan, printer);
+    if (all.size() == 1) {
+      const auto clear = in_clear_resin(scan, printer);
+      absorbed_mm = all.back().radius_mm.value - clear.radius_mm.value;
+      absorbed_px = all.back().axis_column.value - clear.axis_column.value;
+    }
     if (scan.signal == plain.signal) continue;
     const double plain_mm = metrology::find_edges(plain, printer).radius_mm.value;
     cut_off_mm += (all.back().radius_mm.value - plain_mm) / static_cast<double>(sweeps.by_angle.size());
@@ -173,6 +178,7 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   stats::Measured& radius = found.radius_mm;
   radius.sigma = std::hypot(std::hypot(radius.sigma, unsure_of_absorption * absorbed_mm),
                             unsure_of_cut_off * cut_off_mm, unsure_of_beam * radius.value);
+  found.axis_column.sigma = std::hypot(found.axis_column.sigma, unsure_of_absorption * absorbed_px);
   const char* method =
       all.size() > 1 ? "edge fit of fluorescence, mean over the stage angles" : "edge fit of fluorescence";
   finding.value("axis_column", found.axis_column, "px", method);

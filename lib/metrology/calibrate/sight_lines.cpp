@@ -38,8 +38,8 @@ double SightLines::seen(const optics::ChiefRay& ray) const {
   const double cosine = std::cos(ray.delta_rad);
   const double sine = std::sin(ray.delta_rad);
   const auto across = [&](const Sight& sight) { return sight.sine * cosine - sight.cosine * sine; };
-  const auto crossing_mm = [&](const Sight& sight) {  // along the sheet
-    return (ray.x_v_mm * (sight.cosine * cosine + sight.sine * sine) - sight.offset_mm) / across(sight);
+  const auto crossing_mm = [&](const Sight& sight) {  // u of the sheet, along the light [physics §10]
+    return (sight.offset_mm - ray.x_v_mm * (sight.cosine * cosine + sight.sine * sine)) / across(sight);
   };
   double sum = 0;
   double after_mm = crossing_mm(sights_.front());

@@ -25,6 +25,7 @@ model::Printer printer_of(const vam::oracle::SweepTruth& truth) {
   printer.camera.azimuth_deg = truth.camera_rad * 180 / 3.14159265358979;
   printer.vial = {12.7, truth.wall_mm, truth.glass_index};  // the radius is to be found
   printer.resin.index = truth.resin_index;
+  printer.resin.absorption_per_mm = truth.absorption_per_mm;
   return printer;
 }
 
@@ -67,6 +68,7 @@ TEST_CASE("Vial edges: many sweeps, 95 % inside 2 sigma, centre within 0.1 px, r
     truth.tilt_rad = (part(random) - 0.5) * 0.03;
     truth.blur_px = 0.5 + 2 * part(random);
     truth.slope = (part(random) - 0.5);
+    truth.absorption_per_mm = run % 3 * 0.05;
     const double reach = 1.25 * truth.radius_mm / truth.pixel_mm;
     const auto scan = swept(truth, 2, std::floor(truth.axis_column - reach), truth.axis_column + reach, random);
     const VialEdges found = find_edges(scan, printer_of(truth));
@@ -79,6 +81,29 @@ TEST_CASE("Vial edges: many sweeps, 95 % inside 2 sigma, centre within 0.1 px, r
   tilt.check();
   CHECK(centre.worst() < 0.1);
   CHECK(radius.worst() < 5e-4);
+}
+
+// Light fades from where it enters; counted from its exit, it would seem to come from a vial that stands aside.
+TEST_CASE("Vial edges: a resin that absorbs moves neither the axis nor the radius") {
+  for (int run = 0; run < 8; ++run) {
+    CAPTURE(run);
+    vam::oracle::Random random(run);
+    vam::oracle::SweepTruth truth;
+    truth.electrons = 1e4;
+    truth.noise = 0.1;
+    if (run % 2 == 1) truth.camera_rad *= -1;
+    if (run / 2 % 2 == 1) truth.camera_rad *= 5.0 / 6;
+    if (run / 4 == 1) truth.lens_mm.reset();
+    for (const double absorption_per_mm : {0.05, 0.1}) {
+      CAPTURE(absorption_per_mm);
+      truth.absorption_per_mm = absorption_per_mm;
+      const VialEdges found = find_edges(swept(truth, 2, 250, 770, random), printer_of(truth));
+      const double off_px = found.axis_column.value - truth.axis_column;
+      CHECK(std::abs(off_px) < 3 * found.axis_column.sigma);
+      CHECK(std::abs(off_px) < 0.01);
+      CHECK(std::abs(found.radius_mm.value - truth.radius_mm) < 1e-3);
+    }
+  }
 }
 
 // [physics §12]

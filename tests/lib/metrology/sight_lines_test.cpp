@@ -13,22 +13,33 @@ using namespace vam;
 
 namespace {
 
+struct Plane {
+  double x = 0, y = 0;
+};
+double dot(Plane a, Plane b) { return a.x * b.x + a.y * b.y; }
+Plane stepped(Plane from, double steps, Plane along) { return {from.x + steps * along.x, from.y + steps * along.y}; }
+
 // Every column, far beyond the vial on either side, that sees the resin: what of the sheet lies on its line of sight.
 double seen_by_all_columns(const model::Printer& printer, const optics::ChiefRay& ray) {
   const optics::View camera = optics::camera_view(printer);
   const double radius_mm = optics::resin_radius_mm(camera);
-  const double half_mm = std::sqrt(radius_mm * radius_mm - ray.x_v_mm * ray.x_v_mm);
+  const Plane light{-std::sin(ray.delta_rad), std::cos(ray.delta_rad)};
+  const Plane foot{ray.x_v_mm * light.y, -ray.x_v_mm * light.x};
+  const Plane entry = stepped(foot, -std::sqrt(radius_mm * radius_mm - ray.x_v_mm * ray.x_v_mm), light);
   constexpr int columns = 400000;
   const double width_mm = 4 * printer.vial.radius_mm / columns;
   double sum = 0;
   for (int i = 0; i < columns; ++i) {
     const auto sight = optics::chief_ray(camera, (i + 0.5) * width_mm - 2 * printer.vial.radius_mm);
     if (!sight.hits) continue;
-    const double between = sight.delta_rad + printer.camera.azimuth_deg * rad_per_deg - ray.delta_rad;
-    const double along_mm = (ray.x_v_mm * std::cos(between) - sight.x_v_mm) / std::sin(between);
-    if (std::abs(along_mm) > half_mm) continue;
-    sum += sight.transmittance * std::exp(-printer.resin.absorption_per_mm * (half_mm + along_mm)) /
-           std::abs(std::sin(between)) * width_mm / (2 * radius_mm);
+    const double turn = sight.delta_rad + printer.camera.azimuth_deg * rad_per_deg;
+    const Plane across{std::cos(turn), std::sin(turn)};
+    const double slant = dot(across, light);
+    const Plane crossing = stepped(entry, (sight.x_v_mm - dot(across, entry)) / slant, light);
+    if (std::hypot(crossing.x, crossing.y) > radius_mm) continue;
+    const double travelled_mm = std::hypot(crossing.x - entry.x, crossing.y - entry.y);
+    sum += sight.transmittance * std::exp(-printer.resin.absorption_per_mm * travelled_mm) / std::abs(slant) *
+           width_mm / (2 * radius_mm);
   }
   return ray.transmittance * sum;
 }
