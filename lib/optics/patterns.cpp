@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
@@ -48,7 +50,7 @@ void draw(GreyImage& image, std::uint16_t level, const Lit& lit) {
 }  // namespace
 
 const std::vector<std::string>& pattern_names() {
-  static const std::vector<std::string> names{"star", "axis", "grid", "grey", "ramp", "sweep", "row"};
+  static const std::vector<std::string> names{"star", "axis", "grid", "grey", "ramp", "sweep", "row", "blink"};
   return names;
 }
 
@@ -65,8 +67,18 @@ int pattern_frames(const PatternPlan& plan, const model::Projector& projector) {
                 "pattern '" + plan.name + "' is not one of " + join(names, ", ") + did_you_mean(plan.name, names)};
   }
   if (plan.name == "ramp") return plan.steps;
+  if (plan.name == "blink") return 2;
   if (plan.name == "sweep") return (projector.columns + plan.pitch_px - 1) / plan.pitch_px;
   return 1;
+}
+
+std::vector<int> pattern_order(const PatternPlan& plan, const model::Projector& projector) {
+  std::vector<int> order(static_cast<std::size_t>(pattern_frames(plan, projector)));
+  std::iota(order.begin(), order.end(), 0);
+  if (plan.name != "blink") return order;
+  order.assign(127, 1);  // longest sequence of x^7 + x + 1; a prime number of steps, so that every nth make one, too
+  for (std::size_t n = 7; n < order.size(); ++n) order[n] = order[n - 6] ^ order[n - 7];
+  return order;
 }
 
 GreyImage pattern_frame(const PatternPlan& plan, const model::Projector& projector, int n) {
@@ -74,7 +86,9 @@ GreyImage pattern_frame(const PatternPlan& plan, const model::Projector& project
   const std::uint16_t level = to_level(plan.level, image);
   if (plan.name == "ramp") {
     fill(image, to_level(plan.steps > 1 ? static_cast<double>(n) / (plan.steps - 1) : 1.0, image));
-  } else if (plan.name == "grey") {
+  } else if (plan.name == "blink" && n == 0) {
+    fill(image, 0);
+  } else if (plan.name == "grey" || plan.name == "blink") {
     fill(image, level);
   } else if (plan.name == "star") {
     draw(image, level, [&](int x, int y) { return on_spoke(x, y, image); });

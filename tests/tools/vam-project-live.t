@@ -40,13 +40,17 @@ vam-project --pattern star --plan -o null: --light 'sim:?log=planned' >plan
 is 'the plan of a pattern: its devices, without light' "$? $(cut -d' ' -f1 plan | tr '\n' ' ') $(cat planned 2>/dev/null)" '0 display engine  '
 fails 64 'is not one of dlpc350:, dlpc900:, sim:|sim0' vam-project --pattern star --plan -o null: --light sim0:
 fails 64 'pattern: conflicts with SINOGRAM' vam-project sino.exr --pattern star -o star/
-for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
+for pattern in star axis grid grey ramp sweep row blink; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
 is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
 ok 'a dry run reports the pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows
 is 'in its log' "$(grep '"event":"pattern"' rows | grep -c '"name":"row"')" 1
 is 'a sweep has 64 / 4 places' "$(ls sweep | grep -c png)" 16
+is 'blinks are 127 of two images' "$(ls blink | grep -c png) $(sha256sum blink/*.png | cut -c1-64 | sort | uniq -c | awk '{ print $1 }' | tr '\n' ' ')" '127 63 64 '
 ok 'patterns can be shown' vam-project --pattern ramp --steps 3 --hold 0.1 -o null: --log ramps --light sim:
 is 'one after the other' "$(grep -o '"frame":-*[0-9]*' ramps | uniq | tr '\n' ' ')" '"frame":0 "frame":1 "frame":2 "frame":-1 '
+ok 'blinks can be shown' vam-project --pattern blink --hold 0.02 -o null: --log blinks
+is 'by their sequence: seven steps of light, six black, one of light' \
+  "$(grep -o '"frame":-*[0-9]*' blinks | uniq | sed -n '1p;2p;3p;$p' | tr '\n' ' ')" '"frame":1 "frame":0 "frame":1 "frame":-1 '
 
 # Three simultaneous dry runs by stage angles: a good one, one whose stage ends too early, and one that is too fast.
 follow() {  # follow LEDS FLIPS OPTIONS...: the lines of a stage, without a screen

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-project/live.hpp"
 
+#include <cstddef>
+#include <numeric>
+
 #include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
@@ -92,9 +95,13 @@ device::PlayTally Live::play(int frames_per_turn, double speed_deg_s, int turns)
   return ended(device::play(*display_, lamp(), *angles, clock_, plan, logger()));
 }
 
-device::PlayTally Live::play_through(double hold_s, bool forever) {
+device::PlayTally Live::play_through(double hold_s, bool forever, std::vector<int> order) {
+  if (order.empty()) {
+    order.resize(static_cast<std::size_t>(frames_));
+    std::iota(order.begin(), order.end(), 0);
+  }
   begin();
-  return ended(device::play_through(*display_, lamp(), clock_, frames_, hold_s, forever, logger()));
+  return ended(device::play_through(*display_, lamp(), clock_, order, hold_s, forever, logger()));
 }
 
 device::PlayTally Live::ended(const device::PlayTally& tally) {

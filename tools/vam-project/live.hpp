@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/json.hpp"
 #include "device/os/event_log.hpp"
@@ -44,8 +45,8 @@ class Live {
   [[nodiscard]] device::DisplayMode mode() const { return display_->mode(); }
   /// The frames of whole turns are loaded: prints with them.
   device::PlayTally play(int frames_per_turn, double speed_deg_s, int turns);
-  /// Shows the loaded frames one after the other.
-  device::PlayTally play_through(double hold_s, bool forever);
+  /// Shows the loaded frames one after the other, or in this order.
+  device::PlayTally play_through(double hold_s, bool forever, std::vector<int> order = {});
 
  private:
   void begin();

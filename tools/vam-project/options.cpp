@@ -104,7 +104,9 @@ void add_patterns(cli::App& app, PatternOptions& options) {
   app.option(
          "--pattern", "NAME", options.plan.name,
          "Test pattern: star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the "
-         "columns) or row (a line at z = 0, for vam-calibrate beam).")
+         "columns), row (a line at z = 0, for vam-calibrate beam) or blink (black and level in a pseudo-random "
+         "sequence "
+         "of 127 steps, for vam-calibrate latency; give --hold 0.02).")
       .form();
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.")

@@ -3,8 +3,10 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
@@ -81,21 +83,23 @@ void refuse_options_of_prints(const cli::App& app) {
 void show_pattern(const cli::App& app, const Options& options, const model::Projector& projector) {
   refuse_options_of_prints(app);
   const PatternOptions& pattern = options.pattern;
-  const int count = optics::pattern_frames(pattern.plan, projector);
+  const std::vector<int> order = optics::pattern_order(pattern.plan, projector);
   if (device::names_display(options.output)) {
     const auto play = [&] {
       Live live(options.live, options.output, {projector.columns, projector.rows, 60});
+      const int count = optics::pattern_frames(pattern.plan, projector);
       for (int n = 0; n < count; ++n) live.add(oriented_pattern(pattern, projector, n));
       live.note("pattern", facts(pattern.plan));
-      live.play_through(pattern.hold_s, pattern.repeat);
+      live.play_through(pattern.hold_s, pattern.repeat, order);
     };
     return device::interruptible([&] { device::logged(options.live.log, play); });
   }
-  model::StackInfo info = stack_info(projector, count);
+  model::StackInfo info = stack_info(projector, count_of(order));
   info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, {info, 1 / pattern.hold_s, projector.bits, options.stack});
-  for (int n = 0; n < count; ++n) {
-    const io::ProjectorFrame frame = pattern_as_frame(oriented_pattern(pattern, projector, n), n * pattern.hold_s);
+  for (int n = 0; const int shown : order) {
+    const io::ProjectorFrame frame =
+        pattern_as_frame(oriented_pattern(pattern, projector, shown), n++ * pattern.hold_s);
     sink->write(std::span(&frame, 1));
   }
   sink->commit();

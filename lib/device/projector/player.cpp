@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <deque>
 
 #include "base/error.hpp"
@@ -174,17 +175,17 @@ PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, 
   return presenter.tally();
 }
 
-PlayTally play_through(Display& display, Lamp* lamp, Clock& clock, int frames, double hold_s, bool forever,
-                       const std::function<void(const FlipRecord&)>& log) {
+PlayTally play_through(Display& display, Lamp* lamp, Clock& clock, const std::vector<int>& order, double hold_s,
+                       bool forever, const std::function<void(const FlipRecord&)>& log) {
   const DarkOnExit dark(display, lamp, log);
   Presenter presenter(display, log);
   if (lamp != nullptr) lamp->on();
   const double start_s = clock.now_s();
   for (;;) {
     check_interrupted();
-    const auto n = static_cast<long>((presenter.next_s() - start_s) / hold_s);
-    if (!forever && n >= frames) break;
-    presenter.show(static_cast<int>(std::max(0L, n) % frames), {}, true);
+    const auto n = static_cast<std::size_t>(std::max(0.0, (presenter.next_s() - start_s) / hold_s));
+    if (!forever && n >= order.size()) break;
+    presenter.show(order[n % order.size()], {}, true);
   }
   presenter.show(-1, {}, false);
   if (lamp != nullptr) lamp->dark();

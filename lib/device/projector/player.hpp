@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "base/json_fwd.hpp"
 #include "device/projector/display.hpp"
@@ -51,8 +52,9 @@ struct PlayTally {
 PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, const PlayPlan& plan,
                const std::function<void(const FlipRecord&)>& log);
 
-/// Shows all frames one after the other, each for hold_s, with light, once or until a signal. For test patterns.
-PlayTally play_through(Display& display, Lamp* lamp, Clock& clock, int frames, double hold_s, bool forever,
-                       const std::function<void(const FlipRecord&)>& log);
+/// Shows the frames of `order` one after the other, each for hold_s, with light, once or until a signal. For test
+/// patterns.
+PlayTally play_through(Display& display, Lamp* lamp, Clock& clock, const std::vector<int>& order, double hold_s,
+                       bool forever, const std::function<void(const FlipRecord&)>& log);
 
 }  // namespace vam::device

@@ -99,6 +99,27 @@ TEST_CASE("A star is half lit, in 36 sectors") {
         0.01);  // pixels on the edges of 72 sectors, a fraction of 72 * 200 / 401^2 = 9 %, even out
 }
 
+TEST_CASE("Blinks, also every nth of them, differ from all that are shifted in half of their steps") {
+  const auto projector = small_projector();
+  const auto order = pattern_order({"blink"}, projector);
+  CHECK(lit(pattern_frame({"blink"}, projector, 0)) == 0);
+  CHECK(lit(pattern_frame({"blink"}, projector, 1)) == 64 * 48);
+  REQUIRE(order.size() == 127);
+  CHECK(std::count(order.begin(), order.end(), 1) == 64);
+  int wrong = 0;
+  for (std::size_t every = 1; every < 127; ++every) {
+    for (std::size_t shift = 1; shift < 127; ++shift) {
+      int differ = 0;
+      for (std::size_t n = 0; n < 127; ++n) differ += order[n * every % 127] ^ order[(n * every + shift) % 127];
+      wrong += differ == 64 ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
+  PatternPlan ramp{"ramp"};
+  ramp.steps = 3;
+  CHECK(pattern_order(ramp, projector) == std::vector<int>{0, 1, 2});
+}
+
 TEST_CASE("An unknown pattern is a usage error") {
   CHECK(fault_of([] { (void)pattern_frames({"gird"}, small_projector()); }) == Fault::usage);
 }
