@@ -26,6 +26,12 @@ cli::Manual manual() {
        "lag determines the delay of the camera's time stamps from a bead that turns with the stage at known angles, in "
        "both directions, captured with --lag 0 and the exposure in use. Its record is the default of --lag in "
        "vam-capture. latency relies on the times of the frames and is therefore measured after lag.",
+       "latency: the screen shows vam-project --pattern blink --hold 0.02 --repeat, whose sequence has no period, "
+       "during "
+       "some 150 frames. It is refused where two latencies fit alike, as those of regular blinks do, and where camera "
+       "and screen keep step (15 fps and 60 Hz) and an exposure is shorter than a frame of the screen, by whose "
+       "difference the latency is then open: expose for a frame of the screen, or capture at a rate of which the "
+       "screen's is no multiple (13.69 fps).",
        "edges: the camera must see the whole vial, from the position given by camera.distance_mm and "
        "camera.azimuth_deg, 60 to 91 degrees from the projector. Frames at a single stage angle locate the vial, which "
        "wobbles, and not the rotation axis. Frames at four stage angles (vam-capture --angle 0, 90, 180 and 270, their "

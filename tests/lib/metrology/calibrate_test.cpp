@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Response, flat field, beam, camera axis and latency: 200 scans of each, and what is refused.
+// Response, flat field, beam and camera axis: 200 scans of each, and what is refused.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,7 +11,6 @@
 #include "metrology/calibrate/beam.hpp"
 #include "metrology/calibrate/flat.hpp"
 #include "metrology/calibrate/lag.hpp"
-#include "metrology/calibrate/latency.hpp"
 #include "metrology/calibrate/recorded_angle_fit.hpp"
 #include "metrology/calibrate/response.hpp"
 #include "metrology/calibrate/wobble.hpp"
@@ -212,41 +211,6 @@ TEST_CASE("Camera axis: offset, tilt, wobble and its phase, 200 turns") {
   for (double& angle : half.angle_deg) angle *= 2;
   half.middle[0].assign(18, NAN);
   CHECK(fault_of([&] { (void)find_camera_axis(half); }) == Fault::data);
-}
-
-TEST_CASE("Latency: 200 blinking screens, 95 % inside 2 sigma") {
-  vam::oracle::Random random(23);
-  test::Coverage latency("latency, ms");
-  for (int run = 0; run < runs; ++run) {
-    const double delay_s = 0.06 * part(random);
-    BlinkScan scan;
-    scan.exposure_s = 0.02;
-    for (int i = 0; i < 20; ++i) scan.lit_s.emplace_back(100 + 0.274 * i, 100 + 0.274 * i + 0.137);
-    for (int n = 0; n < 54; ++n) {
-      scan.begin_s.push_back(100.003 + 0.1 * n);
-      double lit = 0;  // sampled 2000 times during the exposure
-      for (int k = 0; k < 2000; ++k) {
-        const double seen_s = scan.begin_s.back() + scan.exposure_s * (k + 0.5) / 2000 - delay_s - 100;
-        const double into_s = std::fmod(seen_s + 274, 0.274);
-        if (seen_s >= 0 && seen_s < 20 * 0.274 && into_s < 0.137) lit += 1.0 / 2000;
-      }
-      scan.light.push_back(12 + 90 * lit + unit(random));
-    }
-    latency.add(measure_latency(scan).ms, 1e3 * delay_s);
-  }
-  latency.check();
-  CHECK(latency.worst() < 1);
-  BlinkScan dark;
-  CHECK(fault_of([&] { (void)measure_latency(dark); }) == Fault::data);
-  dark.exposure_s = 0.01;
-  dark.lit_s = {{1, 2}};
-  for (int n = 0; n < 20; ++n) {
-    dark.begin_s.push_back(0.1 * n);
-    dark.light.push_back(unit(random));
-  }
-  CHECK(message_of([&] { (void)measure_latency(dark); }).find("is not visible") != std::string::npos);
-  for (std::size_t n = 0; n < 20; ++n) dark.light[n] = dark.begin_s[n] >= 0.95 ? 90 : 10;  // in step with the flips
-  CHECK(message_of([&] { (void)measure_latency(dark); }).find("across a flip") != std::string::npos);
 }
 
 TEST_CASE("wobble: axis and runout separated from four stage angles") {
