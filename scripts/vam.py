@@ -23,12 +23,18 @@ try:
 except ImportError:
     numpy = None
 
+VERSION = "1"  # of volumes, stacks and NRRD, in vam-formats(7)
+
 
 def read(path, grid=""):
     """The grid of a volume (VDB; the only one when grid is empty) or a stack (EXR), and its facts."""
     data = subprocess.run(["vam-view", path, "--export", "/dev/stdout"] + (["--grid", grid] if grid else []),
                           check=True, stdout=subprocess.PIPE).stdout
     head, raw = data.split(b"\n\n", 1)
+    version = next((line.split(":=", 1)[1] for line in head.decode().splitlines()
+                    if line.startswith("vam:version:=")), VERSION)
+    if not version.isdecimal() or not 1 <= int(version) <= int(VERSION):
+        raise ValueError(f"{path}: is of version {version} of NRRD, this vam.py reads up to {VERSION}; get a newer one")
     keys = dict(line.split(": ", 1) for line in head.decode().splitlines() if ": " in line and line[0] != "#")
     facts = {"shape": tuple(int(n) for n in reversed(keys["sizes"].split())), "content": keys["content"]}
     if "space directions" in keys:
@@ -88,6 +94,7 @@ def write_volume(path, values, voxel_mm, origin_mm=None, name="target", units="r
         origin_mm = [-0.5 * (n - 1) * voxel_mm for n in (nx, ny, nz)]
     scale = [voxel_mm, voxel_mm, 1 / voxel_mm, voxel_mm ** -2, 0.5 / voxel_mm]
     facts = {"name": ("string", name.encode()), "vam:units": ("string", units.encode()),
+             "vam:version": ("string", VERSION.encode()),
              "vam:shape": ("vec3i", struct.pack("<3i", nx, ny, nz)), "vam:history": ("string", b"vam.py write_volume")}
     if stretch_z != 1:
         facts["vam:stretch_z"] = ("string", b"%.9g" % stretch_z)
@@ -116,7 +123,7 @@ def write_stack(path, values, pixel_mm, row_mm, kind="sinogram", space="projecto
     heads = []
     for k in range(count):
         texts = {"name": "z%04d" % k, "type": "scanlineimage", "vam:kind": kind, "vam:space": space,
-                 "vam:units": units, "vam:history": "vam.py write_stack"}
+                 "vam:version": VERSION, "vam:units": units, "vam:history": "vam.py write_stack"}
         numbers = {"vam:pixel_mm": pixel_mm, "vam:row_mm": row_mm, "vam:z_mm": first + k * row_mm,
                    "vam:angle_start_deg": 0, "vam:angle_step_deg": step}
         heads.append(b"".join([

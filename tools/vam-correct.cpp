@@ -151,7 +151,7 @@ auto of_file(const std::string& path, const Make& make) {
 }
 
 metrology::ScatterCurve curve_of(const std::string& path) {
-  const Json record = io::sealed_record(path, "vam-working-curve/1");
+  const Json record = io::sealed_record(path, "vam-working-curve");
   return of_file(path, [&] { return metrology::scatter_curve(record); });
 }
 
@@ -160,7 +160,7 @@ metrology::SensitivityField field_before(const Options& options, const model::Vo
   metrology::SensitivityPrior prior;
   prior.axis_px = options.column_offset_px.value_or(0) > 0 ? options.axis_sigma_px : 0;
   if (options.before.empty()) return metrology::expected_sensitivity(dose, curve, prior);
-  const Json report = io::sealed_record(options.before, "vam-correct/1");
+  const Json report = io::sealed_record(options.before, "vam-correct");
   return of_file(options.before, [&] {
     return carried_on(metrology::sensitivity_field(report.value("field", Json::object())), prior);
   });
@@ -228,7 +228,7 @@ void run(const cli::App& app, Options& options) {
   const auto range = range_of(fit.field, delivered, curve.critical_dose_mj_cm3);
   const auto range_before = range_of(before, delivered, curve.critical_dose_mj_cm3);
   const std::vector<std::string> against = doubts(fit, range, range_before, options.limits);
-  io::write_report(options.report, "vam-correct/1", figures(fit, range, against));
+  io::write_report(options.report, "vam-correct", figures(fit, range, against));
   if (!options.field.empty()) {
     write(app, options.field, "sensitivity", "relative", sensitivity(fit.field, delivered.grid), given.first);
   }

@@ -104,7 +104,7 @@ void run(const Options& options) {
   for (const auto& one : found) {
     list.push_back({{"kind", one.kind}, {"device", one.device}, {"description", one.about}, {"problem", one.obstacle}});
   }
-  io::write_report(options.report, "vam-devices/1", {{"found", list}});
+  io::write_report(options.report, "vam-devices", {{"found", list}});
 }
 
 }  // namespace

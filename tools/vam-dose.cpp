@@ -41,7 +41,7 @@ void run(const cli::App& app, Options& options) {
   const dose_tool::Unit unit = unit_of(exposed, options, printer, info);
   convert(volume, unit);
   io::write_volume(options.output, volume);
-  io::write_report(options.report, "vam-dose/1", figures(exposed, unit, options, printer, info));
+  io::write_report(options.report, "vam-dose", figures(exposed, unit, options, printer, info));
 }
 
 }  // namespace

@@ -241,7 +241,7 @@ void once(const cli::App& app, const Options& options) {
   print.write(volume, sigma ? &*sigma : nullptr);
   Json report = session.figures(volume);
   report.update(print.figures(volume));
-  io::write_report(options.report, "vam-ost/1", report);
+  io::write_report(options.report, "vam-ost", report);
 }
 
 void run(const cli::App& app, const Options& options) {

@@ -15,7 +15,7 @@ void run(const plan_tool::Options& options) {
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, "-")) return;
   const plan_tool::Plan plan = plan_tool::plan(options, printer);
-  io::write_report(options.report, "vam-plan/1", report(plan));
+  io::write_report(options.report, "vam-plan", report(plan));
   if (options.report != "-") io::write_text("-", table(plan));
 }
 

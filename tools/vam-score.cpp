@@ -97,7 +97,7 @@ void score_grey(const Options& options, const model::Printer& printer,
   how.unit = tool::grey_unit(in.target(), in.dose(), options.input);
   tool::require_linear(in.dose(), options.input);
   const score::GreyScore result = tool::score_grey_volumes(in.dose(), in.target(), how, in.band());
-  io::write_report(options.report, "vam-score-grey/1", result.figures());
+  io::write_report(options.report, "vam-score-grey", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }
@@ -122,7 +122,7 @@ void run(const cli::App& app, Options& options) {
   if (!options.lit_fraction.empty())
     score_tool::write_lit_fraction(options.lit_fraction, in.target().grid(), printer, app);
   if (!options.print.empty()) write_print(options, in.dose(), options.print_at.value_or(result.print_threshold()));
-  io::write_report(options.report, "vam-score/1", figures);
+  io::write_report(options.report, "vam-score", figures);
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }

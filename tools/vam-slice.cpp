@@ -185,7 +185,7 @@ void run(const cli::App& app, Options& options) {
     volumes.push_back(std::move(*opaque));
   }
   write(app, options, printer, volumes);
-  io::write_report(options.report, "vam-slice/1", report);
+  io::write_report(options.report, "vam-slice", report);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -217,7 +218,9 @@ void drive(const std::string& command, Options& options) {
   device::EventLog log(options.log);
   auto& clock = device::real_clock();
   const auto stage = device::open_stage(options.device, clock, &guardian);
-  const auto print = [](const device::AngleSample& sample) { device::print_line(to_line(sample)); };
+  const auto print = [first = true](const device::AngleSample& sample) mutable {
+    device::print_line(to_line(sample, std::exchange(first, false)));
+  };
   device::hurry(device::Urgency::driver);
   Json begin{{"command", command}, {"device", options.device}};
   if (!options.log.empty() && device::describe(*stage).contains("simulated")) begin["simulated"] = true;

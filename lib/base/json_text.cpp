@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/json.hpp"
 #include "base/printable.hpp"
 
@@ -81,9 +82,18 @@ Json parse_distinct(std::string_view text, const std::string& name) {
     throw Error{Fault::data, name + ": has an object of more than " + std::to_string(most_keys) +
                                  " keys, which none of these tools writes; write it again"};
   }
+  if (value.is_object()) {  // first: a later version may mean something else by the rest
+    const std::string why = schema_objection(text_at(value, "schema"));
+    if (!why.empty()) throw Error{Fault::data, name + ": " + why};
+  }
   if (value.is_discarded() || judge.twice().empty()) return value;
   throw Error{Fault::data, name + ": has the key " + judge.twice() +
                                " twice in one object, of which only one would count; write it again"};
+}
+
+bool is_of(const Json& value, FormatKind kind) {
+  const std::string schema = value.is_object() ? text_at(value, "schema") : "";
+  return schema.substr(0, schema.find('/')) == kind.kind();
 }
 
 double number_at(const Json& object, const char* key, double otherwise) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/format_version.hpp"
 #include "base/json_fwd.hpp"
 
 namespace vam {
@@ -15,8 +16,12 @@ namespace vam {
 [[nodiscard]] Json parse_json(std::string_view text);
 
 /// The same of what is evidence: throws Fault::data where an object has a key twice, of which only one would be
-/// believed, or more than 1024 keys. `name` begins the message.
+/// believed, or more than 1024 keys, and where it states a schema of these tools in a version that is not read. `name`
+/// begins the message.
 [[nodiscard]] Json parse_distinct(std::string_view text, const std::string& name);
+
+/// Whether it is an object of that schema, whatever its version.
+[[nodiscard]] bool is_of(const Json& value, FormatKind kind);
 
 /// What stands at a key, or `otherwise` where there is none or something of another type.
 [[nodiscard]] double number_at(const Json& object, const char* key, double otherwise = 0);

@@ -17,8 +17,9 @@ number_of_text=0
 all_found() {
   cat >tree/lib/base/cited.hpp <<'TEXT'
     {"projector", "colour", at<&Printer::projector>},
-write_report(path, "vam-paint/1", figures);
+    schema = "vam-dose/3";
 TEXT
+  sed -i 's|^    {"volume", 1},|&\n    {"vam-paint", 1},|' tree/lib/base/format_version.hpp
   check tree >faults && report 1 'the check finds faults'
   for n in $(seq $number_of_text); do
     file=tree/lib/base/cited_$n.hpp
@@ -26,10 +27,10 @@ TEXT
     is "found: $(cat "$file")" "$(wc -l <here):$(grep -Ec -f "wanted_$n" here)" 1:1
     rm "$file"
   done
-  for wanted in "the printer file's projector.colour is missing" 'the schema vam-paint/1 is missing'; do
-    is "found: $wanted" "$(grep -c "^man/.*$wanted" faults)" 1
+  for wanted in "the printer file's projector.colour is missing" 'version 1 of vam-paint is missing' 'no version 3 of vam-dose'; do
+    is "found: $wanted" "$(grep -Ec "^(man|lib)/.*$wanted" faults)" 1
   done
-  is 'and nothing else' "$(wc -l <faults)" $((number_of_text + 2))
+  is 'and nothing else' "$(wc -l <faults)" $((number_of_text + 3))
 }
 finds 'names lost_ray.cpp, which does not exist' '// as in lost_ray.cpp'
 finds 'vam-physics.7. has no section 99' '// along the ray [physics §2, §99]'

@@ -57,7 +57,7 @@ void measure_critical_dose(const CriticalDoseOptions& options) {
     figures["next_critical_dose_sigma_mj_cm3"] =
         std::hypot(at_print.critical_dose_mj_cm3.sigma, at_design.critical_dose_mj_cm3.sigma);
   }
-  io::write_report(options.record, "vam-critical-dose/1", figures);
+  io::write_report(options.record, "vam-critical-dose", figures);
   if (!(middle > 0 && at_print.spread_mj_cm3 <= most_spread * middle)) {
     throw Error{Fault::judged, "the dose at the print's surface varies by " + format_number(at_print.spread_mj_cm3, 3) +
                                    " of " + format_number(middle, 3) +

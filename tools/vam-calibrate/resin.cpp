@@ -22,7 +22,7 @@ void measure_resin(const ResinOptions& options) {
   const metrology::OverheadMean overhead = metrology::overhead_mean(volume);
   Json figures = metrology::to_json(metrology::gelation_threshold(overhead.mean, volume.grid.voxel_mm, diameter_mm));
   figures["height_mm"] = overhead.height_mm;
-  io::write_report(options.record, "vam-resin/1", figures);
+  io::write_report(options.record, "vam-resin", figures);
 }
 
 }  // namespace vam::calibrate_tool

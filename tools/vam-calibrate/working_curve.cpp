@@ -79,7 +79,7 @@ void measure_working_curve(const WorkingCurveOptions& options) {
   }
   Json figures = to_json(metrology::fit_curing_curve(readings, lit_turns, options.isovalue), stats::median(turn_s));
   figures["volumes"] = files.size();
-  io::write_report(options.record, "vam-working-curve/1", figures);
+  io::write_report(options.record, "vam-working-curve", figures);
 }
 
 }  // namespace vam::calibrate_tool

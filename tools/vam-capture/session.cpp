@@ -89,7 +89,7 @@ model::StackInfo stack_info(const cli::App& app, const Options& o, const model::
 std::unique_ptr<FrameStore> open_store(const cli::App& app, const Options& o, const model::Printer& printer,
                                        device::Camera& camera, long count) {
   if (is_folder(o.output)) {
-    Json head{{"schema", "vam-capture/1"}};
+    Json head{{"schema", FormatKind("vam-capture").schema()}};
     head.update(facts(camera));
     head["pixel_mm"] = o.pixel_mm.value_or(printer.camera.pixel_mm * camera.mode().binning);
     head["every_deg"] = o.every_deg.value_or(0);
@@ -249,7 +249,7 @@ void take(const cli::App& app, const Options& options) {
   store->commit();
   Json report = about;
   report.update(device::to_json(tally));
-  io::write_report(options.report, "vam-capture/1", report);
+  io::write_report(options.report, "vam-capture", report);
 }
 
 }  // namespace vam::capture_tool

@@ -255,7 +255,7 @@ void run(const cli::App& root, const cli::App& app, const CorrectOptions& option
   if (folder) folder->commit(time_stamps(job));
   if (out) out->commit();
   if (!options.mask.empty()) write_mask(options.mask, job.gaps.mask);
-  io::write_report(options.report, "vam-curethrough-correct/1", report);
+  io::write_report(options.report, "vam-curethrough-correct", report);
 }
 
 }  // namespace vam::curethrough

@@ -244,7 +244,7 @@ void run(const cli::App& root, const cli::App& app, const ModelOptions& options)
     if (options.output.empty() && options.report != "-") io::write_text("-", table_of(totals, in.print.process));
   }
   if (!options.section.empty()) draw_plane(options.section, judge.plane_, in.print);
-  io::write_report(options.report, "vam-curethrough-model/1", report);
+  io::write_report(options.report, "vam-curethrough-model", report);
 }
 
 }  // namespace vam::curethrough

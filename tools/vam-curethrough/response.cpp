@@ -47,7 +47,7 @@ void run(const cli::App& root, const cli::App&, const GreyResponseOptions& optio
               {"min_intensity", fit.table.intensity.front()},
               {"max_intensity", fit.table.intensity.back()}};
   if (std::isfinite(fit.contrast)) report["contrast"] = fit.contrast;
-  io::write_report(options.report, "vam-curethrough-response/1", report);
+  io::write_report(options.report, "vam-curethrough-response", report);
 }
 
 }  // namespace vam::curethrough

@@ -147,7 +147,7 @@ void run(const cli::App&, const cli::App&, const SweepOptions& options) {
   const auto points = resin::run_study(resin::graded_ladder(whole_heights(options.heights)), study);
   if (options.report != "-") io::write_text("-", csv_of(points, options.slice_um));
   if (!options.plot.empty()) draw_study(options.plot, points, options.slice_um);
-  io::write_report(options.report, "vam-curethrough-sweep/2", figures(points, study));
+  io::write_report(options.report, "vam-curethrough-sweep", figures(points, study));
 }
 
 }  // namespace vam::curethrough

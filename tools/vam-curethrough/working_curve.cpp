@@ -92,7 +92,7 @@ void run(const cli::App&, const cli::App&, const WorkingCurveOptions& options) {
   const resin::WorkingCurve curve = resin::fit_working_curve(samples, options.confidence);
   if (options.report != "-") io::write_text("-", table_of(curve, csv, samples));
   if (!options.plot.empty()) draw_working_curve(options.plot, samples, curve);
-  io::write_report(options.report, "vam-curethrough-working-curve/1", figures(curve, samples));
+  io::write_report(options.report, "vam-curethrough-working-curve", figures(curve, samples));
 }
 
 }  // namespace vam::curethrough

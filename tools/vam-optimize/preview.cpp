@@ -303,7 +303,7 @@ void preview(const model::Printer& printer, const Inputs& in, const Options& opt
     seen = see(levels.back(), target);
   }
   if (options.report != "-") io::write_text("-", table(seen));
-  io::write_report(options.report, "vam-optimize-preview/1", report_of(seen));
+  io::write_report(options.report, "vam-optimize-preview", report_of(seen));
 }
 
 }  // namespace vam::optimize_tool

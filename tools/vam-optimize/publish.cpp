@@ -116,7 +116,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     add_blurred_faces(report, outcome, scene, target, options);
   }
   if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);
-  io::write_report(options.report, "vam-optimize/1", report);
+  io::write_report(options.report, "vam-optimize", report);
 }
 
 }  // namespace vam::optimize_tool

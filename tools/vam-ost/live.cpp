@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
@@ -97,7 +98,8 @@ class Turns {
     session_.write(volume, (folder / ("scatter" + std::string(number))).string(), origin);
   }
 
-  void say(const Json& line) {
+  void say(Json line) {
+    if (!std::exchange(versioned_, true)) line["schema"] = FormatKind("vam-log").schema();
     if (log_) io::log_line(*log_, line.dump());
   }
   [[nodiscard]] int count() const { return index_; }
@@ -108,6 +110,7 @@ class Turns {
   const Options& options_;
   std::vector<model::Condition> conditions_;
   io::JsonLog log_;
+  bool versioned_ = false;  // the log states its schema
   int index_ = 0;
 };
 

@@ -33,7 +33,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
       show(frames, static_cast<float>(options.multiplier / peak), projector, app.given("--bits"), dithering, *sink);
   Json report = figures(frames, projector.bits, peak, tally);
   if (!differences.empty()) report["printer_differences"] = differences;
-  io::write_report(options.report, "vam-project/1", report);
+  io::write_report(options.report, "vam-project", report);
 }
 
 void write_slices(const cli::App& app, const Options& options, const model::Printer& printer,
@@ -45,7 +45,7 @@ void write_slices(const cli::App& app, const Options& options, const model::Prin
   const auto sink = io::open_frame_sink(options.output, facts);
   const auto scale = static_cast<float>(options.multiplier / options.full_scale.value_or(1));
   const auto tally = show(frames, scale, printer.projector, app.given("--bits"), {}, *sink);
-  io::write_report(options.report, "vam-project/1", slice_figures(frames, options, printer.projector, tally));
+  io::write_report(options.report, "vam-project", slice_figures(frames, options, printer.projector, tally));
 }
 
 }  // namespace vam::project

@@ -32,7 +32,7 @@ void write_report(const Options& options, Json& report, const device::PlayTally&
   report["flips"] = shown.flips;
   report["lit_flips"] = shown.lit;
   report["missed_flips"] = shown.missed;
-  io::write_report(options.report, "vam-project/1", report);
+  io::write_report(options.report, "vam-project", report);
 }
 
 void play_slices(const cli::App& app, const Options& options, const model::Printer& printer, const SliceStack& slices,

@@ -99,7 +99,7 @@ double DimensionErrors::expanded_mm(double size_mm) const {
 std::optional<InspectionViews> inspection_views(const std::vector<std::string>& reports) {
   for (const std::string& path : reports) {
     const Json report = parse_distinct(io::read_all(path), path);
-    if (!report.is_object() || report.value("schema", Json()) != "vam-sdf/1") continue;
+    if (!is_of(report, "vam-sdf")) continue;
     if (!report.contains("expanded_uncertainty")) continue;  // of a former release
     (void)io::require_seal(report, path);
     try {

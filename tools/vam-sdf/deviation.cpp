@@ -205,7 +205,7 @@ void deviation(const cli::App& app, const Options& options) {
   figures["uncertainty_budget"] = metrology::to_json(errors);
   figures["histogram"] = {{"edges_mm", histogram.edges}, {"area_percent", histogram.percent}};
   figures["require"] = {{"conditions", options.require}, {"guard_band", options.guard_band}, {"unmet", failed}};
-  io::write_report(options.report, "vam-sdf/1", figures);
+  io::write_report(options.report, "vam-sdf", figures);
   note_figures(figures, uncertainty, regions);
   if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
 }

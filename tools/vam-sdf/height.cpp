@@ -111,7 +111,7 @@ void height(const HeightOptions& options) {
   if (!options.output.empty()) draw_map(options, print, found, line);
   if (!options.plot.empty())
     draw_section(options.plot, metrology::section(print, found, line[0], line[1], line[2], line[3]));
-  io::write_report(options.report, "vam-sdf-height/1", metrology::to_json(print, found));
+  io::write_report(options.report, "vam-sdf-height", metrology::to_json(print, found));
   note("shrinkage " + format_number(100 * (1 - found.placing.scale), 3) + " %, outline RMS " +
        format_number(found.outline_rms_mm, 3) + " mm, height " + format_number(found.height_mm, 3) + " mm of " +
        format_number(found.design_height_mm, 3) + " mm, overlap " + format_number(100 * found.iou, 3) + " %");

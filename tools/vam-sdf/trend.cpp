@@ -28,9 +28,7 @@ struct Series {
 };
 using AllSeries = std::map<std::string, Series>;
 
-bool is_inspection(const Json& report) {
-  return report.is_object() && report.value("schema", Json()) == "vam-sdf/1" && report.contains("expanded_uncertainty");
-}
+bool is_inspection(const Json& report) { return is_of(report, "vam-sdf") && report.contains("expanded_uncertainty"); }
 
 // A folder of a run stands for the report in it.
 std::string report_in(const std::string& path) {
@@ -114,7 +112,7 @@ void trend(const TrendOptions& options) {
                   .c_str());
   }
   if (!options.plot.empty()) draw(options.plot, chosen->first, chosen->second);
-  io::write_report(options.report, "vam-sdf-trend/1", {{"prints", options.runs.size()}, {"figures", figures}});
+  io::write_report(options.report, "vam-sdf-trend", {{"prints", options.runs.size()}, {"figures", figures}});
 }
 
 }  // namespace vam::sdf_tool

@@ -46,7 +46,7 @@ Json last_line(const std::string& path) {
   io::LogLines log(path);
   Json last;
   for (std::string text; log.next(text);) {
-    Json line = parse_json(text);
+    Json line = parse_distinct(text, path);
     if (line.is_object()) last = std::move(line);
   }
   return last;

@@ -137,7 +137,7 @@ void RunFolder::read_events() {
     io::LogLines lines(file(log));
     std::string text;
     for (int first = 0; first < 8 && lines.next(text); ++first) {
-      const Json line = parse_json(text);
+      const Json line = parse_distinct(text, file(log));
       if (!line.is_object() || line.value("event", Json()) != event) continue;
       simulated = simulated || text.find("\"simulated\":true") != std::string::npos;
     }

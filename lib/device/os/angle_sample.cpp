@@ -6,20 +6,21 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 
 namespace vam::device {
 
-std::string to_line(const AngleSample& sample) {
+std::string to_line(const AngleSample& sample, bool first) {
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), R"({"t_monotonic_s":%.7f,"angle_deg":%.5f,"sigma_deg":%.5f%s})", sample.t_s,
+  std::snprintf(text.data(), text.size(), R"({"t_monotonic_s":%.7f,"angle_deg":%.5f,"sigma_deg":%.5f%s)", sample.t_s,
                 sample.angle_deg, sample.sigma_deg, sample.ramp ? R"(,"ramp":true)" : "");
-  return text.data();
+  return text.data() + (first ? R"(,"schema":")" + FormatKind("vam-angles").schema() + R"("})" : "}");
 }
 
 AngleSample parse_angle_line(const std::string& line, long number) {
-  const Json parsed = parse_json(line);
+  const Json parsed = parse_distinct(line, "stage angles: line " + std::to_string(number));
   AngleSample sample;
   const auto read = [&](const char* key, double& target) {
     if (!parsed.is_object() || !parsed.contains(key) || !parsed[key].is_number()) {

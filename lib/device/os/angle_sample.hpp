@@ -15,8 +15,9 @@ struct AngleSample {
   bool ramp = false;  // the stage has not yet reached its speed
 };
 
-/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma_deg":0.00123}, with "ramp":true on the ramp.
-[[nodiscard]] std::string to_line(const AngleSample& sample);
+/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma_deg":0.00123}, with "ramp":true on the ramp; the first of a
+/// series with its schema.
+[[nodiscard]] std::string to_line(const AngleSample& sample, bool first = false);
 /// Throws Fault::data for anything else: "stage angles: line 7: ...".
 [[nodiscard]] AngleSample parse_angle_line(const std::string& line, long number);
 

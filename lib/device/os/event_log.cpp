@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/json.hpp"
 #include "base/system_error.hpp"
 #include "device/os/clock.hpp"
@@ -67,8 +68,10 @@ void EventLog::at(double t_s, const std::string& event, const Json& facts) {
 
 void EventLog::line(const Json& facts) {
   if (fd_ < 0) return;
+  Json whole = facts;
+  if (!versioned_.test_and_set()) whole["schema"] = FormatKind("vam-log").schema();
   // Bytes that a device made up need not be UTF-8.
-  const std::string text = facts.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = whole.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   if (writer_) return writer_->put(text);
   write_text(fd_, text, path_);
 }

@@ -2,6 +2,7 @@
 // One JSON line per event, with UTC and monotonic time, for cron and for a later search for causes.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,7 +14,8 @@ namespace vam::device {
 class LineWriter;
 
 /// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file, one write a line, so that several
-/// processes may share it. "-" is standard error; an empty path logs nothing. Throws Fault::no_output, Fault::io.
+/// processes may share it; the first line that each adds has the schema, too. "-" is standard error; an empty path logs
+/// nothing. Throws Fault::no_output, Fault::io.
 class EventLog {
  public:
   explicit EventLog(const std::string& path);
@@ -38,6 +40,7 @@ class EventLog {
   std::string path_;
   int fd_ = -1;
   bool made_ = false;
+  std::atomic_flag versioned_;  // the schema is stated
   std::unique_ptr<LineWriter> writer_;
 };
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/format_version.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 
@@ -28,6 +29,10 @@ Fields take_fields(Bytes& bytes) {
   for (int count = 0; count < most; ++count) {
     const std::string line = bytes.line();
     if (line.empty()) return fields;
+    if (line.starts_with(version_name + std::string(":="))) {
+      const std::string why = FormatKind("NRRD").objection(line.substr(line.find('=') + 1));
+      if (!why.empty()) bytes.fail(why);
+    }
     const std::size_t colon = line.find(": ");
     if (line.starts_with('#') || line.find(":=") != std::string::npos) continue;
     if (colon == std::string::npos) bytes.fail("its header is damaged: " + excerpt(line) + " is no field");

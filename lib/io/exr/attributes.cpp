@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/format_version.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/seal.hpp"
@@ -162,6 +163,13 @@ void set_own(Imf::Header& header, const StackInfo& info, int index, const ImageI
   if (!about.has_number) return;
   set_integer(header, "vam:number", about.number);
   set_integer(header, "vam:incomplete", about.incomplete ? 1 : 0);
+}
+
+void require_version(const Imf::Header& header) {
+  if (header.find(version_name) == header.end()) return;
+  const auto value = number(header, version_name);
+  const std::string stated = text(header, version_name).value_or(value ? format_number(*value, 12) : "");
+  if (const std::string why = FormatKind("stack").objection(stated); !why.empty()) throw std::runtime_error(why);
 }
 
 StackInfo stack_info(const Imf::Header& header) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "io/exr/private/attributes.hpp"
@@ -164,9 +165,11 @@ void StackParser::parse_head() {
 }
 
 void StackParser::add_part(const Imf::Header& header) {
+  require_version(header);
   Layout layout = checked_layout(header);
   if (about_.empty()) {
     info_ = stack_info(header);
+    info_.extra.erase(version_name);  // of this file
     info_.width = layout.width;
     info_.height = layout.height;
     announced_ = std::exchange(info_.count, 0);

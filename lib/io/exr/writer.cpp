@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -102,6 +103,7 @@ StackWriter::State::State(const std::string& path, const StackInfo& stack, std::
       about(std::move(facts)),
       type(options.half ? Imf::HALF : Imf::FLOAT),
       compression(compression_named(options.compression)) {
+  info.extra[version_name] = FormatKind("stack").version();
   if (out.is_stream()) compression = Imf::NO_COMPRESSION;
   const bool sane = info.width > 0 && info.height > 0 && info.count > 0 && info.width <= exr::max_side &&
                     info.height <= exr::max_side && std::int64_t{info.width} * info.height <= exr::max_pixels;

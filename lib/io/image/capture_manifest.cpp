@@ -126,7 +126,7 @@ void take_dropped(CaptureManifest& manifest, const Json& range, const std::strin
 void add_line(CaptureManifest& manifest, const std::string& text, const std::string& where) {
   const Json line = parse_distinct(text, where);
   if (!line.is_object()) throw Error{Fault::data, where + ": is not a line of a manifest: no JSON object" + remedy};
-  if (manifest.head.empty() && line.value("schema", Json()) != "vam-capture/1") {
+  if (manifest.head.empty() && !is_of(line, "vam-capture")) {
     throw Error{Fault::data, where + ": is not a manifest of vam-capture" + remedy};
   }
   require_line_seal(manifest, line, where);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/format_version.hpp"
 #include "io/image/private/av_handles.hpp"
 #include "io/image/private/matroska.hpp"
 #include "io/image/private/video.hpp"
@@ -83,6 +84,7 @@ SliceState judged_slices(const std::uint8_t* bytes, std::size_t size, bool check
 struct VideoReader::State {
   std::string path;
   VideoFormat format;
+  std::string version;  // empty: not stated
   PixelLayout layout;
   AVFormatContext* container = nullptr;
   int stream = -1;
@@ -102,6 +104,11 @@ struct VideoReader::State {
   void open() {
     av::check(av::api().avformat_open_input(&container, path.c_str(), nullptr, nullptr), Fault::data, path,
               "opening the video");
+    if (const auto* stated = av::api().av_dict_get(container->metadata, video_version, nullptr, 0)) {
+      version = stated->value;
+      if (const std::string why = FormatKind("video").objection(version); !why.empty())
+        throw Error{Fault::data, path + ": " + why};
+    }
     check(av::api().avformat_find_stream_info(container, nullptr), "reading the video");
     const AVCodec* decoder = nullptr;
     stream = check(av::api().av_find_best_stream(container, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0),
@@ -218,7 +225,7 @@ VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<Stat
   VideoFormat& format = state_->format;
   format.checksums = proof.checksums;
   format.seal = proof.seal;
-  if (format.seal) state_->read.emplace(format.width, format.height, format.bits);
+  if (format.seal) state_->read.emplace(format.width, format.height, format.bits, state_->version);
 }
 
 VideoReader::~VideoReader() = default;

@@ -26,8 +26,9 @@ std::string tag_of(const std::string& text) {
 
 }  // namespace
 
-VideoSeal::VideoSeal(int width, int height, int bits) {
+VideoSeal::VideoSeal(int width, int height, int bits, const std::string& version) {
   for (const int number : {width, height, bits}) all_.add(static_cast<std::int64_t>(number));
+  if (!version.empty()) all_.add(version);
 }
 
 Digest VideoSeal::of(const GreyImage& frame) {

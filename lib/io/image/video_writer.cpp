@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/format_version.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/image/private/av_handles.hpp"
@@ -146,6 +147,7 @@ struct VideoWriter::State {
     container->pb = io;
     container->flags |= AVFMT_FLAG_BITEXACT;  // no library version, no random identifiers
     av::api().av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);
+    if (lossless) av::api().av_dict_set(&container->metadata, video_version, FormatKind("video").version().c_str(), 0);
   }
 
   av::Codec opened_codec(int width, int height) {
@@ -347,7 +349,9 @@ VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   state_->codec = state_->opened_codec(format.width, format.height);
   state_->open_stream();
   state_->try_alone();
-  if (state_->lossless) state_->seal.emplace(format.width, format.height, state_->wide ? format.bits : 8);
+  if (state_->lossless) {
+    state_->seal.emplace(format.width, format.height, state_->wide ? format.bits : 8, FormatKind("video").version());
+  }
 }
 
 VideoWriter::~VideoWriter() = default;

@@ -75,11 +75,12 @@ std::string seals_of(const std::string& run) {
 
 // A print that goes on, or was killed: its settings and, up to the last seal, its flips are what they were.
 std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
+  const auto outcome = logged_outcome(path);  // first: the log states the version of the folder
   require_run_settings(path);
   require_run_logs(path);
   require_resumption(path);
   require_stated_flips(path);
-  if (const auto outcome = logged_outcome(path)) {
+  if (outcome) {
     throw Error{Fault::data,
                 path +
                     ": has no SHA256SUMS and no whole summary.json, which a print writes within a minute of "
@@ -127,15 +128,13 @@ std::vector<ProvenanceEntry> inspect_folder(const std::string& path, bool fast) 
 // The manifest of a capture stands for its folder: it says nothing without the images.
 bool is_manifest(const std::string& path, const std::string& text) {
   if (std::filesystem::path(path).filename() != "manifest.jsonl") return false;
-  const Json head = parse_json(text.substr(0, text.find('\n')));
-  return head.is_object() && head.value("schema", Json()) == "vam-capture/1";
+  return is_of(parse_json(text.substr(0, text.find('\n'))), "vam-capture");
 }
 
 // What the tools that use a record of a calibration would refuse.
 void require_record_size(const Json& json, const std::string& text, const std::string& name) {
-  constexpr std::array schemas{"vam-calibration/1", "vam-resin/1", "vam-working-curve/1"};
-  const Json schema = json.value("schema", Json());
-  if (text.size() <= most_record_bytes || std::find(schemas.begin(), schemas.end(), schema) == schemas.end()) return;
+  const bool is_record = is_of(json, "vam-calibration") || is_of(json, "vam-resin") || is_of(json, "vam-working-curve");
+  if (text.size() <= most_record_bytes || !is_record) return;
   throw Error{Fault::data, name + ": has " + std::to_string(text.size()) +
                                " bytes; a calibration record has at most 1 MiB; measure it again"};
 }

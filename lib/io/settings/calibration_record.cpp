@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* schema = "vam-calibration/1";
+constexpr FormatKind schema = "vam-calibration";
 constexpr double clock_slack_s = 60;  // between the machines that measure and print
 
 // Only what every file system and shell takes as it is.
@@ -217,7 +217,7 @@ std::string write_record(const model::Calibration& calibration, const std::strin
                          double utc_s) {
   std::string path = record_path(calibration, scan, utc_s, ".json");
   if (fs::exists(path)) throw Error{Fault::no_output, path + ": exists; records are immutable"};
-  Json record{{"schema", schema},
+  Json record{{"schema", schema.schema()},
               {"scan", scan},
               {"utc", utc_text(utc_s)},
               {"valid_until", utc_text(utc_s + 3600 * calibration.valid_hours)},
@@ -253,11 +253,11 @@ CalibrationRecord read_record(const std::string& path) {
       path, std::make_shared<const Json>(parse_distinct(read_all(path, Content::text, most_record_bytes), path))};
   const Json& json = *record.json;
   const auto is_text = [&](const char* key) { return !json.contains(key) || json[key].is_string(); };
-  const bool whole = json.is_object() && json.contains("scan") && json.contains("values") &&
-                     json["values"].is_object() && json.value("schema", Json()) == schema;
+  const bool whole =
+      is_of(json, schema) && json.contains("scan") && json.contains("values") && json["values"].is_object();
   const auto texts = {"scan", "utc", "valid_until", "instrument", "vial", "status"};
   if (!whole || !std::all_of(texts.begin(), texts.end(), is_text)) {
-    throw Error{Fault::data, path + ": is not a " + schema + " record; run vam-calibrate"};
+    throw Error{Fault::data, path + ": is not a " + schema.schema() + " record; run vam-calibrate"};
   }
   require_seal(json, path);
   return record;

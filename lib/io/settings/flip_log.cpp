@@ -200,7 +200,7 @@ std::optional<StatedFlips> stated_flips(const std::string& run) {
   if (log.filename() != "flips.jsonl" || !has_regular_file(file)) return std::nullopt;
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
   const Json summary = parse_distinct(read_all(file, Content::text, most_bytes), file);
-  if (!summary.is_object() || summary.value("schema", Json()) != "vam-print/1") return std::nullopt;  // being written
+  if (!is_of(summary, "vam-print")) return std::nullopt;  // being written
   StatedFlips stated;
   const Json reached = summary.value("reached", Json());
   if (reached.is_object() && reached.value("lit_flips", Json()).is_number_integer()) stated.lit = reached["lit_flips"];

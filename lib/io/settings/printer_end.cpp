@@ -23,6 +23,7 @@ bool has_line(std::string_view text, std::string_view line) {
 
 // Its headings, in the order of the file, and its settings.
 struct Outline {
+  bool version = false;  // of the format is stated
   std::vector<std::string> headings;
   int keys = 0;
   int keys_of_last = 0;
@@ -37,6 +38,8 @@ Outline outline_of(std::string_view text) {
     if (line.starts_with('[')) {
       outline.headings.push_back(trimmed(std::string_view(line).substr(1, line.find(']') - 1)));
       outline.keys_of_last = 0;
+    } else if (outline.headings.empty() && line.starts_with("version")) {
+      outline.version = true;
     } else if (!line.starts_with('#') && line.find('=') != std::string_view::npos) {
       ++outline.keys;
       ++outline.keys_of_last;
@@ -87,6 +90,9 @@ std::string sign_of_cut(std::string_view text) {
   if (text.back() != '\n') {
     sign = "ends within a line";
     remedy = "complete its last line";
+  } else if (outline.version && outline.headings.empty() && outline.keys == 0) {
+    sign = "ends after its version";
+    remedy = "add what is missing, or delete the version";
   } else if (!outline.headings.empty() && outline.keys_of_last == 0) {
     sign = "ends with the heading " + bracketed(outline.headings.back());
     remedy = "add what is missing, or delete the heading";

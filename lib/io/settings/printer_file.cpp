@@ -10,8 +10,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "base/printer_path.hpp"
@@ -139,8 +141,20 @@ void read_section(Printer& printer, const toml::table& table, std::string_view s
   }
 }
 
+// First: a later version may have other keys.
+void require_version(const toml::table& root, const std::string& subject) {
+  const toml::node* version = root.get("version");
+  if (version == nullptr) return;
+  std::ostringstream stated;
+  version->visit([&](const auto& value) { stated << value; });
+  if (const std::string why = FormatKind("printer file").objection(stated.str()); !why.empty())
+    throw Error{Fault::data, place(subject, version->source()) + ": " + why};
+}
+
 void read_table(Printer& printer, const toml::table& root, const std::string& subject) {
+  require_version(root, subject);
   for (const auto& [key, node] : root) {
+    if (key == "version") continue;
     const std::string where = place(subject, key.source());
     const auto names = section_names();
     if (std::find(names.begin(), names.end(), key.str()) == names.end()) {

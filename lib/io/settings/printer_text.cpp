@@ -5,6 +5,7 @@
 #include <charconv>
 #include <sstream>
 
+#include "base/format_version.hpp"
 #include "base/text.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/private/printer_end.hpp"
@@ -39,7 +40,9 @@ struct FieldText {
 std::string printer_toml(const model::Printer& given) {
   model::Printer printer = given;
   std::ostringstream text;
-  text << printer_head << "\n# Every setting is here; delete what should keep its default.\n";
+  text << printer_head << "\n# Every setting is here; delete what should keep its default.\n"
+       << "version = " << FormatKind("printer file").version()
+       << "                         # of the format of this file\n";
   std::string section;
   for (const auto& field : printer_fields()) {
     if (section != field.section) text << "\n[" << (section = field.section) << "]\n";

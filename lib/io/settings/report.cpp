@@ -7,9 +7,9 @@
 
 namespace vam::io {
 
-void write_report(const std::string& path, const std::string& schema, const Json& figures) {
+void write_report(const std::string& path, FormatKind schema, const Json& figures) {
   if (path.empty()) return;
-  Json report{{"schema", schema}};
+  Json report{{"schema", schema.schema()}};
   report.update(figures);
   seal_json(report);
   OutputFile file(path, Content::text);

@@ -17,9 +17,9 @@ double gelation_isovalue(const std::string& path) {
   try {
     const Json record = parse_distinct(read_all(path, Content::text, most_record_bytes), path);
     if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
-    if (record.at("schema") != "vam-resin/1" && record.at("schema") != "vam-working-curve/1")
+    if (!is_of(record, "vam-resin") && !is_of(record, "vam-working-curve"))
       throw Error{Fault::data,
-                  path + ": not a record of vam-calibrate resin, its schema is " + briefly(record["schema"].dump())};
+                  path + ": not a record of vam-calibrate resin, its schema is " + briefly(record.at("schema").dump())};
     require_seal(record, path);
     isovalue = record.at(record.contains("level") ? "level" : "isovalue").get<double>();  // level: until 0.1.0
     critical = number_at(record, "critical_dose_mj_cm3", critical);
@@ -36,10 +36,10 @@ double gelation_isovalue(const std::string& path) {
   return isovalue;
 }
 
-Json sealed_record(const std::string& path, const std::string& schema) {
+Json sealed_record(const std::string& path, FormatKind schema) {
   Json record = parse_distinct(read_all(path, Content::text, most_record_bytes), path);
-  if (!record.is_object() || record.value("schema", Json{}) != schema) {
-    throw Error{Fault::data, path + ": not JSON of the schema " + schema};
+  if (!is_of(record, schema)) {
+    throw Error{Fault::data, path + ": not JSON of the schema " + schema.schema()};
   }
   require_seal(record, path);
   return record;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/format_version.hpp"
 #include "base/json_fwd.hpp"
 
 namespace vam::io {
@@ -13,6 +14,6 @@ namespace vam::io {
 [[nodiscard]] double gelation_isovalue(const std::string& path);
 
 /// A JSON file of that schema, its seal held to. Throws Error: no_input, data.
-[[nodiscard]] Json sealed_record(const std::string& path, const std::string& schema);
+[[nodiscard]] Json sealed_record(const std::string& path, FormatKind schema);
 
 }  // namespace vam::io

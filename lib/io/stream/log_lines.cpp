@@ -6,6 +6,8 @@
 #include <cerrno>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/system_error.hpp"
 
 namespace vam::io {
@@ -33,6 +35,8 @@ LogLines::LogLines(const std::string& path, std::streamoff tail_bytes) : path_(p
   stream_.open(path);
   if (!stream_.is_open()) throw system_error(Fault::no_input, path + ": cannot open", errno);
   if (tail_bytes == 0) return;
+  std::string first;  // it states the version
+  if (next(first)) (void)parse_distinct(first, path);
   stream_.seekg(0, std::ios::end);
   const std::streamoff size = stream_.tellg();
   stream_.seekg(size > tail_bytes ? size - tail_bytes : 0);

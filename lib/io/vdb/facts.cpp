@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/format_version.hpp"
 #include "base/index.hpp"
 #include "base/printable.hpp"
 #include "io/stream/seal.hpp"
@@ -112,7 +113,8 @@ void set_box(const CoordBBox& box, model::Grid& grid, Coord& first) {
 bool is_written_anew(const std::string& key) {
   static const std::array keys = {FloatGrid::META_GRID_NAME, FloatGrid::META_GRID_CLASS, FloatGrid::META_GRID_CREATOR,
                                   FloatGrid::META_VECTOR_TYPE};
-  return key.starts_with("file_") || is_seal_key(key) || std::find(keys.begin(), keys.end(), key) != keys.end();
+  return key.starts_with("file_") || is_seal_key(key) || key == version_name ||
+         std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
 void require_stretch(const FloatGrid& sparse, const openvdb::Metadata& stated) {

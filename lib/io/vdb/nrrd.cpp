@@ -5,6 +5,7 @@
 #include <bit>
 #include <vector>
 
+#include "base/format_version.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/stream.hpp"
@@ -20,6 +21,7 @@ std::string number(double value) { return format_number(value, 12); }
 std::string head(const std::vector<std::string>& history) {
   std::string text = "NRRD0004\n# http://teem.sourceforge.net/nrrd/format.html\n";
   for (const auto& line : history) text += "# " + printable(line) + "\n";
+  text += version_name + (":=" + FormatKind("NRRD").version()) + "\n";
   return text + "type: float\ndimension: 3\nencoding: raw\nendian: little\n";
 }
 

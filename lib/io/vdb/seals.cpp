@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/format_version.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/printable.hpp"
@@ -88,10 +89,14 @@ void seal(openvdb::FloatGrid& sparse, const LeafStore& leaves) {
 }
 
 std::optional<GridSeals> judged_seals(const openvdb::FloatGrid& sparse) {
+  const std::string grid = "grid " + excerpt(sparse.getName());
+  if (const openvdb::Metadata::ConstPtr version = sparse[version_name]) {  // first: a later one may seal otherwise
+    const std::string why = FormatKind("volume").objection(version->str());
+    if (!why.empty()) throw std::runtime_error(grid + " " + why);
+  }
   const std::string facts = text(sparse, facts_seal_key);
   const std::string values = text(sparse, values_seal_key);
   if (facts.empty() && values.empty()) return std::nullopt;
-  const std::string grid = "grid " + excerpt(sparse.getName());
   GridSeals seals;
   if (!parse_seal(facts, seals.facts) || !parse_seal(values, seals.values)) {
     throw std::runtime_error(grid + " has a damaged seal; make the file again");

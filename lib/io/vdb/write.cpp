@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/format_version.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "io/stream/stream.hpp"
@@ -136,6 +137,7 @@ void set_metadata(SparseVolume& volume) {
   std::string history;
   for (const std::string& line : volume.history) history += (history.empty() ? "" : "\n") + line;
   sparse.insertMeta(history_key, openvdb::StringMetadata(history));
+  sparse.insertMeta(version_name, openvdb::StringMetadata(FormatKind("volume").version()));
   sparse.insertMeta(units_key, openvdb::StringMetadata(volume.units));
   sparse.insertMeta(shape_key, openvdb::Vec3IMetadata(openvdb::Vec3i(grid.nx, grid.ny, grid.nz)));
   const Coord& first = volume.state().first;

@@ -2,6 +2,7 @@
 #include "optimize/run/interruption.hpp"
 
 #include "base/error.hpp"
+#include "base/format_version.hpp"
 #include "base/index.hpp"
 
 namespace vam::optimize {
@@ -22,14 +23,16 @@ void begin(Archive& to, RecordTag record) {
 }  // namespace
 
 void exchange(Archive& archive, const RunMark& mark) {
-  constexpr int magic = 0x564D4F35;
-  int given_magic = magic;
-  archive(given_magic);
-  if (given_magic != magic)
-    throw Error{
-        Fault::data,
-        archive.name() +
-            ": is not a checkpoint of this version of vam-optimize; name another file, or remove it to start anew"};
+  constexpr FormatKind format = "checkpoint";
+  const int magic = 0x564D4F30 + std::stoi(format.version());  // "VMO5"
+  int given = magic;
+  archive(given);
+  if (given != magic) {
+    const std::string newer = given >> 8 == magic >> 8 ? format.objection(std::to_string(given - 0x564D4F30)) : "";
+    constexpr const char* other =
+        "is not a checkpoint of this version of vam-optimize; name another file, or remove it to start anew";
+    throw Error{Fault::data, archive.name() + ": " + (newer.empty() ? other : newer)};
+  }
   std::string job = mark.job;
   SliceDigest target = mark.target;
   int watched = mark.watched ? 1 : 0;

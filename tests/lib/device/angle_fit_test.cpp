@@ -75,8 +75,12 @@ TEST_CASE("Lines of samples are written and read back unchanged") {
   CHECK(to_line({1, 2, 3, true}).find(R"(,"ramp":true)") != std::string::npos);
   CHECK(parse_angle_line(to_line({1, 2, 3, true}), 1).ramp);
   CHECK_FALSE(back.ramp);
+  CHECK(to_line(sample, true) == R"({"t_monotonic_s":123.4567891,"angle_deg":-12.34567,"sigma_deg":0.00123,)"
+                                 R"("schema":"vam-angles/1"})");
+  CHECK(parse_angle_line(to_line(sample, true), 1).t_s == sample.t_s);
   for (const char* bad : {"", "7", "{}", R"({"t_monotonic_s":1,"angle_deg":"x","sigma_deg":1})",
-                          R"({"t_monotonic_s":1e999,"angle_deg":1,"sigma_deg":1})", "{\"t_mono"}) {
+                          R"({"t_monotonic_s":1e999,"angle_deg":1,"sigma_deg":1})", "{\"t_mono",
+                          R"({"t_monotonic_s":1,"angle_deg":1,"sigma_deg":1,"schema":"vam-angles/2"})"}) {
     CAPTURE(bad);
     CHECK(fault_of([&] { (void)parse_angle_line(bad, 7); }) == Fault::data);
     CHECK(message_of([&] { (void)parse_angle_line(bad, 7); }).find("line 7") != std::string::npos);

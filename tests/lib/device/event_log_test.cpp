@@ -51,6 +51,8 @@ TEST_CASE("An event has UTC and monotonic time of the same moment, also one of a
   const auto lines = file.lines();
   REQUIRE(lines.size() == 2);
   CHECK(lines[1]["frame"] == 3);
+  CHECK(lines[0]["schema"] == "vam-log/1");  // in the first line alone
+  CHECK_FALSE(lines[1].contains("schema"));
   const double utc_s = std::remainder(seconds(lines[0]["utc"]) - seconds(lines[1]["utc"]), 3600);
   const double monotonic_s = lines[0]["t_monotonic_s"].get<double>() - lines[1]["t_monotonic_s"].get<double>();
   CHECK(monotonic_s >= 75.25);

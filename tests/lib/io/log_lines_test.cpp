@@ -46,6 +46,13 @@ TEST_CASE("a log gives its whole lines, and later those that were added") {
   CHECK(rest(all) == Lines{"one", "", "two"});
 }
 
+TEST_CASE("the end of a log is of the version that its first line states") {
+  const scratch::Folder folder;
+  scratch::spill(folder / "log", "{\"schema\":\"vam-log/2\"}\none\ntwo\n");
+  CHECK(message_of([&] { LogLines(folder / "log", 8); }).find("log: is of version 2 of its format (vam-log)") !=
+        std::string::npos);
+}
+
 TEST_CASE("a line of 1 MiB is the longest") {
   const scratch::Folder folder;
   const std::string longest(1 << 20, 'a');

@@ -24,6 +24,9 @@ void set_own(Imf::Header& header, const model::StackInfo& info, int index, const
 /// What is no place or pitch of a stack beside a vial ("vam:row_mm is 1e+30, ..."); empty where all is.
 [[nodiscard]] std::string implausible(const model::StackInfo& info);
 
+/// Throws std::runtime_error for a version that is not read: before anything else that a header states.
+void require_version(const Imf::Header& header);
+
 /// The facts of a stack from its first header; width and height are left to the caller, count is 0 where it is absent.
 /// Throws std::runtime_error: no vam:kind, an unknown space, no positive pixel pitch, what is implausible.
 [[nodiscard]] model::StackInfo stack_info(const Imf::Header& header);

@@ -13,10 +13,13 @@
 
 namespace vam::io {
 
+inline constexpr const char* video_version = "VAM_VERSION";  // a tag of the file
+
 /// Takes what the frames of a video are decoded to, one after the other.
 class VideoSeal {
  public:
-  VideoSeal(int width, int height, int bits);
+  /// version: the text of the tag VAM_VERSION; empty: there is none.
+  VideoSeal(int width, int height, int bits, const std::string& version);
   /// The hash of one frame, which many threads may take at once.
   [[nodiscard]] static Digest of(const GreyImage& frame);
   void add(const Digest& frame);

@@ -51,8 +51,8 @@ struct GridSeals {
   Digest facts;
   Digest values;
 };
-/// Nothing where there is none; the facts are judged. Throws std::runtime_error: one of the two is missing or damaged,
-/// the facts are not those that were written.
+/// Nothing where there is none; the facts are judged. Throws std::runtime_error: a version that is not read, one of
+/// the two is missing or damaged, the facts are not those that were written.
 [[nodiscard]] std::optional<GridSeals> judged_seals(const openvdb::FloatGrid& sparse);
 
 /// The grid's seal, also as a line of its history.
