@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate: measures the instrument from captured frames and writes calibration records.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
 #include <string>
 
+#include "base/error.hpp"
 #include "cli/app.hpp"
-#include "moved.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace {
@@ -91,7 +96,7 @@ cli::Manual manual() {
 enum class Flips { none, optional, required };
 
 void add_input(cli::App& scan, ScanOptions& o, Flips flips) {
-  scan.positional("FRAMES", o.from, "EXR stack or folder of vam-capture, or a folder of images.", "--from").reads();
+  scan.positional("FRAMES", o.from, "EXR stack or folder of vam-capture, or a folder of images.").reads();
   if (flips != Flips::none) {
     scan.option("--flips", "FILE", o.flips, "Log of vam-project: which pattern frame was on and when.").reads();
     flips == Flips::required ? scan.required() : scan.default_is("frame n shows pattern frame n");
@@ -109,7 +114,7 @@ void add_dark(cli::App& scan, ScanOptions& o) {
 }
 
 void add_heights(cli::App& scan, ScanOptions& o) {
-  scan.option("--heights", "N", o.heights, {1, 100}, "Number of heights measured separately.").was("--bands");
+  scan.option("--heights", "N", o.heights, {1, 100}, "Number of heights measured separately.");
 }
 
 void add_edges(cli::App& app, ScanOptions& o) {
@@ -144,9 +149,7 @@ void add_beam(cli::App& app, ScanOptions& o) {
   add_dark(scan, o);
   scan.option("--first", "MM", o.first_mm, cli::any, "Distance of the first plane from the rotation axis.")
       .required_without("--side");
-  scan.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes.")
-      .required_without("--side")
-      .was("--step");
+  scan.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes.").required_without("--side");
   scan.option("--pixel", "MM", o.pixel_mm, cli::positive,
               "Pixel pitch of the bare sensor, or of the frames at the rotation axis (with --side).")
       .required_without("--side")
@@ -156,9 +159,7 @@ void add_beam(cli::App& app, ScanOptions& o) {
 void add_axis(cli::App& app, ScanOptions& o) {
   auto& scan = app.subcommand("axis", "rotation axis and wobble in the camera's frames of a turn", o.command);
   add_input(scan, o, Flips::none);
-  scan.option("--view-step", "DEG", o.step_deg, cli::any, "Angle between frames without recorded angles, not 0.")
-      .was("--angle-step")
-      .was("--step");
+  scan.option("--view-step", "DEG", o.step_deg, cli::any, "Angle between frames without recorded angles, not 0.");
   add_heights(scan, o);
 }
 
@@ -166,14 +167,12 @@ void add_delays(cli::App& app, ScanOptions& o) {
   auto& lag =
       app.subcommand("lag", "delay of the camera's time stamps, from a bead turned in both directions", o.command);
   add_input(lag, o, Flips::none);
-  lag.positional("REVERSE", o.reverse, "Frames of a turn in the opposite direction (vam-stage spin --direction -1).",
-                 "--reverse")
+  lag.positional("REVERSE", o.reverse, "Frames of a turn in the opposite direction (vam-stage spin --direction -1).")
       .reads();
   lag.option(
          "--follow", "FILE", o.angles,
          "Read the stage angle from this output of vam-stage spin during both turns, concatenated: the angles of the "
          "frames are fitted to all of its samples, and the standard deviation includes theirs.")
-      .was("--angles")
       .reads()
       .default_is("the angles of the frames");
   add_heights(lag, o);
@@ -296,14 +295,22 @@ void run(const cli::App& app, const AllOptions& all) {
   }
 }
 
+/// Runs the script beside this program, or on PATH, with the arguments that follow the command. Returns the exit status
+/// if it cannot be run.
+int become_script(std::string script, char** argv) {
+  const std::string own_path = argv[0];
+  argv[1] = script.data();
+  const std::size_t folder = own_path.rfind('/');
+  if (folder != std::string::npos) execv((own_path.substr(0, folder + 1) + script).c_str(), argv + 1);
+  execvp(script.c_str(), argv + 1);
+  std::cerr << "vam-calibrate: " << script << ": " << std::strerror(errno) << '\n';
+  return static_cast<int>(Fault::no_input);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int moved = tool::follow_moved(
-      argc, argv, {"--screen", "--light", "--scans", "--home", "--sweep-exposure", "--keep"}, "vam-calibrate-all");
-  if (moved >= 0) return moved;
-  const int all = tool::follow_script(argc, argv, "all", "vam-calibrate-all");
-  if (all >= 0) return all;
+  if (argc > 1 && argv[1] == std::string("all")) return become_script("vam-calibrate-all", argv);
   cli::App app(manual());
   AllOptions all_options;
   declare(app, all_options);

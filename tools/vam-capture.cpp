@@ -7,7 +7,6 @@
 #include "device/open/camera.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
-#include "moved.hpp"
 #include "printer.hpp"
 #include "vam-capture/session.hpp"
 
@@ -126,8 +125,7 @@ void declare(cli::App& app, Options& o) {
       .form();
   app.option("--view-step", "DEG", o.every_deg, cli::positive,
              "Angle between the frames to keep: those nearest to its multiples.")
-      .default_is("every frame is kept")
-      .was("--every");
+      .default_is("every frame is kept");
   app.option("--turns", "N", o.turns, cli::positive, "With --view-step: number of turns.").default_is("1");
   app.option("--follow", "FILE", o.follow, "Read the stage angle from this output of vam-stage, a FIFO or -.");
   app.option("--speed", "DEG/S", o.speed_deg_s, cli::rate,
@@ -135,8 +133,7 @@ void declare(cli::App& app, Options& o) {
   app.option("--angle", "DEG", o.angle_deg, {0, 1e6}, "Without --follow: fixed stage angle.");
   app.option("--lag", "MS", o.lag_ms, {-10000, 10000},
              "Delay of the camera's time stamps from the moment of the exposure that they name (camera.stamp).")
-      .default_is("camera.lag_ms")
-      .was("--latency");
+      .default_is("camera.lag_ms");
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,
              "Maximum number of dropped and incomplete frames; above it the capture ends with status 75.");
   app.group("Output and performance");
@@ -171,9 +168,6 @@ void run(const cli::App& app, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int moved = tool::follow_moved(argc, argv, {"edges", "response", "flat", "beam", "axis", "latency", "check"},
-                                       "vam-calibrate");
-  if (moved >= 0) return moved;
   cli::App app(manual());
   Options options;
   declare(app, options);

@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
   Options options;
   cli::App app(manual());
   app.option("--port", "PATH", options.ports, "Serial port to list in addition to those of the system.");
-  app.flag("--probe", options.probe, "Query the serial ports for stage controllers.").was("--ask");
+  app.flag("--probe", options.probe, "Query the serial ports for stage controllers.");
   cli::add_report(app, options.report);
   return app.run(argc, argv, [&] { run(options); });
 }

@@ -13,7 +13,6 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
-#include "moved.hpp"
 #include "plot/save.hpp"
 #include "printer.hpp"
 #include "vam-ost/print.hpp"
@@ -119,9 +118,7 @@ cli::Manual manual() {
 void declare_camera(cli::App& app, Options& o) {
   app.group("Camera");
   app.option("--view-step", "DEG", o.step_deg, cli::any,
-             "Angle between views without recorded angles, not 0. Negative: opposite direction of rotation.")
-      .was("--angle-step")
-      .was("--step");
+             "Angle between views without recorded angles, not 0. Negative: opposite direction of rotation.");
   app.option("--dark", "FILE", o.dark,
              "Image or stack without a print (dark, or of the vial before printing); its mean is subtracted.")
       .reads();
@@ -134,8 +131,7 @@ void declare_camera(cli::App& app, Options& o) {
   app.option("--pixel", "MM", o.pixel_mm, cli::positive, "Pixel pitch of the frames at the axis, before --binning.")
       .default_is("as stated in the stack, else camera.pixel_mm");
   app.option("--axis-column", "PX", o.axis_column, cli::any, "Column of the rotation axis, before --binning.")
-      .default_is("camera.axis_column, else found in the views")
-      .was("--axis");
+      .default_is("camera.axis_column, else found in the views");
   app.option("--tilt", "DEG", o.tilt_deg, {-30, 30}, "Tilt of the axis, positive with its lower end to the right.")
       .default_is("camera.tilt_deg, else found in the views");
 }
@@ -147,16 +143,13 @@ void declare_reconstruction(cli::App& app, Options& o) {
   app.choice("--filter", o.how.window,
              {"ram-lak", "shepp-logan", "cosine", "hamming", "hann", "gaussian", "exponential"},
              "Window of the ramp filter.");
-  app.was("--window");
   app.option("--mlem-iterations", "N", o.how.mlem_iterations, {0, 1000},
-             "Number of MLEM iterations after the back-projection, for noisy views.")
-      .was("--statistical");
+             "Number of MLEM iterations after the back-projection, for noisy views.");
   app.option("--uncertainty", "FILE.vdb", o.uncertainty,
              "Write the standard deviations of the volume's values due to the noise of the views, as a volume "
              "'uncertainty' for vam-sdf; a mesh (.ply) has those of its vertices in mm (scalar_uncertainty).")
       .writes({".vdb"});
   app.choice("--negative", o.negative, {"clip", "keep"}, "Negative densities: clip them to 0, or keep them.");
-  app.was("--keep-negative", "keep");
   app.flag("--no-refraction", o.no_refraction,
            "Neglect refraction and perspective: image columns are parallel rays (for comparison).");
   app.flag("--keep-run-out", o.keep_run_out, "Take the vial's axis for that of the stage: run-out is not fitted.");
@@ -164,13 +157,12 @@ void declare_reconstruction(cli::App& app, Options& o) {
 
 void declare_print(cli::App& app, Options& o) {
   app.group("Print");
-  app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").was("--level");
+  app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.");
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin with the gelation threshold I_p.")
       .reads();
   app.option("--min-body", "MM3", o.pieces_mm3, cli::non_negative,
              "Minimum volume of a body that belongs to the print.")
-      .default_is("1 % of the largest body's volume")
-      .was("--pieces");
+      .default_is("1 % of the largest body's volume");
   app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (" + join(io::written_mesh_endings(), " or ") + ").")
       .writes(io::written_mesh_endings())
       .needs({"--isovalue", "--resin"});
@@ -179,7 +171,6 @@ void declare_print(cli::App& app, Options& o) {
       .writes(plot::figure_endings());
   app.option("--target", "FILE.vdb", o.target,
              "Volume of the part to compare the print with, in the same coordinate system.")
-      .was("--reference")
       .reads();
 }
 
@@ -190,7 +181,6 @@ void declare_live(cli::App& app, Options& o) {
            "Write the standard deviations of each volume's values into the folder, too, before the volume.")
       .needs({"--live"});
   app.option("--volume-step", "DEG", o.every_deg, cli::positive, "Angle between reconstructed volumes.")
-      .was("--every")
       .needs({"--live"});
   app.option("--until", "CONDITIONS", o.until,
              "Print a stop event and exit when all conditions hold, on missing and overcure (%), iou and cured (mm3).")
@@ -279,8 +269,6 @@ int main(int argc, char** argv) {
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   mallopt(M_ARENA_MAX, 1);
-  const int moved = tool::follow_moved(argc, argv, {"threshold"}, "vam-calibrate resin");
-  if (moved >= 0) return moved;
   cli::App app(manual());
   Options options;
   declare(app, options);

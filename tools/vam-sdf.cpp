@@ -130,19 +130,16 @@ void declare(cli::App& app, Options& options) {
       .default_is("1/100 of the design's largest dimension")
       .needs({"--volume"});
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
-  app.was("--level");
   app.option("--resin", "FILE", options.resin_record,
              "Record of vam-calibrate resin with the gelation threshold I_p, used as isovalue.")
       .reads();
   app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
-  app.was("--reference-isovalue").was("--reference-level");
   app.option("--min-body", "MM3", options.pieces_mm3, cli::non_negative,
              "Minimum volume of a body that belongs to the print; smaller bodies of a print volume are dropped.")
-      .default_is("1 % of the largest body's volume")
-      .was("--pieces");
+      .default_is("1 % of the largest body's volume");
   app.group("Alignment");
   app.choice("--align", options.align, {"none", "icp", "full"}, "Alignment of the print with the design.");
-  app.flag("--fit-scale", options.scale, "Also fit a uniform scale.").was("--scale");
+  app.flag("--fit-scale", options.scale, "Also fit a uniform scale.");
   app.group("Figures");
   app.option("--samples", "N", options.samples, {1000, 1e8}, "Number of points on each surface.");
   app.option("--histogram", "FILE", options.histogram,
@@ -176,14 +173,11 @@ void declare_height(cli::App& app, HeightOptions& options) {
       .reads();
   app.positional("DESIGN", options.design, "Mesh or volume of the design, embossed side up.").reads();
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pixel pitch of the image.");
-  app.option("--full-scale-height", "MM", options.full_mm, cli::positive,
-             "Height at full scale of a PNG or TIFF, in which 0 is a missing reading. EXR values are multiplied by it.")
-      .was("--full-scale")
-      .was("--full");
-  app.option("--min-height", "MM", options.lowest_mm, cli::any, "Exclude heights below MM (the substrate).")
-      .was("--lowest");
+  app.option(
+      "--full-scale-height", "MM", options.full_mm, cli::positive,
+      "Height at full scale of a PNG or TIFF, in which 0 is a missing reading. EXR values are multiplied by it.");
+  app.option("--min-height", "MM", options.lowest_mm, cli::any, "Exclude heights below MM (the substrate).");
   app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
-  app.was("--reference-isovalue").was("--reference-level");
   app.choice("--align", options.align, {"none", "icp", "full"},
              "Alignment of the design with the print: centred (none), refined from there (icp), or from any "
              "orientation (full).");

@@ -102,14 +102,11 @@ void declare_scene(cli::App& app, Options& o) {
              "Shape of the print, e.g. 'sphere:x=2,diameter=4;cylinder:diameter=6,height=3'.");
   app.option("--lit", "S", o.camera.bench.lit_s, cli::non_negative,
              "Exposed time that completes the print, whose volume grows in proportion; 0: complete from the start.");
-  app.option("--follow", "FILE", o.camera.sources.angles, "Read the stage angle from this log of vam-sim-stage.")
-      .was("--angles");
+  app.option("--follow", "FILE", o.camera.sources.angles, "Read the stage angle from this log of vam-sim-stage.");
   app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Without --follow: stage speed.");
-  app.option("--flips", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.")
-      .was("--shown");
+  app.option("--flips", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.");
   app.option("--projected", "FILE", o.frames,
-             "Frames shown by vam-project: an EXR frame stack, video or folder of images.")
-      .was("--frames");
+             "Frames shown by vam-project: an EXR frame stack, video or folder of images.");
 }
 
 void declare_resin(cli::App& app, Options& o) {
@@ -143,8 +140,7 @@ void declare_pattern(cli::App& app, Options& o) {
       .default_is("16; 4 for sweep");
   app.option("--width", "PX", o.width_px, {1, 100000}, "Width of lines.").default_is("1; 4 for sweep");
   app.option("--grey", "FRACTION", o.pattern.level, {0, 1},
-             "Grey level of lines and fields, as a fraction of full grey.")
-      .was("--level");
+             "Grey level of lines and fields, as a fraction of full grey.");
   app.option("--steps", "N", o.pattern.steps, {2, 65536}, "Levels of the ramp.");
 }
 
@@ -152,8 +148,7 @@ void declare_misalignment(cli::App& app, sim::SimBench& bench) {
   app.group("Misalignment");
   app.option("--axis-offset", "PX", bench.axis_column, {-4096, 4096},
              "Offset of the rotation axis from the centre of the sensor, in columns, positive to the right "
-             "(camera.axis_column counts from the left edge).")
-      .was("--axis-column");
+             "(camera.axis_column counts from the left edge).");
   app.option("--tilt", "DEG", bench.tilt_deg, {-30, 30}, "Tilt of the axis, positive with its lower end to the right.");
   app.option("--centre", "PX", bench.centre_px, {-4096, 4096},
              "Offset of the vial's centre from projector.axis_column, in projector columns.");
@@ -169,8 +164,7 @@ void declare_projector(cli::App& app, Options& o) {
   app.option("--focus", "MM", bench.focus_mm, {-1000, 1000}, "Position of the focus along the beam, from the axis.");
   app.option("--divergence", "DEG", bench.divergence_deg, {0, 45},
              "Increase of the beam's width with the distance from the focus, as an angle.");
-  app.option("--projector-gamma", "N", bench.gamma, {0.1, 10}, "Intensity = (grey / full grey) to this power.")
-      .was("--gamma");
+  app.option("--projector-gamma", "N", bench.gamma, {0.1, 10}, "Intensity = (grey / full grey) to this power.");
   app.option("--vignetting", "FRACTION", bench.vignetting, {0, 1},
              "Relative loss of intensity at the corners of the image.");
   app.option("--latency", "MS", o.latency_ms, {0, 1000}, "Delay from a flip to its light.");
@@ -201,9 +195,9 @@ void declare_camera(cli::App& app, Options& o) {
 
 void declare_faults(cli::App& app, Options& o) {
   app.group("Faults");
-  app.option("--drop", "FRAMES", o.drop, "Frames that are dropped, e.g. 3,7.").was("--lose");
-  app.option("--incomplete", "FRAMES", o.incomplete, "Frames that arrive incomplete, e.g. 3,7.").was("--cut");
-  app.option("--unplug", "N", o.unplug, {0, 1e9}, "Disconnect before this frame.").was("--vanish");
+  app.option("--drop", "FRAMES", o.drop, "Frames that are dropped, e.g. 3,7.");
+  app.option("--incomplete", "FRAMES", o.incomplete, "Frames that arrive incomplete, e.g. 3,7.");
+  app.option("--unplug", "N", o.unplug, {0, 1e9}, "Disconnect before this frame.");
   app.option("--shrink", "N", o.shrink, {1, 1e9}, "From this frame on, send images of half the agreed height.");
 }
 

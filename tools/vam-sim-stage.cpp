@@ -96,17 +96,15 @@ void declare(cli::App& app, Options& options) {
   app.option("--max-speed", "DEG/S", options.stage.max_speed_deg_s, {1, 10000},
              "Maximum speed; commands above it are rejected with error 8.");
   app.option("--min-angle", "DEG", options.stage.min_deg, {-1e7, 0},
-             "Lower limit of travel; commands below it are rejected with error 7.")
-      .was("--min");
-  app.option("--max-angle", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit of travel.").was("--max");
-  app.option("--start-angle", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.")
-      .was("--at");
+             "Lower limit of travel; commands below it are rejected with error 7.");
+  app.option("--max-angle", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit of travel.");
+  app.option("--start-angle", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.");
   app.group("Serial line");
   app.choice(
       "--protocol", options.protocol, protocol_names(),
       "Device: a PI controller (gcs), a GRBL 1.1 board with the stage on axis X, a Zaber rotary stage, or the dead-man "
       "relay of a lamp.");
-  app.option("--reply-delay", "MS", options.reply_delay_ms, {0, 1000}, "Delay of replies.").was("--latency");
+  app.option("--reply-delay", "MS", options.reply_delay_ms, {0, 1000}, "Delay of replies.");
   app.option("--jitter", "MS", options.jitter_ms, {0, 1000},
              "Additional random delay, before and after the angle is sampled.");
   app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Accept only this baud rate.");

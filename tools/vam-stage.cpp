@@ -141,9 +141,7 @@ void add_home(cli::App& command, Options& options) {
 void add_move(cli::App& app, Options& options, std::string& chosen) {
   auto& move = app.subcommand("move", "turn to an angle and wait for standstill", chosen);
   add_common(move, options);
-  move.option("--angle", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; it may exceed 360 degrees.")
-      .was("--to")
-      .required();
+  move.option("--angle", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; it may exceed 360 degrees.").required();
   move.flag("--relative", options.relative, "The angle is relative to the present one.");
   add_home(move, options);
   add_speed(move, options);
@@ -184,9 +182,7 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   auto& follow = app.subcommand("follow", "print one JSON line per sample without motion", chosen);
   add_common(follow, options);
   add_rate(follow, options);
-  follow.option("--duration", "S", options.duration_s, cli::positive, "Duration.")
-      .default_is("until a signal")
-      .was("--seconds");
+  follow.option("--duration", "S", options.duration_s, cli::positive, "Duration.").default_is("until a signal");
 }
 
 // Unset options come from the printer file; calibration records do not concern the stage.

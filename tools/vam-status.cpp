@@ -79,9 +79,8 @@ cli::Manual manual() {
 
 void declare(cli::App& app, Options& o) {
   app.positional("RUN", o.run, "Run folder of vam-print.");
-  app.flag("--watch", o.watch, "Repeat until the print has ended, or vam-print was killed.").was("--follow");
-  app.option("--interval", "S", o.period_s, {0.2, 3600}, "Time between two lines or updates of the page.")
-      .was("--every");
+  app.flag("--watch", o.watch, "Repeat until the print has ended, or vam-print was killed.");
+  app.option("--interval", "S", o.period_s, {0.2, 3600}, "Time between two lines or updates of the page.");
   app.option("--page", "FILE", o.page, "Write a page that refreshes itself (HTML).").writes_as({".html"});
   app.option("--sinogram", "FILE", o.sinogram, "Sinogram of the print, for the images of projections and dose.")
       .default_is("RUN/sinogram.exr, a link that vam-print creates");

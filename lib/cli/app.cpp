@@ -51,10 +51,9 @@ App& App::declare(Option option, const std::function<void(const std::string&)>& 
 }
 
 // An operand is required when nothing stands for it, or when a required one follows.
-App& App::positional(const std::string& value_name, std::string& target, const std::string& help,
-                     const std::string& former) {
+App& App::positional(const std::string& value_name, std::string& target, const std::string& help) {
   state_->parser->add_option(value_name, target)->type_size(1)->expected(1);
-  state_->tool.positionals.push_back({value_name, help, target, former, [&target] { return std::vector{target}; }});
+  state_->tool.positionals.push_back({value_name, help, target, [&target] { return std::vector{target}; }});
   state_->operand_last = true;
   if (!target.empty()) return *this;
   for (auto& positional : state_->tool.positionals) positional.default_text.clear();
@@ -62,7 +61,7 @@ App& App::positional(const std::string& value_name, std::string& target, const s
 }
 
 App& App::positional(const std::string& value_name, std::vector<std::string>& target, const std::string& help) {
-  state_->tool.positionals.push_back({value_name, help, join(target, " "), {}, [&target] { return target; }});
+  state_->tool.positionals.push_back({value_name, help, join(target, " "), [&target] { return target; }});
   state_->operand_last = true;
   state_->parser->add_option(split(value_name, ' ').front(), target)->type_size(1)->expected(-1);
   return *this;
@@ -241,16 +240,6 @@ App& App::form() {
 
 App& App::needs(const std::vector<std::string>& any_of) {
   state_->current_group().options.back().needs.push_back(any_of);
-  return *this;
-}
-
-App& App::was(const std::string& old_flag, const std::string& value) {
-  state_->current_group().options.back().former.push_back({old_flag, value});
-  return *this;
-}
-
-App& App::had(const std::string& old_value, const std::string& value) {
-  state_->current_group().options.back().former_values[old_value] = value;
   return *this;
 }
 

@@ -61,9 +61,8 @@ class App {
 
   static constexpr const char* plain_heading = "Options";  // that of options without one
   App& group(const std::string& title);                    // heading of the options that follow
-  /// An empty target: required. former: the option that the operand was, which works with one line on stderr.
-  App& positional(const std::string& value_name, std::string& target, const std::string& help,
-                  const std::string& former = "");
+  /// An empty target: required.
+  App& positional(const std::string& value_name, std::string& target, const std::string& help);
   /// The last one: all operands that are left; target holds the one that stands for none.
   App& positional(const std::string& value_name, std::vector<std::string>& target, const std::string& help);
   App& option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help);
@@ -111,11 +110,6 @@ class App {
   App& form();
   /// The option declared last is refused where none of these is given. Called again: nor where none of those is.
   App& needs(const std::vector<std::string>& any_of);
-  /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
-  /// completions do not show it. A value stands for a former flag that took none: --keep-negative, --negative keep.
-  App& was(const std::string& old_flag, const std::string& value = "");
-  /// A former value of the option declared last: stands for the present one, with one line on stderr.
-  App& had(const std::string& old_value, const std::string& value);
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
   /// chosen is set to the name when the user names it. A tool with operands or options of its own has a plain form,
   /// which runs without a command; else a command must be given. Options may stand before the command.

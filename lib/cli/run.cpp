@@ -175,7 +175,6 @@ void App::parse(int argc, char** argv) {
   const ForAll given = take_for_all(words);
   set_talk(given.talk);
   bound(given.memory_gib);
-  rename_former(tool, words);
   fill_left_out(tool, words);
   state_->words = words;
   require_command(tool, words);

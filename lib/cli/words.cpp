@@ -2,26 +2,17 @@
 #include "cli/private/words.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace vam::cli {
 
 namespace {
 
-// Null when it is none.
-const Former* former_name(const Option& option, const std::string& flag) {
-  const auto found = std::find_if(option.former.begin(), option.former.end(),
-                                  [&](const Former& former) { return former.flag == flag; });
-  return found == option.former.end() ? nullptr : &*found;
-}
-
 bool has_name(const Option& option, const std::string& flag) {
   const auto names = split(option.flag, ',');
-  return std::find(names.begin(), names.end(), flag) != names.end() || former_name(option, flag) != nullptr;
+  return std::find(names.begin(), names.end(), flag) != names.end();
 }
 
 const Option* find_own(const Declaration& tool, const std::string& flag) {
@@ -59,50 +50,6 @@ std::string takers(const Declaration& tool, const std::string& flag) {
     if (find_own(nested, flag) != nullptr) names.push_back(nested.manual.name);
   }
   return join(names, ", ");
-}
-
-// "--from FILE" and "--from=FILE" become "FILE".
-void make_operand(const Positional& positional, std::vector<std::string>& words) {
-  const auto word = std::find_if(words.begin(), words.end(),
-                                 [&](const std::string& text) { return flag_of(text) == positional.former; });
-  if (word == words.end()) return;
-  if (*word == positional.former) {
-    words.erase(word);
-  } else {
-    word->erase(0, positional.former.size() + 1);
-  }
-  warn(positional.former + " FILE is now the operand " + positional.value_name);
-}
-
-void rename_flags(const Declaration& form, std::vector<std::string>& words) {
-  std::set<std::string> reported;
-  for (auto& word : words) {
-    if (word == "--") return;
-    const std::string flag = flag_of(word);
-    const Option* option = find_own(form, flag);
-    const Former* former = option == nullptr ? nullptr : former_name(*option, flag);
-    if (former == nullptr) continue;
-    const std::string present = long_flag(*option);
-    word = former->value.empty() ? present + word.substr(flag.size()) : present + "=" + former->value;
-    if (!reported.insert(flag).second) continue;
-    warn(flag + " is now " + present + (former->value.empty() ? "" : " " + former->value));
-  }
-}
-
-// The value follows its option, or stands behind "=".
-void rename_values(const Declaration& form, std::vector<std::string>& words) {
-  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
-    const std::string flag = flag_of(words[i]);
-    const Option* option = find_own(form, flag);
-    if (option == nullptr || option->former_values.empty()) continue;
-    const bool joined = flag != words[i];
-    if (!joined && ++i == words.size()) return;
-    const auto former = option->former_values.find(joined ? words[i].substr(flag.size() + 1) : words[i]);
-    if (former == option->former_values.end()) continue;
-    const auto& [old_value, value] = *former;
-    words[i] = joined ? flag + "=" + value : value;
-    warn(flag + " " + old_value + " is now " + flag + " " + value);
-  }
 }
 
 bool is_about(const std::string& flag) {
@@ -177,15 +124,6 @@ void require_command(const Declaration& tool, const std::vector<std::string>& wo
 void put_command_first(const Declaration& tool, std::vector<std::string>& words) {
   const int place = find_command(tool, words);
   if (place > 0) std::rotate(words.begin(), words.begin() + place, words.begin() + place + 1);
-}
-
-void rename_former(const Declaration& tool, std::vector<std::string>& words) {
-  const Declaration form = form_of(tool, words);
-  for (const auto& positional : form.positionals) {
-    if (!positional.former.empty()) make_operand(positional, words);
-  }
-  rename_flags(form, words);
-  rename_values(form, words);
 }
 
 void fill_left_out(const Declaration& tool, std::vector<std::string>& words) {

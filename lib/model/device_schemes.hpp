@@ -20,17 +20,10 @@ struct DeviceOption {
   std::string_view text;
 };
 
-/// A name that an option has had; it works for one release.
-struct FormerOption {
-  std::string_view name;
-  std::string_view present;
-};
-
 struct DeviceScheme {
   std::string_view scheme;
   std::string_view place;  // what follows the colon, for people
   std::span<const DeviceOption> options = {};
-  std::span<const FormerOption> former = {};
 };
 
 inline constexpr DeviceOption gcs_options[] = {
@@ -65,11 +58,6 @@ inline constexpr DeviceOption sim_stage_options[] = {  // those of vam-sim-stage
     {"fault", "FAULTS", "faults to inject, as KIND@COMMAND:N, separated by commas"},
     {"seed", "N", "of the random numbers; default: 1"},
     {"log", "FILE", "the simulator's own log"}};
-inline constexpr FormerOption former_sim_stage_options[] = {{"acceleration_deg_s2", "acceleration"},
-                                                            {"jitter_ms", "jitter"},
-                                                            {"latency_ms", "reply_delay"},
-                                                            {"home_deg", "start_angle"},
-                                                            {"travel_deg", "max_angle"}};
 inline constexpr DeviceOption aravis_options[] = {
     {"packet_size", "BYTES", "of GigE Vision, 576 to 9000; default: as the camera has it"},
     {"buffers", "N", "frames that can wait in memory, 10 to 1000; default: 20"}};
@@ -108,23 +96,6 @@ inline constexpr DeviceOption sim_camera_options[] = {  // those of vam-sim-came
     {"pace", "real|virtual", "wait for the frame period, or do not; default: real"},
     {"seed", "N", "of the random numbers"},
     {"log", "FILE", "the simulator's own log"}};
-inline constexpr FormerOption former_sim_camera_options[] = {{"tilt_deg", "tilt"},
-                                                             {"centre_px", "centre"},
-                                                             {"wobble_mm", "wobble"},
-                                                             {"wobble_deg", "wobble_phase"},
-                                                             {"beam_mm", "beam"},
-                                                             {"focus_mm", "focus"},
-                                                             {"divergence_deg", "divergence"},
-                                                             {"speed_deg_s", "speed"},
-                                                             {"lit_s", "lit"},
-                                                             {"lag_ms", "lag"},
-                                                             {"shown", "flips"},
-                                                             {"angles", "follow"},
-                                                             {"axis_column", "axis_offset"},
-                                                             {"gamma", "projector_gamma"},
-                                                             {"lose", "drop"},
-                                                             {"cut", "incomplete"},
-                                                             {"vanish", "unplug"}};
 inline constexpr DeviceOption drm_options[] = {
     {"mode", "COLUMNSxROWS@HZ", "mode of the display, the rate may be omitted; default: the preferred one"},
     {"bpc", "N", "maximum bits per colour on the cable, 6 to 16; default: unchanged"}};
@@ -145,11 +116,10 @@ inline constexpr DeviceOption sim_relay_options[] = {
 inline constexpr std::array stage_schemes{
     DeviceScheme{"gcs", "PATH", gcs_options}, DeviceScheme{"tic", "SERIAL", tic_options},
     DeviceScheme{"grbl", "PATH", grbl_options}, DeviceScheme{"zaber", "PATH", zaber_options},
-    DeviceScheme{"sim", "", sim_stage_options, former_sim_stage_options}};
-inline constexpr std::array camera_schemes{DeviceScheme{"aravis", "ID-or-IP", aravis_options},
-                                           DeviceScheme{"v4l2", "PATH", v4l2_options},
-                                           DeviceScheme{"replay", "PLACE", replay_options},
-                                           DeviceScheme{"sim", "", sim_camera_options, former_sim_camera_options}};
+    DeviceScheme{"sim", "", sim_stage_options}};
+inline constexpr std::array camera_schemes{
+    DeviceScheme{"aravis", "ID-or-IP", aravis_options}, DeviceScheme{"v4l2", "PATH", v4l2_options},
+    DeviceScheme{"replay", "PLACE", replay_options}, DeviceScheme{"sim", "", sim_camera_options}};
 inline constexpr std::array display_schemes{DeviceScheme{"drm", "CONNECTOR", drm_options},
                                             DeviceScheme{"sdl", "SCREEN"}, DeviceScheme{"null", "", null_options}};
 inline constexpr std::array light_schemes{DeviceScheme{"dlpc350", "SERIAL", light_options},

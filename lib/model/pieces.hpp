@@ -51,7 +51,7 @@ class RunSets {
   /// The middle of one of its runs.
   [[nodiscard]] const VoxelPlace& place(std::size_t set) const { return places_[set]; }
   /// Forgets all runs but those of the last slice, which are then numbered from 0 on; before that, complete(set) of the
-  /// sets that do not reach it. Of each former run the number of the run that stands for its set, or `gone`.
+  /// sets that do not reach it. Of each earlier run the number of the run that stands for its set, or `gone`.
   static constexpr std::size_t gone = ~std::size_t{0};
   std::vector<std::size_t> forget(const std::function<void(std::size_t set)>& complete);
   /// Two runs are of one set.

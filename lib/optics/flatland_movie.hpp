@@ -51,7 +51,7 @@ class FlatlandSlice {
 
   [[nodiscard]] float peak() const;
   /// As FrameComposer::frame, but in memory of its own.
-  [[nodiscard]] Image frame(double angle_deg, double span_deg, const Image& former = {}) const;
+  [[nodiscard]] Image frame(double angle_deg, double span_deg, const Image& reused = {}) const;
 
  private:
   std::string subject_;

@@ -202,12 +202,12 @@ PixelRect FrameComposer::lit() const {
   return {left, first, right - left, last + 1 - first};
 }
 
-Image FrameComposer::frame(double angle_deg, double span_deg, Image former) const {
-  return frame(angle_deg, span_deg, {0, 0, place_.columns, place_.rows}, std::move(former));
+Image FrameComposer::frame(double angle_deg, double span_deg, Image reused) const {
+  return frame(angle_deg, span_deg, {0, 0, place_.columns, place_.rows}, std::move(reused));
 }
 
-Image FrameComposer::frame(double angle_deg, double span_deg, const PixelRect& part, Image former) const {
-  Image image = std::move(former);
+Image FrameComposer::frame(double angle_deg, double span_deg, const PixelRect& part, Image reused) const {
+  Image image = std::move(reused);
   image.width = part.width;
   image.height = part.height;
   image.values.assign(product(part.width, part.height), 0.0F);

@@ -64,10 +64,10 @@ class FrameComposer {
   /// the stack: interpolated between the sinogram's angles, or averaged over those that the span covers. A row shows
   /// the mean over its height, dark beyond the slices, so that each slice delivers all its light where it is. The stack
   /// is repeated turn by turn, but for poses that do not return to the first one: beyond the ends the last frame holds.
-  /// The image is made in the memory of a former one. Many threads may ask at once.
-  [[nodiscard]] Image frame(double angle_deg, double span_deg, Image former = {}) const;
+  /// The image is made in the memory of `reused`. Many threads may ask at once.
+  [[nodiscard]] Image frame(double angle_deg, double span_deg, Image reused = {}) const;
   /// The same of a part of the frame only.
-  [[nodiscard]] Image frame(double angle_deg, double span_deg, const PixelRect& part, Image former) const;
+  [[nodiscard]] Image frame(double angle_deg, double span_deg, const PixelRect& part, Image reused) const;
 
   /// All pixels that are lit in some frame are in it, and at least one.
   [[nodiscard]] PixelRect lit() const;

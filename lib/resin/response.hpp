@@ -81,7 +81,7 @@ LightTally limit_to_full(Image& image, float scale);
 /// them.
 [[nodiscard]] bool is_dark(const Image& image, int y);
 
-/// Every pixel's nearest level, in the memory of a former image. Intensities are fractions of full; beyond what the
+/// Every pixel's nearest level, in the memory of an earlier image. Intensities are fractions of full; beyond what the
 /// projector can do they are clamped.
 void to_levels(const Image& intensity, const GreyLevels& levels, GreyImage& image);
 /// Those of a part of the image; the rest stays as it is.

@@ -15,8 +15,6 @@ near() { holds "$1 ($2)" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAM
 
 fails 64 '.--display: required' vam-calibrate-all
 fails 64 'not one of lag, latency' vam-calibrate-all --display null: --scans edge
-vam-calibrate --scans edge 2>moved.err
-is 'the former name still works, with a warning' "$? $(head -n 1 moved.err)" '64 vam-calibrate: warning: vam-calibrate --scans is now vam-calibrate-all --scans'
 fails 73 '/nowhere/log: cannot be written' vam-calibrate-all --display null: --log /nowhere/log
 fails 64 '.--scans: empty' vam-calibrate-all --display null: --scans ' '
 

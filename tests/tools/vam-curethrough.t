@@ -95,10 +95,6 @@ ok "catalogue" vam-curethrough correct ladder.vdb $light --catalogue resins.csv 
 holds "the darker resin keeps narrower gaps open" \
   "$(json catalogue.json catalogue.2.narrowest_gap_um) < $(json catalogue.json catalogue.0.narrowest_gap_um)"
 is "nothing prints beyond the speed limit" "$(json catalogue.json catalogue.1.prints)" false
-sed 's/full_cure/critical/' resins.csv >former.csv
-ok "a catalogue with a former column" vam-curethrough correct ladder.vdb $light --catalogue former.csv --print-speeds 1000,8000 --report former.json
-grep -q 'former.csv:1: column critical_dose_mj_cm3 is now full_cure_dose_mj_cm3' .log/*; report $? "a former column is read with a warning"
-is "a former column gives the same figures" "$(json former.json catalogue.2.narrowest_gap_um)" "$(json catalogue.json catalogue.2.narrowest_gap_um)"
 
 # ---- working curve, response, sweep
 printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n50,1175\n130,2004\n130,1996\n' >curve.csv
@@ -115,9 +111,6 @@ holds "larger errors below the true dose" "$(json sweep.json points.0.ratio) > 0
 holds "larger errors above the true dose" "$(json sweep.json points.4.ratio) > 0.1"
 
 is "the ratio is in the report" "$(json sweep.json points.2.df_over_dc)" 5.0
-ok "the former name of the ratio" sh -c "vam-curethrough sweep dc=4..5,omega_max=1 $light 2>warning | head -n 1 >header"
-is "the former name is read with a warning" "$(cat warning)" "vam-curethrough: warning: dc is now df_over_dc"
-is "the table has the present name" "$(cut -d , -f 1 header)" df_over_dc
 
 # ---- wrong inputs
 fails 64 'no command' vam-curethrough

@@ -414,7 +414,6 @@ fails 64 "unknown figure 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.ex
 fails 64 '--power' vam-optimize --method pm --power 0.5 part.vdb -o out.exr
 fails 64 '--dither: 2 turns need frames that differ' vam-optimize --bits 4 --dither 2 part.vdb -o out.exr
 fails 64 '--full-scale: requires --bits' vam-optimize --full-scale 1 part.vdb -o out.exr
-is "a former spelling is reported" "$(vam-optimize --peak 1 part.vdb -o out.exr 2>&1 | head -n 1)" 'vam-optimize: warning: --peak is now --full-scale'
 fails 64 '--angles' vam-optimize --angles 0 part.vdb -o out.exr
 fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 64 'as --output does; name a file for one of them' vam-optimize part.vdb --report -

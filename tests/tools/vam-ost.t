@@ -117,9 +117,8 @@ is 'a volume for every line' "$(ls turns | wc -l)" "$(wc -l <turns.jsonl)"
 grep -q 'missing_percent' turns.html; report $? 'the page has the figures'
 grep -q 'src="turns%22%3E%3Cb%3E.png?' turns.html; report $? 'and the image by a name that cannot end the attribute'
 "$render" cylinder:diameter=4,height=4 faint.exr noise=0.05 turns=2 growth=0 angles=60
-vam-ost faint.exr --live $glass --level 0.5 --window ram-lak -o faint --log - >.log/out 2>.log/err
+vam-ost faint.exr --live $glass --isovalue 0.5 --filter ram-lak -o faint --log - >.log/out 2>.log/err
 is 'the log - is standard error, its data unmixed' "$(cat .log/out)" ''
-is 'and former spellings work with a warning' "$(grep -c 'is now --isovalue\|is now --filter' .log/err)" 2
 grep -q '"waiting"' .log/err; report $? 'the log is there'
 quiet 'live waits while nothing is visible' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
 is 'with the reason' "$(grep -c '"waiting":"views: no rotation axis' faint.jsonl)" 1
@@ -142,9 +141,6 @@ fails 64 'view-step: is 0' vam-ost views --view-step 0 -o x.vdb
 fails 64 'requires --projections' vam-ost views --view-step 6 --live --page p.html
 fails 64 '--diameter: missing, as is --profile' vam-calibrate resin scatter.vdb
 fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb --diameter 6 --profile profile.png
-vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
-is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: warning: vam-ost threshold is now vam-calibrate resin'
-same 'with the same record' resin.json former.json
 fails 65 'no print at this threshold' vam-ost views --view-step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
 fails 65 'views: views: the turn is incomplete' vam-ost views --view-step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb

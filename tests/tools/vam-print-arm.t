@@ -88,8 +88,6 @@ sed 's/^rows/response = "r.csv"\nrows/' printer.toml >"$odd/printer.toml"
 (cd "$odd" && vam-print ../frames.exr --display null: --light sim: --uncalibrated --max-missed 0.9 --run-up 0.05 --run 'r & #1') 2>errors
 is 'a path with & # quotes and a newline' "$? $(cat errors)" '0 '
 ok 'whose settings can be read from elsewhere' vam-project frames.exr -o again.exr --printer "$odd/r & #1/printer.toml"
-is 'former spellings work with a warning' "$(vam-print --missed 0.9 --missed-lit 0.9 2>&1 | head -n 2)" 'vam-print: warning: --missed is now --max-missed
-vam-print: warning: --missed-lit is now --max-missed-lit'
 
 # A condition that is never met.
 vam-slice --shape half-cylinder:diameter=3,height=2 --voxel 0.26 -o part.vdb
@@ -276,7 +274,7 @@ for tool in vam-check vam-status 'print --run none --resume'; do
 done
 fails 66 'spoilt/printer.toml: is gone; restore it, or give' vam-dose frames.exr --shown spoilt/flips.jsonl -o none.vdb
 rm -r spoilt; cp -r again spoilt
-: >spoilt/flips.jsonl; sed -i '/"event":"sealed"/d' spoilt/events.jsonl  # as of a former version
+: >spoilt/flips.jsonl; sed -i '/"event":"sealed"/d' spoilt/events.jsonl
 fails 65 '^vam-print: spoilt/flips.jsonl: has no light, [0-9.]+ s before angles.jsonl, in which the stage turned on to [0-9.]+ deg; it was cut; restore it$' print --resume spoilt --run none
 is 'what is refused leaves no mark' "$(ls spoilt/resumed.json none 2>/dev/null)" ''
 # The rest is printed with the same dose at the same position.

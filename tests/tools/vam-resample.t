@@ -108,10 +108,6 @@ fails 65 'projector' vam-resample projector.exr -o x.exr
 fails 65 'virtual' vam-resample --geometry parallel virtual.exr -o x.exr
 fails 65 'cover 180 deg' vam-resample half.exr -o x.exr
 fails 64 'geometry' vam-resample --geometry camera virtual.exr -o x.exr
-is 'a former option and its value work with warnings' "$(vam-resample --explain --to virtual -o x.csv 2>&1)" \
-  "vam-resample: warning: --to is now --geometry
-vam-resample: warning: --geometry virtual is now --geometry parallel"
-same 'as the present ones' x.csv camera.csv
 fails 64 'interpolation' vam-resample --interpolation spline virtual.exr -o x.exr
 fails 64 'does not apply' vam-resample --geometry parallel --no-fresnel camera.exr -o x.exr
 fails 64 'does not apply' vam-resample --bin-width 1 virtual.exr -o x.exr

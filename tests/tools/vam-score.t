@@ -12,8 +12,6 @@ is "the print is the part" "$(json perfect.json iou)" 1.0
 ok "its own target, given by name" vam-score --grid target part.vdb --target part.vdb
 ok "stdin" sh -c 'vam-score --grid target --target part.vdb <part.vdb'
 ok "a report on stdout" sh -c 'vam-score --report - --grid target part.vdb >out.json'
-is "the former --json is a report on stdout" "$(vam-score --json --grid target part.vdb 2>warning)" "$(vam-score --report - --grid target part.vdb)"
-is "with a warning" "$(cat warning)" "vam-score: warning: --json is now --report -"
 is "the report on stdout has the figures of the file" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
 is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 30
 ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0 [(][0-9]+ voxels[)]; including the [0-9]+ voxels cut by the surface: process window [-+0-9.e]+, VER "'

@@ -43,8 +43,6 @@ vam-stage identify --set stage.device=sim: >about
 is 'the model is marked as simulated' "$(json about model) $(json about simulated)" 'C-863.11 true'
 ok 'ports' vam-stage ports
 fails 64 '.--angle: missing' vam-stage move --device sim: --home
-is 'former names of options work, with a warning' \
-  "$(vam-stage identify --device 'sim:?jitter_ms=1' 2>&1 >/dev/null)" "vam-stage: warning: device 'sim:?jitter_ms=1': option jitter_ms is now jitter"
 quiet 'move' vam-stage move --device 'sim:?acceleration=1000&start_angle=3' --home --angle 20 --speed 80
 fails 65 '20 deg is beyond its limits of travel, -36000 to 10 deg; give another --angle' vam-stage move --device 'sim:?acceleration=1000&start_angle=3&max_angle=10' --home --angle 20
 vam-stage follow --device sim: --duration 0.2 --rate 50 >samples

@@ -37,7 +37,7 @@ is 'without a terminal no line is printed and no page written' "$? $(cat out err
 cp -r run half
 rm half/SHA256SUMS half/summary.json  # which a print writes at its end
 sed -i '/"event":"end"/d;/"event":"sealed"/d' half/events.jsonl
-head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl | sed 's/,"seals":true//' >half/flips.jsonl  # as of a former version
+head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl | sed 's/,"seals":true//' >half/flips.jsonl
 last=$(tail -n 1 half/flips.jsonl | grep -o '"angle_deg":[-0-9.e]*' | cut -d: -f2)
 last_s=$(tail -n 1 half/flips.jsonl | grep -o '"t_monotonic_s":[0-9.]*' | cut -d: -f2)
 printf '{"t_monotonic_s":%s,"angle_deg":%s,"sigma_deg":0}\n{"t_mono' "$last_s" "$last" >half/angles.jsonl
@@ -173,7 +173,7 @@ for cut in "head -n 200" "cat" "grep -v '\"frame\":7,'"; do
     fails 65 "part/flips.jsonl: has $lit lit flips, but summary.json states $whole; it was cut or changed; restore it" $tool
   done
 done
-# As many flips with other angles, or other moments: their hash in the summary, which runs of former versions have not.
+# As many flips with other angles, or other moments: their hash in the summary.
 changes=0
 for change in 's/"angle_deg":1\(..[.]\)/"angle_deg":2\1/' 's/"t_monotonic_s":./&1/' '$!N;s/\(.*\)\n\(.*\)/\2\n\1/'; do
   changes=$((changes + 1))
@@ -189,7 +189,7 @@ for change in 's/"angle_deg":1\(..[.]\)/"angle_deg":2\1/' 's/"t_monotonic_s":./&
     1) fails 65 'part/flips.jsonl:[0-9]*: the angle goes back from 29[0-9.]* to 20[0-9.]* deg' vam-status part; continue ;;
     3) fails 65 'part/flips.jsonl:[0-9]*: (time goes back by|frame|flips are missing)' vam-status part; continue ;;
   esac
-  ok 'the run of a former version is read' vam-status part
+  ok 'a run without seals is read' vam-status part
   is 'and said to be unsealed' "$(vam-check part)" 'part: run folder without SHA256SUMS, unsealed'
 done
 is 'the log alone is held to the summary, too' "$(vam-check run/flips.jsonl)" 'run/flips.jsonl: flips of a print, sealed'

@@ -36,7 +36,7 @@ void compare_edges(const ScanOptions& options, const model::Calibration& calibra
   try {
     before = io::current_record(calibration, "edges");
   } catch (const Error& error) {  // its remedy is this scan
-    finding.warn_because("not compared with the former record: " + std::string(error.what()));
+    finding.warn_because("not compared with the previous record: " + std::string(error.what()));
   }
   if (!before || before->json->value("vial", "") != calibration.vial) return;
   const double shift_px = edges.axis_column.value - before->value("axis_column");

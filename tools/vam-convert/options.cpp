@@ -32,13 +32,10 @@ void declare_projections(cli::App& app, Options& options) {
   app.choice("--geometry", options.geometry, {"none", "parallel", "vial"},
              "The array, images or video are projections: of an ideal parallel beam in the resin, or of the printer's "
              "projector, whose rays the vial refracts.")
-      .was("--projections")
-      .had("virtual", "parallel")
-      .had("projector", "vial")
       .form();
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pitch of the columns at the rotation axis.");
   app.default_is("projector.pixel_mm");
-  app.option("--slice-height", "MM", options.slice_height_mm, {1e-4, 5}, "Height of a slice.").was("--slice-pitch");
+  app.option("--slice-height", "MM", options.slice_height_mm, {1e-4, 5}, "Height of a slice.");
   app.default_is("that of the columns");
   app.option("--like", "FILE", options.like,
              "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer; with "
@@ -47,8 +44,7 @@ void declare_projections(cli::App& app, Options& options) {
   app.default_is("the slices of the array, the rows of the images");
   app.option("--view-step", "DEG", options.view_step_deg, {-180, 180},
              "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections "
-             "of several turns are averaged.")
-      .was("--angle-step");
+             "of several turns are averaged.");
   app.default_is(
       "that of frames.csv beside the images, or of the angles in an HDF5 file; else one turn divided by the "
       "projections");
@@ -94,7 +90,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
              "Value that becomes 1, full coverage or full intensity.");
   app.default_is("1; full grey of images");
-  app.option("--value-unit", "TEXT", options.units, "Unit of the values, for the record.").was("--units");
+  app.option("--value-unit", "TEXT", options.units, "Unit of the values, for the record.");
   declare_volume(app, options);
   declare_projections(app, options);
   cli::add_printer(app, options.printer);

@@ -42,8 +42,7 @@ Json entry_of(const std::string& name, const resin::Process& process, double lim
 }  // namespace
 
 Json compare(const CorrectOptions& options, const PrintSettings& print, const resin::PartColumns& part) {
-  const io::CsvTable table = io::read_csv(options.catalogue, {"name", "absorbance_height_um", "full_cure_dose_mj_cm3"},
-                                          {{"critical_dose_mj_cm3", "full_cure_dose_mj_cm3"}});
+  const io::CsvTable table = io::read_csv(options.catalogue, {"name", "absorbance_height_um", "full_cure_dose_mj_cm3"});
   std::string text = cells(
       {"resin", "h_a um", "D_f mJ/cm3", "limit mm/h", "speed mm/h", "Phi_max", "gap um", "tight gaps", "fused gaps"});
   Json report = Json::array();

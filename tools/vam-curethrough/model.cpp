@@ -202,17 +202,13 @@ void declare(cli::App& app, ModelOptions& options) {
   app.option("-o,--output", "FILE", options.output,
              "Write the dose at the centres of the voxels as a volume (grid dose, in full-cure doses).")
       .writes();
-  app.option("--target", "FILE", options.part.path, "Target volume of the part, for the cure map.")
-      .was("--part")
-      .reads();
+  app.option("--target", "FILE", options.part.path, "Target volume of the part, for the cure map.").reads();
   add_part(app, options.part);
   app.option("--slice-height", "UM", options.slice_um, {1, 10000},
-             "Slice height of a folder of images without --target.")
-      .was("--slice");
+             "Slice height of a folder of images without --target.");
   app.group("Figure");
   app.option("--section", "FILE", options.section,
-             "Plot an x-z section: slices, cure map, and intensity and dose along one column (.png, .pdf or .svg).")
-      .was("--plane");
+             "Plot an x-z section: slices, cure map, and intensity and dose along one column (.png, .pdf or .svg).");
   app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.")
       .default_is("the middle")
       .needs({"--section"});

@@ -46,8 +46,7 @@ void add_part(cli::App& app, PartOptions& options) {
   app.choice(
       "--platform", options.platform, {"bottom", "top"},
       "End of the volume that adheres to the platform and is printed first; the light enters from the other end.");
-  app.option("--min-coverage", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a voxel of the part.")
-      .was("--threshold");
+  app.option("--min-coverage", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a voxel of the part.");
 }
 
 PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)

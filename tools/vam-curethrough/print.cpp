@@ -14,26 +14,24 @@ namespace vam::curethrough {
 
 void add_print(cli::App& app, PrintOptions& options) {
   app.group("Print");
-  app.option("--print-speed", "MM_H", options.speed_mm_h, cli::rate, "Speed of the platform.").was("--speed");
+  app.option("--print-speed", "MM_H", options.speed_mm_h, cli::rate, "Speed of the platform.");
   app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
              "Depth in which the intensity falls to a tenth (base 10).");
   app.default_is("from resin.absorption_per_mm, else 2000");
-  app.option("--full-cure-dose", "MJ_CM3", options.full_cure_dose_mj_cm3, cli::positive, "Dose D_f of full strength.")
-      .was("--critical-dose");
+  app.option("--full-cure-dose", "MJ_CM3", options.full_cure_dose_mj_cm3, cli::positive, "Dose D_f of full strength.");
   app.default_is("5 x resin.critical_dose_mj_cm3, else 576");
   app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
              "Intensity at the window at grey 0 (overrides projector.min_intensity_mw_cm2).");
-  app.default_is("projector.min_intensity_mw_cm2").was("--min-intensity");
+  app.default_is("projector.min_intensity_mw_cm2");
   app.option("--max-irradiance", "MW_CM2", options.max_intensity_mw_cm2, cli::positive,
              "Intensity at the window at full grey (overrides projector.max_intensity_mw_cm2).");
-  app.default_is("projector.max_intensity_mw_cm2").was("--max-intensity");
+  app.default_is("projector.max_intensity_mw_cm2");
   app.option("--response", "FILE", options.response,
              "Measured grey response (CSV with the columns grey,intensity); its first entry determines the minimum "
              "intensity.");
   app.default_is("projector.response, else a linear response");
   app.choice("--exposure-mode", options.exposure, {"continuous", "layered"},
              "Motion of the platform: continuous, or at rest during each layer (exposed for slice height / speed).");
-  app.was("--exposure");
   cli::add_printer(app, options.printer);
 }
 

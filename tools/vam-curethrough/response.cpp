@@ -17,10 +17,8 @@ void declare(cli::App& app, GreyResponseOptions& options) {
   app.positional("DATA", options.input, "CSV with the columns grey,reading; one line per measurement.").reads();
   cli::add_output(app, options.output);
   app.option("--dark-reading", "READING", options.dark, cli::any,
-             "Reading of the photodiode without light; it is subtracted.")
-      .was("--dark");
-  app.option("--irradiance-per-reading", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.")
-      .was("--scale");
+             "Reading of the photodiode without light; it is subtracted.");
+  app.option("--irradiance-per-reading", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.");
   app.option("--plot", "FILE", options.plot, "Plot the mean readings and the response curve (.png, .pdf or .svg).")
       .writes();
   cli::add_report(app, options.report);

@@ -7,7 +7,6 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
-#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
@@ -46,18 +45,11 @@ std::vector<double> values_of(const std::string& text, const std::string& whole)
 
 constexpr const char* dose_ratio = "df_over_dc";
 
-// The former name is accepted with a warning.
-std::string present_name(const std::string& key) {
-  if (key != "dc") return key;
-  warn(std::string("dc is now ") + dose_ratio);
-  return dose_ratio;
-}
-
 void parse(const std::string& ranges, resin::Study& study) {
   study.omega_max = {1};
   for (const std::string& part : split(ranges, ',')) {
     const std::size_t equals = part.find('=');
-    const std::string key = present_name(part.substr(0, equals));
+    const std::string key = part.substr(0, equals);
     if (equals == std::string::npos || (key != dose_ratio && key != "omega_max")) {
       throw Error{Fault::usage, ranges + ": '" + part + "' is neither df_over_dc=FROM..TO nor omega_max=FROM..TO" +
                                     did_you_mean(key, {dose_ratio, "omega_max"})};
@@ -123,9 +115,8 @@ void declare(cli::App& app, SweepOptions& options) {
       "Parameters to vary: df_over_dc, the ratio of the assumed full-cure dose D_f to the gelation threshold "
       "D_c, and omega_max. Each is FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
   app.option("--rung-heights", "SLICES,...", options.heights, 0,
-             "Heights of the rungs of the ladder; each gap is as high as the next rung.")
-      .was("--heights");
-  app.option("--slice-height", "UM", options.slice_um, {1, 10000}, "Slice height.").was("--slice");
+             "Heights of the rungs of the ladder; each gap is as high as the next rung.");
+  app.option("--slice-height", "UM", options.slice_um, {1, 10000}, "Slice height.");
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
              "Gelation threshold D_c of the working curve.");
   app.default_is("resin.critical_dose_mj_cm3, else a fifth of the full-cure dose");

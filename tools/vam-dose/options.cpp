@@ -41,7 +41,7 @@ void declare_beam(cli::App& app, Options& options) {
       .needs({"--bits"});
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
              "Time during which the dose diffuses.");
-  app.default_is("the duration of stage.turns turns").was("--seconds");
+  app.default_is("the duration of stage.turns turns");
   app.flag("--exposure-plan", options.exposure_plan,
            "Determine the number of whole turns and the fraction of full intensity that put the critical dose in the "
            "middle half of the process window, and write the dose of that exposure.")
@@ -57,11 +57,9 @@ void declare_beam(cli::App& app, Options& options) {
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
   app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");
-  app.was("--flat");
   app.choice("--negative", options.negative, {"clip", "keep"},
              "Negative intensities of a projector sinogram, which no projector can show: clip them to 0, or keep them. "
              "Those of a virtual sinogram are kept, with a warning where these tools did not write it.");
-  app.was("--keep-negative", "keep");
 }
 
 void declare_alignment(cli::App& app, Options& options) {

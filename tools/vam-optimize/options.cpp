@@ -53,8 +53,7 @@ void declare_poses(cli::App& app, Options& options) {
   app.option("--wobble-record", "RECORD", options.wobble_record,
              "Record of vam-calibrate edges or axis with the wobble of the vial, whose axis circles the rotation axis; "
              "the projections follow it.")
-      .reads()
-      .was("--wobble");
+      .reads();
 }
 
 void declare_constraints(cli::App& app, Options& options) {
@@ -65,7 +64,6 @@ void declare_constraints(cli::App& app, Options& options) {
              "HIGH: lower bound on the dose of part voxels.");
   app.option("--surface-margin", "MM", options.surface_margin_mm, cli::non_negative,
              "Leave voxels within this distance of the part's surface unconstrained.");
-  app.was("--tolerance-mm");
   app.flag("--free-surface", options.demands.free_surface,
            readers("--free-surface") +
                "do not constrain the dose on the part's surface to the threshold: the process window is often wider, "
@@ -79,7 +77,6 @@ void declare_constraints(cli::App& app, Options& options) {
   app.default_is("the grid 'weight' of the target file, if present");
   app.flag("--grey-target", options.demands.grey,
            "The target specifies a dose (or response) for every voxel, to be met within --band.");
-  app.was("--grey");
   app.choice("--void", options.void_rule, {"met", "below", "free"},
              "--grey-target: void, where the target is 0, must be 0 within --band (met) or not exceed --dose-low "
              "(below), or is unconstrained (free).")
@@ -94,12 +91,12 @@ void declare_constraints(cli::App& app, Options& options) {
   app.option("--band-volume", "FILE", options.band_volume,
              "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
       .reads();
-  app.default_is("the grid 'tolerance' of the target file, if present").was("--tolerances");
+  app.default_is("the grid 'tolerance' of the target file, if present");
   app.option("--resin-response", "CURVE", options.response,
              readers("--resin-response", ", --grey-target") +
                  "response of the resin to the dose: linear (the dose itself), step (from LOW to HIGH), logistic, or a "
                  "CSV file with columns dose,response, which also sets LOW and HIGH.");
-  app.default_is("logistic; linear with --grey-target").was("--response");
+  app.default_is("logistic; linear with --grey-target");
   app.option("--softness", "GAMMA", options.softness, cli::positive, "Width of the logistic response, as a dose.");
   app.default_is(default_softness());
 }
@@ -154,10 +151,8 @@ void declare_stopping(cli::App& app, Options& options) {
 void declare_parameters(cli::App& app, Options& options) {
   app.group("Method parameters");
   app.option("--void-dose", "B", options.how.void_dose, {0, 1}, readers("--void-dose") + "target dose of the void.");
-  app.was("--background");
   app.option("--min-intensity", "VALUE", options.how.min_intensity, cli::any,
              readers("--min-intensity") + "lower bound on projected intensity.");
-  app.was("--floor");
   app.choice(
       "--negative", options.negative, {"clip", "offset"},
       readers("--negative") +
@@ -168,7 +163,6 @@ void declare_parameters(cli::App& app, Options& options) {
   app.default_is(format_number(optimize::usual_of_even) +
                  " times the even intensity, at which the mean dose is the threshold dose if every pixel is lit at "
                  "every angle; raised by half while the conditions of --until are not met");
-  app.was("--max-light");
 }
 
 /// How long the print takes, which the brightest pixel determines.
@@ -241,7 +235,6 @@ void declare_beam(cli::App& app, Options& options) {
   app.choice("--absorption-model", options.absorption_model, {"exact", "disc", "none"},
              "Absorption by the resin (resin.absorption_per_mm): exact; corrected once by the dose of a uniform disc, "
              "for parallel beams; or neglected.");
-  app.was("--absorption");
   app.choice(
       "--line-integrals", options.line_integrals, {"footprints", "fourier", "auto"},
       "Parallel beam in clear resin: sums along rays by the footprints of the voxels, as in vam-dose; by Fourier "
@@ -251,7 +244,7 @@ void declare_beam(cli::App& app, Options& options) {
   app.flag("--no-blur", options.no_blur, "Do not compensate for point spread and diffusion.");
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
              "Time during which the dose diffuses.");
-  app.default_is("the duration of stage.turns turns").was("--seconds");
+  app.default_is("the duration of stage.turns turns");
 }
 
 void declare_grey_levels(cli::App& app, Options& options) {
@@ -261,13 +254,12 @@ void declare_grey_levels(cli::App& app, Options& options) {
              "describes the intensities that are written.");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.")
       .needs({"--bits"});
-  app.default_is("the largest of all projections").was("--peak");
+  app.default_is("the largest of all projections");
   app.option(
          "--dither", "N", options.dither_turns, {1, 1000},
          "Carry the rounding error over to neighbouring columns and angles, as vam-project --dither N; N is 1, as a "
          "sinogram has the frames of one turn.")
-      .needs({"--bits"})
-      .was("--error-feedback", "1");
+      .needs({"--bits"});
 }
 
 }  // namespace
@@ -290,7 +282,7 @@ void declare(cli::App& app, Options& options) {
   app.default_is("those of --init, else 360").brief("Number of stage angles over 360 degrees. Default: 360.");
   app.option("--detector-bins", "N", options.bins, {1, 65536},
              "Number of detector bins of a parallel beam, each one voxel wide.");
-  app.default_is("as many as cover the writable circle").was("--columns");
+  app.default_is("as many as cover the writable circle");
   app.option("--column-offset", "PX", options.column_offset_px, cli::any,
              "Distance in columns from projector.axis_column to the image of the axis, positive to the right: the "
              "projections are made for the axis there.");

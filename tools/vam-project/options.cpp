@@ -45,12 +45,9 @@ void add_grey(cli::App& app, Options& options) {
   app.option("--bits", "N", options.bits, {1, 16}, "Bits per pixel: 1, 2, 4, 8, 10 or 16.")
       .default_is("projector.bits");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Sinogram value shown at full intensity.")
-      .was("--peak")
       .default_is("maximum of the stack, for slices 1");
   app.option("--multiplier", "FACTOR", options.multiplier, cli::positive,
-             "Factor on the intensity; values above full intensity are clipped.")
-      .was("--gain")
-      .was("--intensity");
+             "Factor on the intensity; values above full intensity are clipped.");
   app.option(
       "--dither", "N", options.dither_turns, {1, 1000},
       "Round by error diffusion over columns and angles, so that the dose, a sum over many pixels, is accurate to less "
@@ -72,11 +69,9 @@ void add_live(cli::App& app, Options& all) {
              "Delay of the projector, from the vertical blank to the light.")
       .default_is("projector.latency_ms");
   app.option("--max-missed", "FRACTION", options.allowed_missed, {0, 1},
-             "Maximum fraction of missed vertical blanks in the run-up.")
-      .was("--missed");
+             "Maximum fraction of missed vertical blanks in the run-up.");
   app.option("--max-missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
-             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.")
-      .was("--missed-lit");
+             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.");
   app.option(
       "--frames-from", "FOLDER", options.frames_from,
       "Look for new projections in this folder while printing: a sinogram (EXR) that appears in it takes the place "
@@ -109,8 +104,7 @@ void add_patterns(cli::App& app, PatternOptions& options) {
          "of 127 steps, for vam-calibrate latency; give --hold 0.02).")
       .form();
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
-             "Grey level of lines and fields, as a fraction of full grey.")
-      .was("--level");
+             "Grey level of lines and fields, as a fraction of full grey.");
   app.option("--pitch", "PX", options.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.")
       .default_is("16; 4 for sweep");
   app.option("--width", "PX", options.width_px, {1, 100000}, "Width of lines.").default_is("1; 4 for sweep");

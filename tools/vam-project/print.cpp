@@ -77,14 +77,14 @@ std::string size_text(const model::StackInfo& info) {
 
 /// The light of a sinogram that is to take the place of another. Throws Fault::data unless it has the same columns,
 /// angles and poses and is for the same printer.
-Light read_renewed(const std::string& path, Options options, const model::StackInfo& former,
+Light read_renewed(const std::string& path, Options options, const model::StackInfo& shown,
                    const model::Printer& printer) {
   options.input = path;
   io::StackReader reader(path);
   const model::StackInfo& info = reader.info();
-  if (info.width != former.width || info.height != former.height || info.angle_start_deg != former.angle_start_deg ||
-      info.angle_step_deg != former.angle_step_deg || info.poses != former.poses) {
-    throw Error{Fault::data, path + ": has " + size_text(info) + ", but the print shows " + size_text(former) +
+  if (info.width != shown.width || info.height != shown.height || info.angle_start_deg != shown.angle_start_deg ||
+      info.angle_step_deg != shown.angle_step_deg || info.poses != shown.poses) {
+    throw Error{Fault::data, path + ": has " + size_text(info) + ", but the print shows " + size_text(shown) +
                                  "; compute it with the same options"};
   }
   (void)require_printer(options, info, printer);

@@ -18,9 +18,9 @@ struct Frames {
   int count = 0;
   double fps = 0;       // frame n belongs to the time n / fps
   double step_deg = 0;  // and to the stage angle n * step_deg
-  /// The light of frame n, in the memory of a former one. Called once for every n: in order, or by many threads at
+  /// The light of frame n, in the memory of `reused`. Called once for every n: in order, or by many threads at
   /// once.
-  std::function<Image(int n, Image former)> light;
+  std::function<Image(int n, Image reused)> light;
   std::optional<PixelRect> lit;  // the part of every frame that light() gives; the rest is dark
   bool in_order = false;
 };

@@ -70,8 +70,8 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   read_into(*composer, reader);
   warn_of_pitch(info, projector.pixel_mm, options.input);
   if (down == 0) warn_beside_rows(optics::beside_rows(info, place), options.input);
-  return {[composer](double angle, double span, const PixelRect& part, Image former) {
-            return composer->frame(angle, span, part, std::move(former));
+  return {[composer](double angle, double span, const PixelRect& part, Image reused) {
+            return composer->frame(angle, span, part, std::move(reused));
           },
           static_cast<double>(composer->peak()),
           composer->lit(),
@@ -99,8 +99,8 @@ Frames frames_of(const Light& light, const optics::FrameSchedule& schedule, cons
   return {schedule.count,
           schedule.fps,
           schedule.step_deg,
-          [&light, &schedule, part](int n, Image former) {
-            return light.frame(schedule.angle_deg(n), schedule.step_deg, part, std::move(former));
+          [&light, &schedule, part](int n, Image reused) {
+            return light.frame(schedule.angle_deg(n), schedule.step_deg, part, std::move(reused));
           },
           part,
           false};

@@ -15,7 +15,7 @@ namespace vam::project {
 
 /// What to show around a stage angle, over a span of angles, in the units of the stack whose largest value is peak.
 struct Light {
-  std::function<Image(double angle_deg, double span_deg, const PixelRect& part, Image former)> frame;
+  std::function<Image(double angle_deg, double span_deg, const PixelRect& part, Image reused)> frame;
   double peak = 0;
   PixelRect lit;                                 // what is beside it is always dark
   PixelRect whole;                               // frame

@@ -100,7 +100,6 @@ std::optional<InspectionViews> inspection_views(const std::vector<std::string>& 
   for (const std::string& path : reports) {
     const Json report = parse_distinct(io::read_all(path), path);
     if (!is_of(report, "vam-sdf")) continue;
-    if (!report.contains("expanded_uncertainty")) continue;  // of a former release
     (void)io::require_seal(report, path);
     try {
       return views_of(report, file_name(path));

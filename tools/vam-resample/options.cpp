@@ -10,11 +10,8 @@ void declare(cli::App& app, Options& options) {
       .reads({"--explain"});
   cli::add_output(app, options.output).writes_as({".exr", ".csv", ".toml"});
   app.choice(
-         "--geometry", options.geometry, {"vial", "parallel"},
-         "Output: columns of the projector, whose rays the vial refracts, or detector bins of an ideal parallel beam.")
-      .was("--to")
-      .had("projector", "vial")
-      .had("virtual", "parallel");
+      "--geometry", options.geometry, {"vial", "parallel"},
+      "Output: columns of the projector, whose rays the vial refracts, or detector bins of an ideal parallel beam.");
   app.choice("--interpolation", options.interpolation, {"linear", "cubic"}, "Interpolation across columns and angles.");
   app.flag(
          "--explain", options.explain,
@@ -31,7 +28,6 @@ void declare(cli::App& app, Options& options) {
   app.flag("--jacobian", options.jacobian, "--geometry parallel: divide by J.");
   app.choice("--negative", options.negative, {"clip", "keep"},
              "--geometry vial: clip negative values to 0, or keep them.");
-  app.was("--keep-negative", "keep");
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
              "Distance in columns from projector.axis_column (or the middle of the camera image) to the image of the "
@@ -40,9 +36,9 @@ void declare(cli::App& app, Options& options) {
   app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.");
   app.group("Detector bins of --geometry parallel");
   app.option("--bin-width", "MM", options.bin_width_mm, cli::positive, "Width of a detector bin.");
-  app.default_is("the slice height, so that voxels are cubes").was("--voxel");
+  app.default_is("the slice height, so that voxels are cubes");
   app.option("--detector-bins", "N", options.bins, {1, 65536}, "Number of detector bins.");
-  app.default_is("all that the camera sees").was("--columns");
+  app.default_is("all that the camera sees");
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);

@@ -12,15 +12,12 @@ void declare_print(cli::App& app, Options& options) {
   app.group("Print");
   app.option("--mesh", "FILE", options.print,
              "Write the print in mm, as PLY, STL, OBJ or 3MF by the ending of the name.")
-      .was("--print")
       .writes_as(io::written_mesh_endings());
   app.choice("--ply-as", options.print_as, {"mesh", "points"},
              "Content of FILE: the surface of the print, or as PLY its voxels coloured by dose.")
-      .needs({"--mesh"})
-      .was("--print-as");
+      .needs({"--mesh"});
   app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold dose of the print's surface.")
-      .needs({"--mesh"})
-      .was("--print-at");
+      .needs({"--mesh"});
   app.default_is(
       "the critical dose, else the threshold for which the projections were optimised, else the best threshold");
 }
@@ -47,7 +44,6 @@ void declare(cli::App& app, Options& options) {
   app.flag("--absolute", options.how.absolute, "State PW and IPDR in the unit of the dose.");
   app.option("--lit-fraction", "FILE", options.lit_fraction,
              "Write a volume (grid lit_fraction): the fraction of stage angles from which each voxel is lit.")
-      .was("--reach")
       .writes_as({".vdb"});
   tool::add_grey_target(app, options.grey);
   declare_print(app, options);
@@ -56,8 +52,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--report", "FILE", options.report,
              "Write a report in JSON; its keys carry the units. - prints it on standard output instead of the table.")
       .not_in_job()
-      .writes()
-      .was("--json", "-");
+      .writes();
   cli::add_threads(app);
   app.usual({"--grid", "--target", "--sinogram", "--require", "--critical-dose", "--surface", "--grey-target", "--mesh",
              "--printer", "--set", "--report"});

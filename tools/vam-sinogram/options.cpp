@@ -13,7 +13,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--angles", "N", options.angles, {1, 1000000}, "Number of angles over 360 degrees, endpoint excluded.");
   app.option("--detector-bins", "N", options.bins, {1, 65536},
              "Number of detector bins, each one voxel wide. Fewer than the default truncate the projections.");
-  app.default_is("as many as cover the grid with its corners").was("--columns");
+  app.default_is("as many as cover the grid with its corners");
   app.choice("--filter", options.filter, tomo::window_names(), "Window of the ramp filter.");
   app.option("--cutoff", "FRACTION", options.cutoff, {0, 1000, true},
              "Cutoff of the window (scale k0 for gaussian and exponential), as a fraction of the Nyquist frequency.");
@@ -23,10 +23,8 @@ void declare(cli::App& app, Options& options) {
   app.group("Absorption");
   app.option("--absorption", "PER_MM", options.absorption_per_mm, cli::non_negative,
              "Absorption coefficient MU of the resin: exponential Radon transform.");
-  app.was("--attenuation");
   app.flag("--printer-absorption", options.printer_absorption,
            "Use resin.absorption_per_mm of the printer file as MU.");
-  app.was("--resin");
   app.flag("--at-wall", options.at_wall,
            "Give the values at the inner wall of the printer's vial instead of at the plane through the axis.");
   app.needs({"--absorption", "--printer-absorption"});

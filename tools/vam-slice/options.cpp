@@ -32,7 +32,6 @@ void declare_placement(cli::App& app, Options& options) {
       "voxel would be half covered then.");
   app.flag("--no-centre", options.no_centre,
            "Keep the origin of the file, instead of moving the centre of the bounding box to x = y = z = 0.");
-  app.was("--no-center");
   app.option("--place", "MM|auto", options.place,
              "Vertical offset of the part from the height of the lens (projector.axis_row), in mm of the print, "
              "rounded to whole voxels. auto: the offset at which climbing rays blur its horizontal faces least. The "

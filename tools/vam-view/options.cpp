@@ -56,8 +56,7 @@ void declare(cli::App& app, Options& options) {
              "Volume with the grid 'target', for the outline, --dose-histogram, --cure-map or --render.")
       .reads();
   app.default_is("for --dose-histogram and --cure-map the grid in FILE, else none");
-  app.flag("--dose-histogram", options.histogram, "Show the dose distributions inside and outside the part.")
-      .was("--histogram");
+  app.flag("--dose-histogram", options.histogram, "Show the dose distributions inside and outside the part.");
   app.flag("--cure-map", options.cure,
            "Show where the dose cures the part, where it is missing and where it overcures.");
   app.flag("--render", options.render,
@@ -76,8 +75,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--high", "VALUE", options.view.high, cli::any, "Upper end of the colour map or the histogram.");
   app.default_is("the value that one pixel in 1000 exceeds; 1 for coverage; for the histogram, the extremes");
   app.option("--image-size", "PX", options.view.size, {64, 16384},
-             "Approximate length of the longer side of the image without axes and title.")
-      .was("--size");
+             "Approximate length of the longer side of the image without axes and title.");
   app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.");
   app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
   app.default_is("names of file and content");

@@ -3,18 +3,12 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "cli/app.hpp"
 
 namespace vam::cli {
-
-struct Former {
-  std::string flag;   // the old spelling
-  std::string value;  // of the present option where the old one took none; else empty
-};
 
 struct Option {
   std::string flag;        // "--voxel"; "-o,--output"
@@ -25,20 +19,18 @@ struct Option {
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
   std::string left_out = {};  // the number that stands for none behind the option; empty: there must be a value
-  std::vector<std::vector<std::string>> needs = {};       // one option of each, where this one is given
-  std::vector<Former> former = {};                        // not shown
-  std::map<std::string, std::string> former_values = {};  // present values by the old ones; not shown
-  std::function<std::string()> value = {};                // in force
-  bool required = false;                                  // in its form of the tool,
-  std::string unless = {};                                // unless this one is given
-  bool form = false;                                      // the synopsis shows the tool with it
-  bool in_job = true;                                     // App::job() lists it
-  bool reads = false;                                     // names a file that is read
-  bool writes = false;                                    // names a file that is written
-  std::vector<std::string> endings = {};                  // of which its name has one; empty: any
-  bool any_name = false;                                  // or it has none that says another format
-  bool usual = false;                                     // --help shows it where others need --help=all,
-  std::string brief = {};                                 // in these words; empty: in those of its first sentence
+  std::vector<std::vector<std::string>> needs = {};  // one option of each, where this one is given
+  std::function<std::string()> value = {};           // in force
+  bool required = false;                             // in its form of the tool,
+  std::string unless = {};                           // unless this one is given
+  bool form = false;                                 // the synopsis shows the tool with it
+  bool in_job = true;                                // App::job() lists it
+  bool reads = false;                                // names a file that is read
+  bool writes = false;                               // names a file that is written
+  std::vector<std::string> endings = {};             // of which its name has one; empty: any
+  bool any_name = false;                             // or it has none that says another format
+  bool usual = false;                                // --help shows it where others need --help=all,
+  std::string brief = {};                            // in these words; empty: in those of its first sentence
 };
 
 struct Group {
@@ -50,7 +42,6 @@ struct Positional {
   std::string value_name;
   std::string help;
   std::string default_text;                               // empty: must be given
-  std::string former = {};                                // the option that it was; not shown
   std::function<std::vector<std::string>()> values = {};  // in force
   bool reads = false;                                     // names files that are read,
   std::vector<std::string> unless = {};                   // unless one of these options is given

@@ -30,9 +30,6 @@ void require_command(const Declaration& tool, const std::vector<std::string>& wo
 /// Options before the command go behind it, so that both orders mean the same.
 void put_command_first(const Declaration& tool, std::vector<std::string>& words);
 
-/// Puts the present spelling of options for former ones, with a line on stderr, once each. A command's come first.
-void rename_former(const Declaration& tool, std::vector<std::string>& words);
-
 /// Puts the numbers behind options from which they are left out.
 void fill_left_out(const Declaration& tool, std::vector<std::string>& words);
 

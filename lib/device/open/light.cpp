@@ -36,24 +36,12 @@ struct LightBackend {
 constexpr LightBackend backends[] = {{"dlpc350", open_dlp}, {"dlpc900", open_dlp}, {"sim", open_sim}};
 static_assert(model::has_schemes(backends, model::light_schemes));
 
-// As an intensity they would be upside down on a LightCrafter 4500.
-void refuse_steps(const Address& address) {
-  for (const char* key : {"current", "max_current"}) {
-    if (!address.options.contains(key)) continue;
-    throw Error{Fault::usage, "device '" + address.text + "': option " + key +
-                                  " (in controller steps) is no longer supported; give " + key +
-                                  "_percent, in per cent of full current"};
-  }
-}
-
 }  // namespace
 
 std::string light_devices() { return model::forms_of(model::light_schemes); }
 
 std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent, Guardian* guardian) {
-  const Address given = parse_scheme(device, model::light_schemes);
-  refuse_steps(given);
-  const Address address = with_known_options(given, model::light_schemes);
+  const Address address = parse_device(device, model::light_schemes);
   LightSettings settings;
   if (address.options.contains("current_percent")) {
     settings.current_percent = address.number("current_percent", 0, 0, 100);

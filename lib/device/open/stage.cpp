@@ -40,7 +40,7 @@ std::unique_ptr<Stage> open_gcs(const Address& address, Clock& clock, Guardian* 
   require_axis(link, axis);
   auto stage = make_gcs_stage(link.take_port(), clock, settings, axis, guardian);
   stage->hold(std::move(lock));
-  (void)stage->fault();  // what a former user left behind, "stopped by command" for one
+  (void)stage->fault();  // what an earlier user left behind, "stopped by command" for one
   return stage;
 }
 
@@ -82,7 +82,7 @@ std::unique_ptr<Stage> open_zaber(const Address& address, Clock& clock, Guardian
   auto port = open_serial(address.place, address.integer("baud", 50, 4000000).value_or(115200));
   auto stage = make_zaber_stage(std::move(port), clock, settings, guardian);
   stage->hold(std::move(lock));
-  (void)stage->fault();  // what a former user left behind
+  (void)stage->fault();  // what an earlier user left behind
   return stage;
 }
 

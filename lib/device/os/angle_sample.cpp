@@ -34,8 +34,7 @@ AngleSample parse_angle_line(const std::string& line, long number) {
   };
   read("t_monotonic_s", sample.t_s);
   read("angle_deg", sample.angle_deg);
-  // Recordings of 0.1.0 say sigma.
-  read(parsed.contains("sigma") && !parsed.contains("sigma_deg") ? "sigma" : "sigma_deg", sample.sigma_deg);
+  read("sigma_deg", sample.sigma_deg);
   sample.ramp = parsed.value("ramp", Json()) == true;
   return sample;
 }

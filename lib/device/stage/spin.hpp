@@ -13,7 +13,7 @@ namespace vam::device {
 /// A stage that moves is queried at least this often: a good answer reports to the guardian that all is well.
 constexpr double heartbeat_s = 0.1;
 
-/// So long a stage may take to stop that a former command has left braking; until then it accepts no order.
+/// So long a stage may take to stop that an earlier command has left braking; until then it accepts no order.
 constexpr double braking_s = 10;
 
 struct SpinPlan {

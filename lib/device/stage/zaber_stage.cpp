@@ -54,7 +54,7 @@ class ZaberStage final : public Stage {
  public:
   ZaberStage(std::unique_ptr<Port> port, Clock& clock, const ZaberSettings& settings, Guardian* guardian)
       : link_(std::move(port)), clock_(clock), settings_(settings), stop_order_(guardian) {
-    link_.port().write("\n");  // ends a command that a former user left incomplete
+    link_.port().write("\n");  // ends a command that an earlier user left incomplete
     firmware_ = number("get version");
     if (settings_.steps_per_deg == 0) settings_.steps_per_deg = cycle_steps() / 360;
   }

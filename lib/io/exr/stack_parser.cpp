@@ -41,7 +41,7 @@ void decode_whole(const Imf::Header& layout, const Chunks& chunks, std::size_t i
   }
 }
 
-// In the memory of a former image; all of it is decoded anew.
+// In the memory of an earlier image; all of it is decoded anew.
 void take_size(Image& image, const StackInfo& info) {
   image.width = info.width;
   image.height = info.height;

@@ -122,7 +122,7 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
     throw system_error(Fault::no_output, path + ": cannot be written", errno);
   }
   if (again) return;
-  manifest_.sealed = true;  // one of a former version stays without seals
+  manifest_.sealed = true;  // one that was begun without seals stays so
   write_line(head);
 }
 

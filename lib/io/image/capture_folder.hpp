@@ -41,7 +41,7 @@ struct CaptureManifest {
 
 /// Is there a manifest in this folder?
 [[nodiscard]] bool is_capture_folder(const std::string& folder);
-/// A last line that was cut off is no line. One of a former version has no seals and is taken as it is. Throws Error:
+/// A last line that was cut off is no line. One of another program has no seals and is taken as it is. Throws Error:
 /// no_input, data.
 [[nodiscard]] CaptureManifest read_manifest(const std::string& folder);
 
@@ -64,8 +64,8 @@ class CaptureFolder {
  public:
   /// Makes the folder, or resumes an existing one, whose images are held to the manifest: those that are gone are
   /// missing frames. Throws Fault::no_output when its head differs ("was taken with exposure_us 20000, not 10000"), or
-  /// it holds other things; lag_ms and speed_deg_s, which former versions did not state, are compared where they are
-  /// stated. Throws Fault::data where images or manifest are not what was captured, or the manifest is empty.
+  /// it holds other things; lag_ms and speed_deg_s are compared where they are stated. Throws Fault::data where images
+  /// or manifest are not what was captured, or the manifest is empty.
   CaptureFolder(const std::string& folder, const Json& head);
   ~CaptureFolder();
   CaptureFolder(const CaptureFolder&) = delete;

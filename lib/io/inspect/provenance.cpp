@@ -96,7 +96,7 @@ std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
                                "killed, or the list is gone; nothing of it can be verified"};
 }
 
-// A print that has ended left a list of hashes, and one of its flips in the summary, which former versions did not.
+// A print that has ended left a list of hashes, and one of its flips in the summary.
 std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
   const auto stated = stated_flips(path);
   if (has_run_sums(path)) {

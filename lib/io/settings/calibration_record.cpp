@@ -116,8 +116,7 @@ void take_over_lag(model::Printer& printer, const CalibrationRecord& record) {
     throw Error{Fault::data, record.path + ": was measured with time stamps at the " + then +
                                  " of the exposure, but camera.stamp is " + now + "; run vam-calibrate lag"};
   }
-  const bool former = record.json->at("values").contains("camera_latency");  // of a record from before the name
-  printer.camera.lag_ms = in_unit(record, former ? "camera_latency" : "camera_lag", "ms");
+  printer.camera.lag_ms = in_unit(record, "camera_lag", "ms");
 }
 
 /// A scan of vam-calibrate: what its record sets in the printer, and whether that is of one vial only.

@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
@@ -40,16 +39,6 @@ std::vector<std::size_t> places_of(const std::vector<std::string>& header, const
   return places;
 }
 
-void rename(std::vector<std::string>& header, const std::map<std::string, std::string>& former,
-            const std::string& place) {
-  for (std::string& name : header) {
-    const auto found = former.find(name);
-    if (found == former.end()) continue;
-    warn(place + ": column " + name + " is now " + found->second);
-    name = found->second;
-  }
-}
-
 }  // namespace
 
 double CsvTable::number(std::size_t row, std::size_t column) const {
@@ -60,8 +49,7 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
                                " is not a number"};
 }
 
-CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
-                  const std::map<std::string, std::string>& former) {
+CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns) {
   CsvTable table{input_name(path), columns, {}, {}};
   std::vector<std::size_t> places;
   int number = 0;
@@ -72,7 +60,6 @@ CsvTable read_csv(const std::string& path, const std::vector<std::string>& colum
     const std::string place = table.source + ":" + std::to_string(number);
     std::vector<std::string> cells = cells_of(raw);
     if (places.empty()) {
-      rename(cells, former, place);
       const bool numbers = std::all_of(cells.begin(), cells.end(),
                                        [](const std::string& cell) { return parse_number(cell).has_value(); });
       for (std::size_t i = 0; numbers && i < columns.size(); ++i) places.push_back(i);

@@ -2,7 +2,6 @@
 // Small tables of measurements: CSV with a header line, for working curves, photodiode readings and catalogues.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -22,9 +21,8 @@ struct CsvTable {
 /// Reads the named columns, in whatever order the header has them; further columns are ignored. Without names, all that
 /// the header has, which must be there. Lines that are empty or
 /// begin with # are skipped. A file whose first line is all numbers has no header: its columns are taken in the order
-/// given here. former: old names of columns and the present ones, read with a warning. "-" is stdin. Throws Error:
+/// given here. "-" is stdin. Throws Error:
 /// no_input, io, data (a column missing, a row too short, no rows).
-[[nodiscard]] CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
-                                const std::map<std::string, std::string>& former = {});
+[[nodiscard]] CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns);
 
 }  // namespace vam::io

@@ -62,7 +62,7 @@ class FlipLog {
  private:
   struct RunFlip : LoggedFlip {
     bool last = false;  // of its run
-    int sinogram = -1;  // -1: not stated, as by former versions
+    int sinogram = -1;  // -1: not stated
   };
   void take(const Json& event);
   [[nodiscard]] std::string place() const;
@@ -96,7 +96,7 @@ class FlipLog {
 /// What the summary.json of a run states of its log of flips, which vam-print writes when it ends.
 struct StatedFlips {
   std::optional<long> lit;  // flips with light
-  std::string sha256;       // of its whole lines; empty: not stated, as by former versions
+  std::string sha256;       // of its whole lines; empty: not stated
 };
 /// None where no summary is there yet. Read it before the log, which it closes.
 [[nodiscard]] std::optional<StatedFlips> stated_flips(const std::string& run);
@@ -121,7 +121,7 @@ struct Showing {
 [[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram,
                                    std::optional<double> before_s = {});
 
-/// Does a run state the hash of its sinogram? Those of former versions do not.
+/// Does a run state the hash of its sinogram?
 [[nodiscard]] bool states_sinogram(const std::string& run);
 
 /// Throws Fault::data when a sinogram is none of a run's, by the hashes in its events.jsonl and in the log of its

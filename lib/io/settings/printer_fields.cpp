@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
-#include "base/log.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "model/device_schemes.hpp"
@@ -137,19 +135,6 @@ void centre_axis(Printer& printer) {
   Projector& projector = printer.projector;
   if (std::isnan(projector.axis_column)) projector.axis_column = 0.5 * (projector.columns - 1);
   if (std::isnan(projector.axis_row)) projector.axis_row = 0.5 * (projector.rows - 1);
-}
-
-std::string replacement(std::string_view section, std::string_view key) {
-  if (section != "projector" || key != "max_led_current") return "";
-  return "; former unit: controller steps, inverted on a LightCrafter 4500; give "
-         "projector.max_led_current_percent, in per cent of full current";
-}
-
-std::string_view present_key(std::string_view section, std::string_view key) {
-  if (section != "camera" || key != "latency_ms") return key;
-  static std::once_flag once;
-  std::call_once(once, [] { warn("camera.latency_ms is now camera.lag_ms"); });
-  return "lag_ms";
 }
 
 std::vector<std::string> section_names() {

@@ -35,8 +35,7 @@ using model::Printer;
 constexpr std::size_t most_file_bytes = std::size_t{1} << 18;
 constexpr std::ptrdiff_t most_levels = 4096;
 
-const PrinterField* find_field(std::string_view section, std::string_view given) {
-  const std::string_view key = present_key(section, given);
+const PrinterField* find_field(std::string_view section, std::string_view key) {
   for (const auto& field : printer_fields()) {
     if (section == field.section && key == field.key) return &field;
   }
@@ -46,7 +45,6 @@ const PrinterField* find_field(std::string_view section, std::string_view given)
 // "; did you mean radius_mm?" within the section, else the same key in the section of the nearest name, else in another
 // section, else all that there is.
 std::string suggestion(std::string_view section, std::string_view key) {
-  if (std::string instead = replacement(section, key); !instead.empty()) return instead;
   if (const PrinterField* meant = find_field(nearest(section, section_names()), key); meant != nullptr) {
     return "; did you mean " + dotted_name(*meant) + "?";
   }

@@ -21,7 +21,7 @@ double gelation_isovalue(const std::string& path) {
       throw Error{Fault::data,
                   path + ": not a record of vam-calibrate resin, its schema is " + briefly(record.at("schema").dump())};
     require_seal(record, path);
-    isovalue = record.at(record.contains("level") ? "level" : "isovalue").get<double>();  // level: until 0.1.0
+    isovalue = record.at("isovalue").get<double>();
     critical = number_at(record, "critical_dose_mj_cm3", critical);
   } catch (const Json::exception&) {
     throw Error{Fault::data, path + ": not a record of vam-calibrate resin, which has schema and isovalue"};

@@ -25,7 +25,7 @@ struct Ties {
   std::string armed_utc;
   std::string sinogram_sha256;
   std::string resumes;
-  std::string resumes_utc;  // when that was armed; a former version does not say
+  std::string resumes_utc;  // when that was armed
   std::string resumed_by;   // empty: not resumed
 };
 
@@ -52,13 +52,6 @@ Ties ties_of(const std::string& run) {
 bool is_same(const fs::path& one, const fs::path& other) {
   std::error_code ignored;
   return fs::equivalent(one, other, ignored);
-}
-
-// The last name of a path, "w" of "prints/w/".
-fs::path name_of(const std::string& path) {
-  std::error_code ignored;
-  const fs::path whole = fs::weakly_canonical(path, ignored);
-  return whole.has_filename() ? whole.filename() : whole.parent_path().filename();
 }
 
 // A name relative to where the print was, to the folder or to the one that holds it.
@@ -133,10 +126,7 @@ bool resumes(const std::string& run, const std::string& earlier) {
   const Ties ties = ties_of(run);
   if (ties.resumes.empty() || is_same(run, earlier)) return false;
   const Ties first = ties_of(earlier);
-  if (!ties.resumes_utc.empty())
-    return ties.resumes_utc == first.armed_utc && ties.sinogram_sha256 == first.sinogram_sha256;
-  if (is_same(ties.resumes, earlier) || is_same(fs::path(run) / ".." / ties.resumes, earlier)) return true;
-  return name_of(ties.resumes) == name_of(earlier) && ties.sinogram_sha256 == first.sinogram_sha256;
+  return ties.resumes_utc == first.armed_utc && ties.sinogram_sha256 == first.sinogram_sha256;
 }
 
 std::vector<std::string> unmarked_resumptions(const std::vector<std::string>& runs) {

@@ -21,8 +21,7 @@ void require_resumption(const std::string& run);
 /// The folder that a run resumes, as vam-print was given it; empty: none.
 [[nodiscard]] std::string resumes_of(const std::string& run);
 
-/// Does a run resume this one? By when that was armed and by the sinogram, so that both may have been moved; a run of a
-/// former version does not say when: by its folder, or by the last name of this and by the sinogram.
+/// Does a run resume this one? By when that was armed and by the sinogram, so that both may have been moved.
 [[nodiscard]] bool resumes(const std::string& run, const std::string& earlier);
 
 /// Of these run folders a line for each without resumed.json of which another one showed the rest.

@@ -32,32 +32,21 @@ void make_whole(Sorted& value) {
   }
 }
 
-template <class Any>
-Digest digest_of_text(const Any& value) {
-  const std::string text = value.dump();
-  return digest_of(text.data(), text.size());
-}
-
-/// The digests of an object without its seal.
-struct Digests {
-  Digest now;     // of keys and values, whatever their order and layout
-  Digest former;  // of them in the order of the text, as former versions sealed it
-};
-
-Digests digests_of(Json object) {
+/// Of keys and values of an object without its seal, whatever their order and layout.
+Digest digest_of_values(Json object) {
   object.erase(json_key);
   // As it reads back: a number that is none is null there.
   const std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
   Sorted sorted = Sorted::parse(text);
   make_whole(sorted);
-  return {digest_of_text(sorted), digest_of_text(Json::parse(text))};
+  const std::string canonical = sorted.dump();
+  return digest_of(canonical.data(), canonical.size());
 }
 
-void require_equal(const std::string& seal, const Digests& digests, const std::string& name, const std::string& where) {
+void require_equal(const std::string& seal, const Digest& read, const std::string& name, const std::string& where) {
   Digest sealed;
-  const Digest& read = digests.now;
   const bool whole = parse_seal(seal, sealed);
-  if (whole && (sealed == read || sealed == digests.former)) return;
+  if (whole && sealed == read) return;
   throw Error{Fault::data, name + ": changed after it was written (" +
                                (whole ? "sealed " + shortened(sealed) + ", read " : "seal unreadable, hash ") +
                                shortened(read) + "); create it again, or remove " + where +
@@ -84,7 +73,7 @@ std::optional<std::size_t> seal_line(const std::string& text) {
 }  // namespace
 
 void seal_json(Json& object) {
-  const Digest digest = digests_of(object).now;
+  const Digest digest = digest_of_values(object);
   object[json_key] = seal_text(digest);
 }
 
@@ -97,7 +86,7 @@ bool require_seal(const Json& object, const std::string& name) {
   }
   if (seal == object.end()) return false;
   const bool readable = seal.key() == json_key && seal->is_string();
-  require_equal(readable ? seal->get<std::string>() : "", digests_of(object), name, "its key " + seal.key());
+  require_equal(readable ? seal->get<std::string>() : "", digest_of_values(object), name, "its key " + seal.key());
   return true;
 }
 
@@ -113,7 +102,7 @@ bool require_text_seal(const std::string& text, const std::string& name) {
   const bool whole = seal.starts_with(text_head) && seal.back() == '\n';
   if (whole) seal = seal.substr(text_head.size(), seal.size() - text_head.size() - 1);
   const Digest digest = digest_of(text.data(), *line);
-  require_equal(whole ? seal : "", {digest, digest}, name, "its last line '" + text_head + "...'");
+  require_equal(whole ? seal : "", digest, name, "its last line '" + text_head + "...'");
   return true;
 }
 

@@ -70,7 +70,7 @@ struct ActedDose {
 struct SensitivityFit {
   SensitivityField field;
   double rms = 0;        // of the residuals, in their standard deviations
-  double explained = 0;  // RMS of the densities that the field leaves, over what the former one leaves
+  double explained = 0;  // RMS of the densities that the field leaves, over what the previous one leaves
   long voxels = 0;       // that scatter, or should, by 10 to 90 % of the saturation
 };
 
@@ -100,9 +100,9 @@ struct CorrectionLimits {
   double sigma = 0.03;     // relative uncertainty of the sensitivity
   double deviation = 0.5;  // of its logarithm
   double rms = 3;          // of the residuals, in their standard deviations
-  double change = 0.05;    // of its mean since the former field, beyond three standard deviations of that
+  double change = 0.05;    // of its mean since the previous field, beyond three standard deviations of that
 };
-/// What speaks against light by this fit, a phrase each; empty: nothing does. before: of the former field.
+/// What speaks against light by this fit, a phrase each; empty: nothing does. before: of the previous field.
 [[nodiscard]] std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRange& range,
                                               const SensitivityRange& before, const CorrectionLimits& limits);
 

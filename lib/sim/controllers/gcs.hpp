@@ -36,10 +36,10 @@ struct SimGcsSettings {
   double jitter_s = 0;        // a random part more, of either half
   std::uint64_t seed = 1;
   int address = 1;
-  bool referenced = false;     // GCS: at power-on, as if a former user had found the reference
+  bool referenced = false;     // GCS: at power-on, as if an earlier user had found the reference
   bool reset_at_open = false;  // GRBL, as most boards do by the DTR line: greets, and counts from where it stands
   bool no_switches = false;    // GRBL: no homing switches ($22=0)
-  bool inches = false;         // GRBL: reports inches ($13=1), as a former owner left it
+  bool inches = false;         // GRBL: reports inches ($13=1), as an earlier owner left it
   bool old_firmware = false;   // Zaber: 6.28, which takes no speed with a motion
   double log_period_s = 0.01;  // of the true angle, while the stage moves
   std::vector<SimFault> faults;

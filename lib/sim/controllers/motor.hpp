@@ -13,7 +13,7 @@ struct MotorSettings {
 };
 
 /// Moves in steps of 0.5 ms of the time it is given, so its path does not depend on the sampling; between two steps at
-/// the speed of the former.
+/// the speed of the first.
 class SimMotor {
  public:
   SimMotor(const MotorSettings& settings, double start_s)

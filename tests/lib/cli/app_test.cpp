@@ -122,7 +122,7 @@ struct Stage {
     if (plain) app.positional("INPUT", input, "What to read.").flag("--quick", quick, "Quick.");
     App& spin = app.subcommand("spin", "turn on", chosen);
     spin.option("--device", "DEVICE", device, "The stage.");
-    spin.option("--speed", "DEG_S", speed, positive, "Speed.").default_is("stage.speed_deg_s").was("--pace");
+    spin.option("--speed", "DEG_S", speed, positive, "Speed.").default_is("stage.speed_deg_s");
     App& move = app.subcommand("move", "go there", chosen);
     move.option("--device", "DEVICE", device, "The stage.").option("--angle", "DEG", angle, any, "Angle.");
     move.positional("FILE", file, "A file.");
@@ -250,47 +250,6 @@ TEST_CASE("the manual lists the variables and statuses of what the tool has") {
   CHECK(page.find(".It 76\nDevice protocol error.\n") != std::string::npos);
 }
 
-TEST_CASE("a former spelling works as the option does, with one warning") {
-  for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{"--taper", "cosine"}, {"--taper=cosine"}}) {
-    Tool tool;
-    int status = -1;
-    CHECK(written_to(stderr, [&] { status = tool.run(words); }) == "vam-demo: warning: --taper is now --window\n");
-    CHECK(status == 0);
-    CHECK(tool.window == "cosine");
-    CHECK(tool.app.given("--window"));
-    CHECK(tool.app.history().find("--taper") == std::string::npos);
-  }
-  Tool tool;
-  CHECK(tool.run({"--taper", "hann", "--window", "hann"}) == 64);
-}
-
-TEST_CASE("a former flag stands for an option and its value") {
-  Tool tool;
-  std::string negative = "clip";
-  tool.app.choice("--negative", negative, {"clip", "keep"}, "Negative values.").was("--keep-negative", "keep");
-  int status = -1;
-  CHECK(written_to(stderr, [&] {
-          status = tool.run({"part.vdb", "--keep-negative"});
-        }) == "vam-demo: warning: --keep-negative is now --negative keep\n");
-  CHECK(status == 0);
-  CHECK(negative == "keep");
-}
-
-TEST_CASE("an operand that was an option takes either spelling") {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"--from", "turn.exr", "--bands", "3"}, {"--bands=3", "--from=turn.exr"}}) {
-    std::string frames;
-    int bands = 1;
-    App app(Manual{"vam-demo", "shows", {}, {}, {}, {}});
-    app.positional("FRAMES", frames, "Frames.", "--from").option("--bands", "N", bands, any, "Bands.");
-    CHECK(written_to(stderr, [&] { CHECK(run_app(app, words) == 0); }) ==
-          "vam-demo: warning: --from FILE is now the operand FRAMES\n");
-    CHECK(frames == "turn.exr");
-    CHECK(bands == 3);
-  }
-}
-
 TEST_CASE("an option that needs another is refused without it") {
   for (const bool mesh : {false, true}) {
     Tool tool;
@@ -365,31 +324,6 @@ TEST_CASE("an option that stands for others is a form of its own without them") 
   CHECK(said({"--man"}, stdout).find(".Cm beam\n.Op Ar OPTIONS\n.Fl -side\n.Sh") != std::string::npos);
 }
 
-TEST_CASE("a former value stands for the present one, with one warning") {
-  for (const auto& words : std::vector<std::vector<std::string>>{
-           {"--geometry", "virtual"}, {"--geometry=virtual"}, {"--to", "virtual"}, {"--to=virtual"}}) {
-    std::string geometry = "vial";
-    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
-    app.choice("--geometry", geometry, {"vial", "parallel"}, "Rays.").was("--to").had("virtual", "parallel");
-    const std::string text = written_to(stderr, [&] { CHECK(run_app(app, words) == 0); });
-    CHECK(text.ends_with("vam-demo: warning: --geometry virtual is now --geometry parallel\n"));
-    CHECK(geometry == "parallel");
-  }
-  std::string geometry = "vial", name;
-  App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
-  app.choice("--geometry", geometry, {"vial", "parallel"}, "Rays.").had("virtual", "parallel");
-  app.option("--name", "NAME", name, "Any text.");
-  CHECK(written_to(stderr, [&] { CHECK(run_app(app, {"--name", "virtual"}) == 0); }).empty());
-  CHECK(name == "virtual");
-}
-
-TEST_CASE("a former spelling is not shown") {
-  Tool tool;
-  const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--windov", "hann"}) == 64); });
-  CHECK(text.find("--window") != std::string::npos);
-  CHECK(text.find("--taper") == std::string::npos);
-}
-
 TEST_CASE("a job is every option but those declared to be none of it, with the value in force") {
   Tool tool;
   std::string trace;
@@ -399,15 +333,6 @@ TEST_CASE("a job is every option but those declared to be none of it, with the v
   CHECK(tool.run({"part.vdb", "--voxel", "0.5", "--angles", "90", "--rotate", "1,2,3", "--half", "--set", "a=1",
                   "--trace", "x"}) == 0);
   CHECK(tool.app.job() == "--voxel=0.5\n--angles=90\n--rotate=1,2,3\n--set=a=1\n--window=hann\n--half=1\n--seconds=\n");
-}
-
-TEST_CASE("a command's option has former spellings, too") {
-  for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{"spin", "--pace", "25"}, {"--pace", "25", "spin"}}) {
-    Stage stage;
-    CHECK(written_to(stderr, [&] { CHECK(stage.run(words) == 0); }) == "vam-demo: warning: --pace is now --speed\n");
-    CHECK(stage.speed == 25);
-  }
 }
 
 TEST_CASE("the manual page escapes the control characters of roff") {

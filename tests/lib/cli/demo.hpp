@@ -36,7 +36,7 @@ struct Tool {
     app.option("--angles", "N", angles, Range{1, 10000}, "Stage angles.");
     app.option("--rotate", "X,Y,Z", rotate, 3, "Angles in degrees.");
     app.option("--set", "K=V", sets, "Override.");
-    app.choice("--window", window, {"hann", "cosine"}, "Window.").was("--taper");
+    app.choice("--window", window, {"hann", "cosine"}, "Window.");
     app.flag("--half", half, "Half.");
   }
   int run(const std::vector<std::string>& words) { return run_app(app, words); }

@@ -53,16 +53,14 @@ TEST_CASE("a record is immutable, and current is a link to the latest that did n
   CHECK(records == 3);
 }
 
-TEST_CASE("the lag of a record counts, under its former name, too") {
-  for (const char* name : {"camera_lag", "camera_latency"}) {
-    const scratch::Folder folder;
-    const auto calibration = here(folder);
-    write_record(calibration, "lag", {{"status", "pass"}, {"values", {{name, {{"value", 3.5}}}}}}, now_s);
-    model::Printer printer;
-    apply_records(printer, calibration, now_s);
-    CHECK(printer.camera.lag_ms == 3.5);
-    CHECK(printer.projector.latency_ms == 0);
-  }
+TEST_CASE("the lag of a record counts") {
+  const scratch::Folder folder;
+  const auto calibration = here(folder);
+  write_record(calibration, "lag", {{"status", "pass"}, {"values", {{"camera_lag", {{"value", 3.5}}}}}}, now_s);
+  model::Printer printer;
+  apply_records(printer, calibration, now_s);
+  CHECK(printer.camera.lag_ms == 3.5);
+  CHECK(printer.projector.latency_ms == 0);
 }
 
 TEST_CASE("a lag counts from the moment that the time stamps named then, and from no other") {

@@ -45,14 +45,3 @@ TEST_CASE("a print is resumed by the one that states when it was armed, wherever
   CHECK_FALSE(vam::io::resumes(rest, rest));
   CHECK_FALSE(vam::io::resumes(first, rest));
 }
-
-TEST_CASE("a print of a former version is known by its folder, or by its last name and the sinogram") {
-  const Prints prints;
-  const std::string first = prints.add("w", "2026-11-27T10:00:00.123Z");
-  const std::string moved = prints.add("archive/w", "2026-11-27T10:00:00.123Z");
-  const std::string other = prints.add("archive/v", "2026-11-27T10:00:00.123Z");
-  const std::string rest = prints.add("rest", "2026-11-27T10:05:00.789Z", R"(,"resumes":"w")");
-  CHECK(vam::io::resumes(rest, first));
-  CHECK(vam::io::resumes(rest, moved));
-  CHECK_FALSE(vam::io::resumes(rest, other));
-}

@@ -72,11 +72,3 @@ TEST_CASE("the seal of a record is that of its keys and values, in any order and
   other.replace(other.find("1, 2.50"), 7, "2.50, 1");
   CHECK(fault_of([&] { (void)holds(other); }) == Fault::data);
 }
-
-TEST_CASE("a record that was sealed in the order of its keys holds in that order") {
-  const std::string keys = R"("b":1.0,"a":"x")";
-  const std::string text = "{" + keys + "}";
-  const std::string seal = R"(,"seal":")" + seal_text(digest_of(text.data(), text.size())) + "\"}";
-  CHECK(require_seal(Json::parse("{" + keys + seal), "r.json"));
-  CHECK(fault_of([&] { (void)require_seal(Json::parse(R"({"a":"x","b":1.0)" + seal), "r.json"); }) == Fault::data);
-}

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "device/os/address.hpp"
 #include "model/device_schemes.hpp"
 
@@ -22,18 +21,10 @@ namespace vam::device {
   return parse_address(device, schemes);
 }
 
-/// Former names of options become the present ones, with a warning. Throws Fault::usage for an option that the table
-/// does not have.
+/// Throws Fault::usage for an option that the table does not have.
 [[nodiscard]] inline Address with_known_options(Address address, std::span<const model::DeviceScheme> table) {
   auto row = table.begin();
   while (address.scheme != row->scheme) ++row;
-  for (const auto& [name, present] : row->former) {
-    auto option = address.options.extract(std::string(name));
-    if (option.empty()) continue;
-    warn("device '" + address.text + "': option " + std::string(name) + " is now " + std::string(present));
-    option.key() = present;
-    address.options.insert(std::move(option));
-  }
   std::vector<std::string> known;
   for (const auto& option : row->options) known.emplace_back(option.name);
   address.allow(known);

@@ -88,7 +88,7 @@ class StackParser {
   std::uint64_t begin_ = 0;           // of the stack on the stream
   std::size_t complete_ = 0;          // parts taken off the stream
   std::deque<Image> ready_;           // decoded images
-  std::deque<Image> used_;            // former ones, whose memory the next take
+  std::deque<Image> used_;            // earlier ones, whose memory the next take
   std::vector<std::string> emptied_;  // of chunks, likewise
   std::size_t done_ = 0;              // images handed out
 };

@@ -39,12 +39,6 @@ struct PrinterField {
 /// The axis of a printer in the middle of its columns and rows, where it is not set.
 void centre_axis(model::Printer& printer);
 
-/// What a key that there is no more has to be instead: "; it was in ...: give ..."; empty for any other.
-[[nodiscard]] std::string replacement(std::string_view section, std::string_view key);
-
-/// The key that a former one is now, with one warning a run; any other as it is.
-[[nodiscard]] std::string_view present_key(std::string_view section, std::string_view key);
-
 /// "vial.radius_mm"
 [[nodiscard]] std::string dotted_name(const PrinterField& field);
 
