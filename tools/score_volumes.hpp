@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/index.hpp"
@@ -19,10 +20,10 @@
 #include "model/printer.hpp"
 #include "optics/writable_radius.hpp"
 #include "own_grid.hpp"
-#include "score/cured_pieces.hpp"
 #include "score/grey_score.hpp"
 #include "score/score.hpp"
 #include "unresolved.hpp"
+#include "verdict/print_pieces.hpp"
 
 namespace vam::tool {
 
@@ -81,8 +82,8 @@ inline score::Score score_print(const io::SparseVolume& dose, const io::SparseVo
   const model::Grid& grid = target.grid();
   const double threshold = result.print_threshold();
   if (!(threshold > 0)) return result;  // the part stays dark
-  const score::CuredPieces start(how.circle, threshold, grid.nx, grid.ny);
-  model::PrintPieces pieces = with_volumes(start, dose, target, "counting pieces").found();
+  verdict::PrintPieceCounter counter(grid.nx, grid.ny, threshold, how.circle);
+  verdict::PrintPieces pieces = with_volumes(std::move(counter), dose, target, "counting pieces").found();
   pieces.set_places(grid, stretch_z(target.metadata));
   result.set_pieces(pieces);
   return result;

@@ -9,7 +9,7 @@
 #include "base/index.hpp"
 #include "facts.hpp"
 #include "io/vdb/vdb.hpp"
-#include "model/unresolved.hpp"
+#include "verdict/unresolved.hpp"
 
 namespace vam::tool {
 
@@ -20,18 +20,18 @@ inline std::optional<model::VoxelisedSurface> own_surface(const io::SparseVolume
   return model::VoxelisedSurface{*places, target.grid().voxel_mm};
 }
 
-inline model::Unresolved unresolved(const io::SparseVolume& target) {
+inline verdict::Unresolved unresolved(const io::SparseVolume& target) {
   constexpr std::size_t million = 1'000'000;  // voxels at a time
   const model::Grid& grid = target.grid();
   const int slab = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, 16));
-  model::UnresolvedFinder finder(grid);
+  verdict::UnresolvedFinder finder(grid);
   std::vector<float> slices(product(slab, grid.slice_size()));
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
     target.read_slices(k, count, slices.data());
     finder.add(count, slices.data());
   }
-  model::Unresolved found = finder.found();
+  verdict::Unresolved found = finder.found();
   found.surface = own_surface(target);
   return found;
 }

@@ -71,7 +71,7 @@ void require_files_for_outputs(const Options& options) {
 }
 
 /// Of gaps of the target that none of its voxels resolves, and which the figures pass over.
-void warn_of_gaps(const model::Unresolved& unresolved, const io::SparseVolume& target, const std::string& file) {
+void warn_of_gaps(const verdict::Unresolved& unresolved, const io::SparseVolume& target, const std::string& file) {
   const std::string doubt =
       solid::gap_doubt(io::input_name(file), unresolved, target.grid(), tool::stretch_z(target.metadata));
   if (!doubt.empty()) warn(doubt + "; they are not judged");

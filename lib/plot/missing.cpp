@@ -8,8 +8,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "model/dose_metrics.hpp"
-#include "model/torn.hpp"
-#include "model/unresolved.hpp"
+#include "verdict/defect_voxels.hpp"
 
 namespace vam::plot {
 
@@ -35,11 +34,11 @@ class Window {
   /// Of a slice, with the one below and the one above.
   [[nodiscard]] std::vector<std::size_t> lost(int k) const {
     const std::array<const float*, 3> around{slice(covered_, k - 1), slice(covered_, k), slice(covered_, k + 1)};
-    return model::lost_walls(grid_.nx, grid_.ny, around.data());
+    return verdict::lost_walls(grid_.nx, grid_.ny, around.data());
   }
   [[nodiscard]] std::vector<std::uint8_t> bits(int k) const {
     std::vector<std::uint8_t> all(is_in(k) ? grid_.slice_size() : 0);
-    for (std::size_t at = 0; at < all.size(); ++at) all[at] = model::printed_bits(coverage(k)[at], cures(k, at));
+    for (std::size_t at = 0; at < all.size(); ++at) all[at] = verdict::printed_bits(coverage(k)[at], cures(k, at));
     return all;
   }
 
@@ -70,7 +69,7 @@ void add_missing(const Window& window, int k, const std::array<const std::uint8_
   for (const std::size_t at : window.lost(k)) {
     if (!window.cures(k, at)) shares[at] = coverage[at];
   }
-  for (const std::size_t at : model::torn_voxels(model::Torn::part, grid.nx, grid.ny, bits.data()))
+  for (const std::size_t at : verdict::torn_voxels(verdict::Torn::part, grid.nx, grid.ny, bits.data()))
     shares[at] = coverage[at];
 }
 

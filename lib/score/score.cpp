@@ -36,8 +36,8 @@ struct Score::Figure {
 
 const std::vector<Score::Figure>& Score::figure_list() {
   using model::Outside;
-  using model::PrintPieces;
   using model::ThresholdMetrics;
+  using verdict::PrintPieces;
   static const std::vector<Figure> all{
       {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels",
        [](const Score& score) { return score.metrics().ver; }},
@@ -83,7 +83,7 @@ const std::vector<Score::Figure>& Score::figure_list() {
       {"firm_holes", "of these, those on which 2 % of the dose do not decide",
        [](const Score& score) { return of(score.pieces_, &PrintPieces::firm_holes); }},
       {"prints", "1 if the part will print as designed, 0 if it will not or may not",
-       [](const Score& score) { return answer(score.verdict()) == Answer::yes ? 1.0 : 0.0; }},
+       [](const Score& score) { return verdict::answer(score.verdict()) == verdict::Answer::yes ? 1.0 : 0.0; }},
       {"trimmed_ver", "ver with the extremes trimmed", [](const Score& score) { return score.trimmed().ver; }},
       {"trimmed_pw", "pw with the extremes trimmed", [](const Score& score) { return score.trimmed().pw; }},
       {"cured_part", "at the critical dose: fraction of the part that cures",
@@ -236,17 +236,17 @@ Json Score::figures() const {
   return json;
 }
 
-model::Unresolved Score::unresolved() const {
-  model::Unresolved found = unresolved_.found();
+verdict::Unresolved Score::unresolved() const {
+  verdict::Unresolved found = unresolved_.found();
   found.surface = options_.own_surface;
   return found;
 }
 
-Verdict Score::verdict() const {
+verdict::Verdict Score::verdict() const {
   const double duration_s = figure("duration_s");
-  Verdict verdict{.whole = whole_.metrics(), .with_cut = with_cut_.metrics()};
+  verdict::Verdict verdict{.whole = whole_.metrics(), .with_cut = with_cut_.metrics()};
   verdict.unresolved = unresolved();
-  score::set_pieces(verdict, pieces_);
+  verdict::set_pieces(verdict, pieces_);
   if (std::isfinite(duration_s) && !options_.threshold) verdict.seconds = duration_s;  // else that of another print
   verdict.threshold = options_.threshold;
   return verdict;

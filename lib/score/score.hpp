@@ -10,11 +10,11 @@
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
-#include "model/print_pieces.hpp"
 #include "model/printer.hpp"
-#include "model/unresolved.hpp"
 #include "score/exposure_plan.hpp"
-#include "score/verdict.hpp"
+#include "verdict/print_pieces.hpp"
+#include "verdict/unresolved.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::score {
 
@@ -49,7 +49,7 @@ class Score {
   /// `count` row-major slices of dose and of target coverage. Throws Fault::data for a dose that is not finite.
   void add(const float* dose, const float* target, int count);
   /// Counted by the caller, as the print is known once all slices have been added.
-  void set_pieces(const model::PrintPieces& pieces) { pieces_ = pieces; }
+  void set_pieces(const verdict::PrintPieces& pieces) { pieces_ = pieces; }
   /// The projections that gave the dose, for the efficiency of light.
   void add_projection(std::span<const float> values) { light_.add(values); }
 
@@ -65,9 +65,9 @@ class Score {
   /// None where the exposure is not known, or nothing is lit.
   [[nodiscard]] std::optional<ExposurePlan> plan() const;
   /// What of the target its voxels are too coarse for.
-  [[nodiscard]] model::Unresolved unresolved() const;
+  [[nodiscard]] verdict::Unresolved unresolved() const;
   /// Of the relative figures, whatever the options say.
-  [[nodiscard]] Verdict verdict() const;
+  [[nodiscard]] verdict::Verdict verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
   [[nodiscard]] std::string table() const;
 
@@ -95,8 +95,8 @@ class Score {
   std::vector<bool> inside_;                // of a slice, whether the circle has it
   model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;
-  model::UnresolvedFinder unresolved_;
-  std::optional<model::PrintPieces> pieces_;
+  verdict::UnresolvedFinder unresolved_;
+  std::optional<verdict::PrintPieces> pieces_;
   std::int64_t surface_ = 0;
   int slices_ = 0;               // seen
   model::OutsideDoses outside_;  // void outside the part's box

@@ -14,16 +14,16 @@
 #include "io/stream/stream.hpp"
 #include "model/coarser.hpp"
 #include "model/magnification.hpp"
-#include "model/unresolved.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "score/exposure_plan.hpp"
-#include "score/verdict.hpp"
 #include "unresolved.hpp"
 #include "vam-optimize/coarse_start.hpp"
 #include "vam-optimize/coarser.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/task.hpp"
+#include "verdict/unresolved.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::optimize_tool {
 
@@ -46,7 +46,7 @@ struct Level {
   Inputs own;            // none at the target's own resolution
   const Inputs* finest;  // the target's own
   Scene scene = {};
-  model::Unresolved unresolved = {};  // of its own voxels, once it is asked for
+  verdict::Unresolved unresolved = {};  // of its own voxels, once it is asked for
 
   [[nodiscard]] const Inputs& in() const { return own.target.empty() ? *finest : own; }
   [[nodiscard]] double updates() const { return static_cast<double>(scene.grid.size()) * options.angles; }
@@ -125,7 +125,7 @@ std::string unseen(const Level& level) {
 }
 
 /// Walls and gaps that the target's own voxels lose.
-std::vector<std::string> lost(const model::Unresolved& target) {
+std::vector<std::string> lost(const verdict::Unresolved& target) {
   std::vector<std::string> doubts;
   if (target.loses_walls()) {
     const std::string what = target.loses_much()
@@ -160,8 +160,8 @@ Answer unsure(const std::vector<std::string>& reasons) {
 }
 
 /// Of the estimate; the surface of the target may tell the part's.
-std::optional<model::PrintPieces> pieces_of(const Level& level, const optimize::VolumeOutcome& outcome,
-                                            const model::Unresolved& target) {
+std::optional<verdict::PrintPieces> pieces_of(const Level& level, const optimize::VolumeOutcome& outcome,
+                                              const verdict::Unresolved& target) {
   auto pieces = outcome.pieces;
   if (!pieces) return pieces;
   if (target.surface) pieces->set_solids(target.surface->places);
@@ -170,20 +170,20 @@ std::optional<model::PrintPieces> pieces_of(const Level& level, const optimize::
 }
 
 /// In other pieces than the part, or with cut walls, shut gaps or holes.
-bool is_torn(const Level& level, const optimize::VolumeOutcome& outcome, const model::Unresolved& target) {
+bool is_torn(const Level& level, const optimize::VolumeOutcome& outcome, const verdict::Unresolved& target) {
   const auto pieces = pieces_of(level, outcome, target);
   return pieces && !pieces->is_surely_as_part();
 }
 
 /// `target`: of its own voxels.
-Answer answer_of(const Level& level, const model::Unresolved& target, const optimize::VolumeOutcome& outcome,
+Answer answer_of(const Level& level, const verdict::Unresolved& target, const optimize::VolumeOutcome& outcome,
                  double least) {
   const model::DoseMetrics& doses = outcome.metrics;
   if (least >= 1) return {"no", "will not print, by any projections", {}};
   if (!(doses.pw > 0)) return {"no", "will not print", {}};
   std::vector<std::string> doubts = lost(target);
   const bool torn = is_torn(level, outcome, target);
-  if (torn) doubts.push_back("in the estimate " + score::words(*pieces_of(level, outcome, target)));
+  if (torn) doubts.push_back("in the estimate " + verdict::words(*pieces_of(level, outcome, target)));
   if (level.pixels > 1 && level.unresolved.is_much()) doubts.push_back(unseen(level));
   if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");
   Answer answer = doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
@@ -200,7 +200,7 @@ struct Seen {
   std::optional<score::ExposurePlan> plan = {};
   double voxel_mm = 0;
   int angles = 0, iterations = 0;
-  model::Unresolved unresolved = {};
+  verdict::Unresolved unresolved = {};
 };
 
 /// Iterations of a proof.
@@ -222,7 +222,7 @@ FromCoarser from_coarser(const Level& level) {
   return {least, start_of(std::move(found), coarse.scene, coarse.options, level.scene, level.options)};
 }
 
-Seen see(Level& level, const model::Unresolved& target) {
+Seen see(Level& level, const verdict::Unresolved& target) {
   level.unresolved = level.pixels == 1 ? target : tool::unresolved(level.own.target.front());
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
   warn_of(level.scene, level.in().target.front(), level.options);
@@ -295,7 +295,7 @@ Json report_of(const Seen& seen) {
 }  // namespace
 
 void preview(const model::Printer& printer, const Inputs& in, const Options& options) {
-  const model::Unresolved target = tool::unresolved(in.target.front());
+  const verdict::Unresolved target = tool::unresolved(in.target.front());
   std::vector<Level> levels = levels_of(printer, in, options);
   Seen seen = see(levels.back(), target);
   while (seen.answer.is_torn && levels.size() > 1 && is_quick(levels[levels.size() - 2])) {  // by its voxels, perhaps

@@ -19,12 +19,12 @@
 #include "model/magnification.hpp"
 #include "optimize/run/limited_by.hpp"
 #include "score/exposure_plan.hpp"
-#include "score/verdict.hpp"
 #include "unresolved.hpp"
 #include "vam-optimize/delivered.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
 #include "vam-optimize/front.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::optimize_tool {
 
@@ -102,7 +102,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     report["verdict"] = grey_verdict(outcome.metrics);
     note("vam-optimize: " + io::input_name(options.input) + " " + grey_verdict(outcome.metrics));
   } else {
-    score::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
+    verdict::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
     if (outcome.all_cut) verdict.whole.part = 0;
     if (plan) verdict.seconds = plan->seconds;
     verdict.threshold = fixed_threshold(options);

@@ -24,7 +24,7 @@ struct Coarse {
   model::Printer printer;
   Filled part;
 
-  [[nodiscard]] const model::Unresolved& unresolved() const { return part.content.unresolved; }
+  [[nodiscard]] const verdict::Unresolved& unresolved() const { return part.content.unresolved; }
   /// Whether some voxel is wholly inside the part.
   [[nodiscard]] bool is_judged() const {
     const std::vector<float>& values = part.volume.values;

@@ -7,16 +7,16 @@
 #include <string>
 
 #include "base/json_fwd.hpp"
-#include "model/cavities.hpp"
 #include "model/grid.hpp"
 #include "model/part_surface.hpp"
-#include "model/print_pieces.hpp"
 #include "model/printer.hpp"
-#include "model/unresolved.hpp"
 #include "optimize/run/preview.hpp"
 #include "score/exposure_plan.hpp"
 #include "solid/voxel/wall.hpp"
 #include "vam-plan/options.hpp"
+#include "verdict/cavities.hpp"
+#include "verdict/print_pieces.hpp"
+#include "verdict/unresolved.hpp"
 
 namespace vam::plan_tool {
 
@@ -45,18 +45,18 @@ struct Plan {
   std::optional<double> wall_voxels;  // of that grid; none: the thinnest one is thinner than the resolution
   double wall_mm = 0;                 // of the print
   std::optional<solid::Walls::Place> thinnest_place;  // or a neck, thinner than that
-  model::Cavities cavities;                           // closed ones, in voxels of the walls' resolution
-  bool in_doubt = false;       // the printer's voxels lose walls or gaps, or leave open whether they print
-  bool sharp_edges = false;    // thinner than what prints
-  int wall_resolution = 1;     // in voxels
-  model::PartSurface surface;  // none known: no places, no solids
-  int coarseness = 0;          // pixels per voxel of the estimate; 0: none is wanted
-  model::Unresolved unjudged;  // walls and gaps too thin for the voxels of the estimate
-  bool all_judged = true;      // they are hardly more than rounded edges
-  double unjudged_low_mm = 0;  // heights in the print of most of them
+  verdict::Cavities cavities;                         // closed ones, in voxels of the walls' resolution
+  bool in_doubt = false;         // the printer's voxels lose walls or gaps, or leave open whether they print
+  bool sharp_edges = false;      // thinner than what prints
+  int wall_resolution = 1;       // in voxels
+  model::PartSurface surface;    // none known: no places, no solids
+  int coarseness = 0;            // pixels per voxel of the estimate; 0: none is wanted
+  verdict::Unresolved unjudged;  // walls and gaps too thin for the voxels of the estimate
+  bool all_judged = true;        // they are hardly more than rounded edges
+  double unjudged_low_mm = 0;    // heights in the print of most of them
   double unjudged_high_mm = 0;
-  std::optional<optimize::Preview> preview;  // none: none of its voxels is wholly inside the part
-  std::optional<model::PrintPieces> pieces;  // of part and print on its voxels
+  std::optional<optimize::Preview> preview;    // none: none of its voxels is wholly inside the part
+  std::optional<verdict::PrintPieces> pieces;  // of part and print on its voxels
   bool resin_known = false;
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
 };

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/json.hpp"
-#include "score/verdict.hpp"
 #include "solid/voxel/placement.hpp"
 #include "solid/voxel/trapped_resin.hpp"
 #include "solid/voxel/wall.hpp"
 #include "vam-plan/plan.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::plan_tool {
 
@@ -48,7 +48,7 @@ std::string deviation_name(std::size_t tolerance) {
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
 
 /// "12 % of the part, and gaps of 3 % of its volume"
-std::string unjudged_share(const model::Unresolved& unjudged) {
+std::string unjudged_share(const verdict::Unresolved& unjudged) {
   const auto percent = [](double share) { return format_number(100 * share, 2) + " % of "; };
   std::vector<std::string> shares;
   if (unjudged.part > 0) shares.push_back(percent(unjudged.part_share()) + "the part");
@@ -82,7 +82,7 @@ std::string print_rows(const Plan& plan) {
                                     (plan.coarseness > 1 ? "vam-slice states which the printer's voxels resolve"
                                                          : "smaller pixels, or thicker walls, resolve them"));
   }
-  const std::string torn = plan.pieces && nominal.figures.pw > 0 ? score::words(*plan.pieces) : "";
+  const std::string torn = plan.pieces && nominal.figures.pw > 0 ? verdict::words(*plan.pieces) : "";
   if (!torn.empty()) text += row("  pieces", torn);
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
@@ -182,7 +182,7 @@ Json report(const Plan& plan) {
   if (plan.preview) {
     json["ver"] = plan.preview->trials.nominal.figures.ver;
     json["pw"] = window(plan.preview->trials.nominal);
-    if (plan.pieces) score::add_to(json, *plan.pieces);
+    if (plan.pieces) verdict::add_to(json, *plan.pieces);
     for (const auto& single : plan.preview->trials.singles) {
       const std::string name(model::tolerance_table[single.tolerance].name);
       json["pw_deviating"][name] = worst_window(single);

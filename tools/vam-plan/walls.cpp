@@ -22,12 +22,12 @@ void warn_of_resolution(const std::string& subject, const Filled& fine, double s
 }
 
 /// Which half-covered voxels either leave out or show as thick as a voxel.
-bool has_walls_below_a_voxel(const model::Unresolved& unresolved, const solid::Walls& walls) {
+bool has_walls_below_a_voxel(const verdict::Unresolved& unresolved, const solid::Walls& walls) {
   const bool thin = walls.thinnest_voxels && *walls.thinnest_voxels < model::thin_voxels;
   return unresolved.loses_walls() || (thin && unresolved.is_much());
 }
 
-bool doubts(const model::Unresolved& unresolved) {
+bool doubts(const verdict::Unresolved& unresolved) {
   return unresolved.loses_walls() || unresolved.shuts_gaps() || unresolved.leaves_doubt() ||
          (unresolved.surface && unresolved.surface->may_be_pierced());
 }
@@ -38,9 +38,9 @@ solid::Walls::Place place_of(const model::ThinPlaces& walls, const Plan& plan) {
 }
 
 /// Where walls are measured on larger voxels, what the part's own surface tells.
-model::Unresolved of_printers_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
+verdict::Unresolved of_printers_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
   if (plan.wall_resolution == 1) return fine.content.unresolved;
-  model::Unresolved told;
+  verdict::Unresolved told;
   if (part.surface) told.surface = {part.surface(plan.grid), plan.grid.voxel_mm};
   return told;
 }
@@ -52,7 +52,7 @@ void add_walls(Plan& plan, const solid::Part& part) {
   plan.wall_resolution = std::max(1, static_cast<int>(by));
   const Filled fine =
       filled(plan.wall_resolution == 1 ? part : without_surface(part), plan.wall_resolution * plan.grid.voxel_mm);
-  const model::Unresolved unresolved = of_printers_voxels(plan, part, fine);
+  const verdict::Unresolved unresolved = of_printers_voxels(plan, part, fine);
   if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0)
     warn_of_resolution(part.subject, fine, plan.stretch_z);
   const solid::Walls walls = solid::walls(fine.volume, plan.stretch_z);

@@ -65,8 +65,8 @@ std::string verdict(bool good, const std::string& words) {
 }
 
 std::string verdict(const Judged& judged) {
-  const score::Verdict verdict = judged.score.verdict();
-  return report_tool::verdict(score::answer(verdict) == score::Answer::yes, score::words(verdict));
+  const verdict::Verdict verdict = judged.score.verdict();
+  return report_tool::verdict(verdict::answer(verdict) == verdict::Answer::yes, verdict::words(verdict));
 }
 
 std::string images(const std::vector<std::string>& paths) {

@@ -36,14 +36,14 @@ void LightPieces::count(const Pass& pass) {
       [&](int number) { return of(number).image; });
   for_each_dose(shown, pass, [&](int number, const float* dose) {
     task_.source.target(of(number).slice, 1, target_.data());
-    for (int n = 0; n < of(number).count; ++n) pieces_.add(1, target_.data(), dose);
+    for (int n = 0; n < of(number).count; ++n) pieces_.add(dose, target_.data(), 1);
   });
   next_ = pass.last;
   const int low = division_.from(next_, std::numeric_limits<int>::max()).low;
   for (; first_ < low; ++first_) held_.pop_front();
 }
 
-model::PrintPieces LightPieces::found() {
+verdict::PrintPieces LightPieces::found() {
   const int all = first_ + count_of(held_);
   while (next_ < all) count(division_.from(next_, all));
   return pieces_.found();

@@ -60,11 +60,11 @@ std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels,
 }
 
 // Light that fills the memory leaves room for few slices more.
-model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem, const VolumeSource& source) {
+verdict::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem, const VolumeSource& source) {
   constexpr std::size_t few_voxels = std::size_t{1} << 19U;
   const std::size_t size = product(dose[0].width, dose[0].height);
   const int at_once = static_cast<int>(std::clamp<std::size_t>(few_voxels / size, 1, lanes));
-  model::PrintPieceCounter counter(dose[0].width, dose[0].height, problem.demands.window.threshold());
+  verdict::PrintPieceCounter counter(dose[0].width, dose[0].height, problem.demands.window.threshold());
   for (std::size_t s = 0; s < dose.size(); ++s) {
     const int first = static_cast<int>(s) * lanes;
     const int slices = std::min(lanes, problem.slices - first);
@@ -72,7 +72,7 @@ model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& probl
       const int count = std::min(at_once, slices - lane);
       std::vector<float> target(product(count, size));
       source.target(first + lane, count, target.data());
-      counter.add(count, target.data(), judged_doses(dose[s], problem.labels[s], lane, count).data());
+      counter.add(judged_doses(dose[s], problem.labels[s], lane, count).data(), target.data(), count);
     }
   }
   return counter.found();

@@ -40,7 +40,7 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
   VolumeOutcome outcome;
   const light::Shape object = light.object();
   std::vector<float> target(product(object.width, object.height));
-  std::optional<model::PrintPieceCounter> pieces;
+  std::optional<verdict::PrintPieceCounter> pieces;
   if (!task.demands.grey && threshold > 0) pieces.emplace(object.width, object.height, threshold);
   for (int first = 0; first < slices;) {
     const Pass pass = division.from(first, slices);
@@ -52,7 +52,7 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
     if (pieces) {
       for_each_dose(shown, pass, [&](int k, const float* dose) {
         task.source.target(k, 1, target.data());
-        pieces->add(1, target.data(), dose);
+        pieces->add(dose, target.data(), 1);
       });
     }
     first = pass.last;

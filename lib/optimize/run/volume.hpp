@@ -13,13 +13,13 @@
 #include "base/json_fwd.hpp"
 #include "model/outside.hpp"
 #include "model/piece.hpp"
-#include "model/print_pieces.hpp"
 #include "optimize/run/certify.hpp"
 #include "optimize/run/even_dose.hpp"
 #include "optimize/run/front.hpp"
 #include "optimize/run/interruption.hpp"
 #include "optimize/run/shortest.hpp"
 #include "optimize/target/slice_reader.hpp"
+#include "verdict/print_pieces.hpp"
 
 namespace vam::optimize {
 
@@ -76,11 +76,11 @@ struct VolumeOutcome {
   model::DoseMetrics with_cut;               // with the voxels that the surface cuts: part from half coverage on
   std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
-  std::optional<model::PrintPieces> pieces;  // when asked for; none of a grey target, nor of a part of the slices
-  std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
-  std::optional<SurfaceMiss> surface;        // where slices share light
-  double eigenvalue = 0;                     // Method::eigenvalue() of the last pass
-  double least_ratio = 0;                    // Method::provable_ratio(), the largest of all passes
+  std::optional<verdict::PrintPieces> pieces;  // when asked for; none of a grey target, nor of a part of the slices
+  std::vector<SliceDemand> asked;              // by each slice; empty of a grey target
+  std::optional<SurfaceMiss> surface;          // where slices share light
+  double eigenvalue = 0;                       // Method::eigenvalue() of the last pass
+  double least_ratio = 0;                      // Method::provable_ratio(), the largest of all passes
   double efficiency = 0;
   double max_intensity = 0;                // the limit, as raised; 0: none
   EvenDose even;                           // where the limit asked for it, else 0

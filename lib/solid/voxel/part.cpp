@@ -135,8 +135,8 @@ void count_row(const model::Grid& grid, double y, const float* row, FillSummary&
 FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   FillSummary content;
   double voxels = 0;
-  model::UnresolvedFinder finder(grid);
-  model::CavityFinder cavities(grid);
+  verdict::UnresolvedFinder finder(grid);
+  verdict::CavityFinder cavities(grid);
   content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
     std::vector<FillSummary> of_slice(static_cast<std::size_t>(count));
     std::vector<double> covered(of_slice.size());

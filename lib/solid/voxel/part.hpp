@@ -8,14 +8,14 @@
 
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
-#include "model/cavities.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "model/part_surface.hpp"
-#include "model/unresolved.hpp"
 #include "solid/mesh/repair.hpp"
 #include "solid/voxel/placement.hpp"
 #include "solid/voxel/voxelize.hpp"
+#include "verdict/cavities.hpp"
+#include "verdict/unresolved.hpp"
 
 namespace vam::solid {
 
@@ -67,8 +67,8 @@ struct FillSummary {
   long surface_voxels = 0;  // partly
   float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
-  model::Unresolved unresolved;
-  model::Cavities cavities;
+  verdict::Unresolved unresolved;
+  verdict::Cavities cavities;
   Vote vote;
 };
 

@@ -39,7 +39,7 @@ double resolving_mm(const model::ThinPlaces& places, double voxels = model::narr
 }
 
 /// Of what voxels lose: such places of the part's own surface, or its relief; null where the surface does not tell.
-const model::ThinPlaces* cause_of(const model::Unresolved& unresolved, model::ThinPlaces model::PartSurface::*kind) {
+const model::ThinPlaces* cause_of(const verdict::Unresolved& unresolved, model::ThinPlaces model::PartSurface::*kind) {
   const auto& surface = unresolved.surface;
   if (!surface) return nullptr;
   const model::ThinPlaces& places = surface->places.*kind;
@@ -61,9 +61,9 @@ std::string place_doubt(const std::string& subject, const std::string& kind, con
 }
 
 /// Of walls that are lost, if they are a thousandth of the part or more, and of rods.
-std::string wall_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
+std::string wall_doubt(const std::string& subject, const verdict::Unresolved& unresolved, const model::Grid& grid,
                        double stretch_z) {
-  const model::LostWalls& lost = unresolved.lost_walls;
+  const verdict::LostWalls& lost = unresolved.lost_walls;
   const std::string what = unresolved.loses_much()
                                ? format_number(100 * unresolved.lost_share(), 2) + " % of the part is in walls"
                                : "walls or rods are";
@@ -76,7 +76,7 @@ std::string wall_doubt(const std::string& subject, const model::Unresolved& unre
          " mm or thicker walls may help";
 }
 
-std::string thin_doubt(const std::string& subject, const model::Unresolved& thin, const model::Grid& grid,
+std::string thin_doubt(const std::string& subject, const verdict::Unresolved& thin, const model::Grid& grid,
                        double stretch_z) {
   return subject + ": " + format_number(100 * thin.share(), 3) +
          " % of the part is in walls or gaps too thin for the voxels: " +
@@ -114,9 +114,9 @@ std::string finer_unit(double largest_mm, const Writable& room) {
   return "";
 }
 
-std::string gap_doubt(const std::string& subject, const model::Unresolved& unresolved, const model::Grid& grid,
+std::string gap_doubt(const std::string& subject, const verdict::Unresolved& unresolved, const model::Grid& grid,
                       double stretch_z) {
-  const model::LostGaps& lost = unresolved.lost_gaps;
+  const verdict::LostGaps& lost = unresolved.lost_gaps;
   if (!unresolved.shuts_gaps()) return "";
   const model::ThinPlaces* cause = cause_of(unresolved, &model::PartSurface::gaps);
   const double gap_mm = cause != nullptr ? cause->mm : grid.voxel_mm * static_cast<double>(lost.widest);
@@ -128,7 +128,7 @@ std::string gap_doubt(const std::string& subject, const model::Unresolved& unres
          format_number(resolving, 2) + " mm resolve them";
 }
 
-std::vector<std::string> resolution_doubts(const std::string& subject, const model::Unresolved& unresolved,
+std::vector<std::string> resolution_doubts(const std::string& subject, const verdict::Unresolved& unresolved,
                                            const model::Grid& grid, double stretch_z) {
   std::vector<std::string> doubts;
   const auto& surface = unresolved.surface;

@@ -16,7 +16,7 @@ double printed_mm3(std::int64_t voxels, double voxel_mm, double stretch_z) {
 
 }  // namespace
 
-std::string trapped_resin(const model::Cavities& cavities, double voxel_mm, double stretch_z) {
+std::string trapped_resin(const verdict::Cavities& cavities, double voxel_mm, double stretch_z) {
   if (cavities.count == 0) return "";
   const auto number = [](double value) { return format_number(value, 3); };
   const auto& [x, y, z] = cavities.at_mm;
@@ -28,7 +28,7 @@ std::string trapped_resin(const model::Cavities& cavities, double voxel_mm, doub
          ", " + number(y) + ", " + number(z / stretch_z) + " mm, from which resin cannot drain";
 }
 
-Json trapped_resin_figures(const model::Cavities& cavities, double voxel_mm, double stretch_z) {
+Json trapped_resin_figures(const verdict::Cavities& cavities, double voxel_mm, double stretch_z) {
   if (cavities.count == 0) return nullptr;
   const auto& [x, y, z] = cavities.at_mm;
   Json trapped;

@@ -106,10 +106,10 @@ TEST_CASE("pieces and torn voxels are those of the volume, whatever the passes, 
     task.limits.iterations = 12;
     task.make = [](double most) { return make_method("apg", {.max_intensity = most}); };
     const auto result = run(slices, task);
-    vam::model::PrintPieceCounter counter(size, size, task.demands.window.threshold());
-    for (std::size_t k = 0; k < slices.size(); ++k) counter.add(1, slices[k].data(), dose_of(result.images[k]).data());
+    vam::verdict::PrintPieceCounter counter(size, size, task.demands.window.threshold());
+    for (std::size_t k = 0; k < slices.size(); ++k) counter.add(dose_of(result.images[k]).data(), slices[k].data(), 1);
     REQUIRE(result.outcome.pieces);
-    const vam::model::PrintPieces& found = *result.outcome.pieces;
+    const vam::verdict::PrintPieces& found = *result.outcome.pieces;
     CHECK(found.part == 10);
     CHECK(found.part_at_half == 10);
     CHECK(found.print == 10);

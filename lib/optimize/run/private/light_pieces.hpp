@@ -5,10 +5,10 @@
 
 #include <deque>
 
-#include "model/print_pieces.hpp"
 #include "optimize/run/private/division.hpp"
 #include "optimize/run/volume.hpp"
 #include "optimize/target/slice_reader.hpp"
+#include "verdict/print_pieces.hpp"
 
 namespace vam::optimize {
 
@@ -19,7 +19,7 @@ class LightPieces {
   /// The projections of the next slice, which that job computed.
   void add(int job, const Image& image);
   /// After the last slice.
-  [[nodiscard]] model::PrintPieces found();
+  [[nodiscard]] verdict::PrintPieces found();
 
  private:
   /// Slices that follow each other and have one dose.
@@ -39,7 +39,7 @@ class LightPieces {
   int next_ = 0;               // the number of the first that is not counted
   int slices_ = 0;             // so far
   std::vector<float> target_;  // slice
-  model::PrintPieceCounter pieces_;
+  verdict::PrintPieceCounter pieces_;
 };
 
 }  // namespace vam::optimize

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "model/outside.hpp"
-#include "model/print_pieces.hpp"
 #include "optimize/target/problem.hpp"
 #include "optimize/target/slice_reader.hpp"
+#include "verdict/print_pieces.hpp"
 
 namespace vam::optimize {
 
@@ -27,7 +27,7 @@ struct OutsideSlices {
 [[nodiscard]] std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int first, int count);
 
 /// Of a whole part: its pieces and those of its print at the threshold. Not of a grey target.
-[[nodiscard]] model::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem,
-                                              const VolumeSource& source);
+[[nodiscard]] verdict::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem,
+                                                const VolumeSource& source);
 
 }  // namespace vam::optimize

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/cavities.hpp"
+#include "verdict/cavities.hpp"
 
 #include <utility>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "model/bit_slice.hpp"
 #include "model/dose_metrics.hpp"
+#include "verdict/private/bit_slice.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 namespace {
 
 constexpr std::int64_t least_voxels = 8;
 
 /// Of a slice with its margin.
-std::vector<VoxelRun> free_runs(const Grid& grid, const float* slice) {
-  return BitSlice(grid.nx, grid.ny, false, [&](std::size_t pixel) { return half_covered(slice[pixel]); })
+std::vector<VoxelRun> free_runs(const model::Grid& grid, const float* slice) {
+  return BitSlice(grid.nx, grid.ny, false, [&](std::size_t pixel) { return model::half_covered(slice[pixel]); })
       .runs(false, true);
 }
 
 /// Of the margin below and above the volume.
-std::vector<VoxelRun> margin_runs(const Grid& grid) { return BitSlice(grid.nx, grid.ny).runs(false, true); }
+std::vector<VoxelRun> margin_runs(const model::Grid& grid) { return BitSlice(grid.nx, grid.ny).runs(false, true); }
 
 }  // namespace
 
-CavityFinder::CavityFinder(const Grid& grid) : grid_(grid) { add(margin_runs(grid_)); }
+CavityFinder::CavityFinder(const model::Grid& grid) : grid_(grid) { add(margin_runs(grid_)); }
 
 void CavityFinder::add(int count, const float* slices) {
   std::vector<std::vector<VoxelRun>> runs(static_cast<std::size_t>(count));
@@ -70,4 +70,4 @@ Cavities CavityFinder::found() const {
   return all.closed_;
 }
 
-}  // namespace vam::model
+}  // namespace vam::verdict

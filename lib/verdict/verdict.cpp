@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "score/verdict.hpp"
+#include "verdict/verdict.hpp"
 
 #include <array>
 #include <string>
@@ -8,7 +8,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 
-namespace vam::score {
+namespace vam::verdict {
 
 namespace {
 
@@ -47,7 +47,7 @@ std::string place(const std::optional<std::array<double, 3>>& at_mm) {
   return ", most at x, y, z = " + format_number(x, 3) + ", " + format_number(y, 3) + ", " + format_number(z, 3) + " mm";
 }
 
-std::vector<std::string> of_pieces(const model::PrintPieces& pieces) {
+std::vector<std::string> of_pieces(const PrintPieces& pieces) {
   const std::string print = "the print is in " + in_pieces(pieces.print);
   if (pieces.is_in_other_pieces())
     return {print + ", the part in " + std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part)};
@@ -76,7 +76,7 @@ const char* beginning(Answer answer) {
   return "will print";
 }
 
-std::string unjudged(const model::Unresolved& un) {
+std::string unjudged(const Unresolved& un) {
   const auto percent = [](double share) { return format_number(100 * share, 3) + " % of the part"; };
   std::string text;
   if (un.loses_walls() && un.loses_much()) {
@@ -96,7 +96,7 @@ std::string unjudged(const model::Unresolved& un) {
 }  // namespace
 
 Answer answer(const Verdict& verdict) {
-  const model::Unresolved& un = verdict.unresolved;
+  const Unresolved& un = verdict.unresolved;
   const auto& pieces = verdict.pieces;
   if (verdict.whole.part == 0) return Answer::not_judged;
   if (!(verdict.whole.pw > 0) || !holds_threshold(verdict)) return Answer::no;
@@ -104,13 +104,13 @@ Answer answer(const Verdict& verdict) {
   return un.leaves_doubt() || (pieces && !pieces->is_certain()) ? Answer::unsure : Answer::yes;
 }
 
-void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& pieces) {
+void set_pieces(Verdict& verdict, const std::optional<PrintPieces>& pieces) {
   verdict.pieces = pieces;
   const auto& surface = verdict.unresolved.surface;
   if (verdict.pieces && surface) verdict.pieces->set_solids(surface->places);
 }
 
-std::string words(const model::PrintPieces& pieces) {
+std::string words(const PrintPieces& pieces) {
   std::vector<std::string> all = of_pieces(pieces);
   if (pieces.loses_walls()) {
     all.push_back("walls are cut or missing: " + std::to_string(pieces.broken.voxels) +
@@ -129,7 +129,7 @@ std::string words(const model::PrintPieces& pieces) {
   return join(all, "; ");
 }
 
-void add_to(Json& figures, const model::PrintPieces& pieces) {
+void add_to(Json& figures, const PrintPieces& pieces) {
   figures["part_pieces"] = pieces.part;
   if (pieces.solids > 0) figures["solids"] = pieces.solids;
   figures["part_pieces_at_half"] = pieces.part_at_half;
@@ -178,4 +178,4 @@ void add_to(Json& figures, const Verdict& verdict) {
   if (verdict.pieces) add_to(figures, *verdict.pieces);
 }
 
-}  // namespace vam::score
+}  // namespace vam::verdict

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/smooth_print.hpp"
+#include "verdict/private/smooth_print.hpp"
 
 #include <doctest/doctest.h>
 
@@ -23,7 +23,7 @@ std::vector<float> smoothed(const Field& coverage, const Field& dose, int pass) 
     part.push_back(coverage(x, y, z));
     light.push_back(dose(x, y, z));
   }
-  vam::model::SmoothPrint print(size, size, threshold);
+  vam::verdict::SmoothPrint print(size, size, threshold);
   std::vector<float> all;
   for (int first = 0; first < size; first += pass) {
     const int count = std::min(pass, size - first);
@@ -80,17 +80,17 @@ TEST_CASE("in gaps and walls of two voxels a little dose decides, in those of th
 }
 
 TEST_CASE("a firm dose is as the part has it within 2 % of the threshold") {
-  CHECK(same(vam::model::firm_dose(1, 0.495F, threshold), 0.51));
-  CHECK(same(vam::model::firm_dose(0.4F, 0.505F, threshold), 0.49));
-  CHECK(vam::model::firm_dose(1, 0.48F, threshold) == 0.48F);
-  CHECK(vam::model::firm_dose(0, 0.52F, threshold) == 0.52F);
+  CHECK(same(vam::verdict::firm_dose(1, 0.495F, threshold), 0.51));
+  CHECK(same(vam::verdict::firm_dose(0.4F, 0.505F, threshold), 0.49));
+  CHECK(vam::verdict::firm_dose(1, 0.48F, threshold) == 0.48F);
+  CHECK(vam::verdict::firm_dose(0, 0.52F, threshold) == 0.52F);
 }
 
 TEST_CASE("2 % of the dose decide on no voxel wholly in part or void") {
-  CHECK(same(vam::model::other_dose(0.98, 0.3F, 0.505F, threshold), 0.4949));
-  CHECK(same(vam::model::other_dose(0.98, 1, 0.6F, threshold), 0.588));
-  CHECK(vam::model::other_dose(0.98, 1, 0.505F, threshold) == 0.505F);
-  CHECK(same(vam::model::other_dose(1.02, 0.3F, 0.495F, threshold), 0.5049));
-  CHECK(same(vam::model::other_dose(1.02, 0, 0.4F, threshold), 0.408));
-  CHECK(vam::model::other_dose(1.02, 0, 0.495F, threshold) == 0.495F);
+  CHECK(same(vam::verdict::other_dose(0.98, 0.3F, 0.505F, threshold), 0.4949));
+  CHECK(same(vam::verdict::other_dose(0.98, 1, 0.6F, threshold), 0.588));
+  CHECK(vam::verdict::other_dose(0.98, 1, 0.505F, threshold) == 0.505F);
+  CHECK(same(vam::verdict::other_dose(1.02, 0.3F, 0.495F, threshold), 0.5049));
+  CHECK(same(vam::verdict::other_dose(1.02, 0, 0.4F, threshold), 0.408));
+  CHECK(vam::verdict::other_dose(1.02, 0, 0.495F, threshold) == 0.495F);
 }

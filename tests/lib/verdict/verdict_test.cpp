@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "score/verdict.hpp"
+#include "verdict/verdict.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,11 +7,11 @@
 #include "base/text.hpp"
 
 using namespace vam;
-using namespace vam::score;
+using namespace vam::verdict;
 
 namespace {
 
-Verdict verdict() {
+Verdict printable() {
   Verdict made;
   made.whole.part = 100;
   made.whole.void_ = 900;
@@ -27,10 +27,10 @@ Verdict verdict() {
 }  // namespace
 
 TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that are known") {
-  CHECK(words(verdict()) ==
+  CHECK(words(printable()) ==
         "will print: process window +0.0653 of the largest dose, VER 0 (1000 voxels); including the 110 voxels cut by "
         "the surface: process window -0.312, VER 0.0041");
-  Verdict hollow = verdict();
+  Verdict hollow = printable();
   hollow.with_cut = hollow.whole;
   hollow.whole.pw = hollow.with_cut.pw = -0.02;
   hollow.whole.ver = 0.003;
@@ -41,7 +41,7 @@ TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that 
 }
 
 TEST_CASE("where the threshold is fixed, a window beside it does not print") {
-  Verdict fixed = verdict();
+  Verdict fixed = printable();
   fixed.whole.max_void = 0.7;
   fixed.whole.min_part = 0.8;
   fixed.threshold = 0.772;
@@ -65,7 +65,7 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
 }
 
 TEST_CASE("a part of which hardly anything is judged may print, whatever its surface shows") {
-  Verdict rods = verdict();
+  Verdict rods = printable();
   rods.unresolved.whole = 1000;
   rods.unresolved.surface.emplace();
   rods.unresolved.part = 400;
@@ -76,10 +76,10 @@ TEST_CASE("a part of which hardly anything is judged may print, whatever its sur
 }
 
 TEST_CASE("walls and gaps that no voxel shows are told") {
-  Verdict thin = verdict();
+  Verdict thin = printable();
   thin.unresolved.whole = 1000;
   thin.unresolved.part = 19;
-  CHECK(words(thin) == words(verdict()));
+  CHECK(words(thin) == words(printable()));
   thin.unresolved.gaps = 261;
   CHECK(answer(thin) == Answer::unsure);
   CHECK(words(thin).starts_with("may print: "));
@@ -94,11 +94,11 @@ TEST_CASE("walls and gaps that no voxel shows are told") {
 }
 
 TEST_CASE("slits and hairs are told however small their share is") {
-  Verdict slit = verdict();
+  Verdict slit = printable();
   slit.unresolved.lost_gaps = {40, 0.5F, 3, 9};
   CHECK(answer(slit) == Answer::not_as_designed);
   CHECK(words(slit).find("gaps too narrow for the voxels will be shut") != std::string::npos);
-  Verdict hair = verdict();
+  Verdict hair = printable();
   hair.unresolved.whole = 1e6;
   hair.unresolved.lost_walls.far = hair.unresolved.lost_walls.voxels = 3;
   CHECK(answer(hair) == Answer::not_as_designed);
@@ -108,16 +108,16 @@ TEST_CASE("slits and hairs are told however small their share is") {
 }
 
 TEST_CASE("a part without a voxel wholly inside is not judged") {
-  Verdict none = verdict();
+  Verdict none = printable();
   none.whole.part = 0;
   CHECK(answer(none) == Answer::not_judged);
   CHECK(words(none).starts_with("not judged, as no voxel is wholly inside the part: "));
 }
 
 TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
-  Verdict cut = verdict();
+  Verdict cut = printable();
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1};
-  CHECK(words(cut) == words(verdict()));
+  CHECK(words(cut) == words(printable()));
   CHECK(answer(cut) == Answer::yes);
   cut.pieces->print = 2;
   CHECK(answer(cut) == Answer::not_as_designed);
@@ -160,7 +160,7 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
 
 // A dose that is the same everywhere has it: what prints the part prints the void, too.
 TEST_CASE("a window of width 0 does not print, and report and message agree") {
-  Verdict edge = verdict();
+  Verdict edge = printable();
   edge.whole.pw = 0;
   CHECK(answer(edge) == Answer::no);
   Json figures;
@@ -178,10 +178,10 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
 }
 
 TEST_CASE("the part's own surface tells its pieces and what is thin, and overrules its voxels") {
-  model::PrintPieces counted;
+  verdict::PrintPieces counted;
   counted.part = 1;
   counted.part_at_half = counted.print = 2;
-  Verdict made = verdict();
+  Verdict made = printable();
   set_pieces(made, counted);
   CHECK(answer(made) == Answer::unsure);
   model::VoxelisedSurface surface{{}, 0.2};
@@ -206,7 +206,7 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
   made.unresolved.surface = surface;
   set_pieces(made, counted);
   CHECK(answer(made) == Answer::yes);
-  CHECK(words(made) == words(verdict()));
+  CHECK(words(made) == words(printable()));
   // Voxels that only a rough surface leaves uncovered.
   made.unresolved.lost_walls.voxels = 5;
   CHECK(answer(made) == Answer::yes);

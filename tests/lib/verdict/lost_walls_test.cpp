@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "model/unresolved.hpp"
+#include "verdict/defect_voxels.hpp"
+#include "verdict/unresolved.hpp"
 
 using namespace vam;
 using namespace vam::model;
+using namespace vam::verdict;
 
 namespace {
 

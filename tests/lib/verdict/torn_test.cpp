@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Torn sets, against their definition on the whole volume.
-#include "model/torn.hpp"
+#include "verdict/private/torn.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "lib/model/printed_volume.hpp"
+#include "lib/verdict/printed_volume.hpp"
 
 using namespace vam;
 using namespace vam::test;
@@ -132,7 +132,7 @@ TEST_CASE("torn sets are those of the whole volume, at every density and height 
           print.add([&](int i) { return part[i] ? 1.0F : 0.0F; }, [&](int i) { return cure[i]; });
         }
         const auto found = print.found(1 + trial % 4);
-        const auto is_in = [](const model::TornSets::Found& torn, const Solid& solid) {
+        const auto is_in = [](const verdict::Defects& torn, const Solid& solid) {
           return torn.voxels == 0 || (solid.at(torn.at.column, torn.at.row, torn.at.slice) && torn.largest > 0 &&
                                       torn.largest <= torn.voxels);
         };

@@ -13,7 +13,7 @@
 #include "model/grid.hpp"
 #include "model/part_surface.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 /// Coverage of voxels that are covered by less than a half, and so are their 26 neighbours.
 struct LostWalls {
@@ -43,7 +43,7 @@ struct Unresolved {
   int end = 0;
   LostWalls lost_walls;
   LostGaps lost_gaps;
-  std::optional<VoxelisedSurface> surface;  // none: the surface of the part is not known
+  std::optional<model::VoxelisedSurface> surface;  // none: the surface of the part is not known
 
   /// Relative to the part.
   [[nodiscard]] double part_share() const { return whole > 0 ? part / whole : 0; }
@@ -72,14 +72,10 @@ struct Unresolved {
   [[nodiscard]] bool shuts_gaps() const;
 };
 
-/// Which voxels of the middle one of three slices of coverage are of lost walls, by their numbers; nullptr beyond the
-/// volume.
-[[nodiscard]] std::vector<std::size_t> lost_walls(int width, int height, const float* const* slices);
-
 /// Finds it slice by slice, from the lowest up.
 class UnresolvedFinder {
  public:
-  explicit UnresolvedFinder(const Grid& grid) : UnresolvedFinder(grid.nx, grid.ny) {}
+  explicit UnresolvedFinder(const model::Grid& grid) : UnresolvedFinder(grid.nx, grid.ny) {}
   UnresolvedFinder(int width, int height) : width_(width), height_(height) {}
   /// The next slices of coverage 0...1, row-major.
   void add(int count, const float* slices);
@@ -105,4 +101,4 @@ class UnresolvedFinder {
   int added_ = 0;
 };
 
-}  // namespace vam::model
+}  // namespace vam::verdict

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/tunnels.hpp"
+#include "verdict/private/tunnels.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 namespace {
 
@@ -273,4 +273,4 @@ std::int64_t TunnelCounter::tunnels() const {
   return all.solid_.count() + all.rest_.count() - 1 - all.euler_;
 }
 
-}  // namespace vam::model
+}  // namespace vam::verdict

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/print_pieces.hpp"
+#include "verdict/print_pieces.hpp"
 
 namespace vam::test {
 
@@ -30,11 +30,11 @@ class Print {
       dose_.push_back(cures(i) ? 1.0F : 0.5F);
     }
   }
-  [[nodiscard]] model::PrintPieces found(int a_pass) const {
-    model::PrintPieceCounter counter(size_, static_cast<int>(pixels_) / size_, 0.8);
+  [[nodiscard]] verdict::PrintPieces found(int a_pass) const {
+    verdict::PrintPieceCounter counter(size_, static_cast<int>(pixels_) / size_, 0.8);
     for (std::size_t at = 0; at < dose_.size(); at += a_pass * pixels_) {
       const int count = std::min(a_pass, static_cast<int>((dose_.size() - at) / pixels_));
-      counter.add(count, coverage_.data() + at, dose_.data() + at);
+      counter.add(dose_.data() + at, coverage_.data() + at, count);
     }
     return counter.found();
   }

@@ -6,17 +6,28 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <vector>
 
+#include "model/circle.hpp"
 #include "model/grid.hpp"
 #include "model/part_surface.hpp"
-#include "model/pieces.hpp"
-#include "model/smooth_print.hpp"
-#include "model/torn.hpp"
-#include "model/tunnels.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
+
+/// A voxel of a volume.
+struct VoxelPlace {
+  int column = 0, row = 0, slice = 0;
+  bool operator==(const VoxelPlace&) const = default;
+};
+
+/// Voxels of one kind of defect.
+struct Defects {
+  std::int64_t voxels = 0;   // of all
+  std::int64_t largest = 0;  // of these, that hang together
+  VoxelPlace at = {};        // one of them
+  bool operator==(const Defects&) const = default;
+};
 
 struct PrintPieces {
   static constexpr std::int64_t least_voxels = 8;  // of a piece: smaller ones are rounded tips and edges
@@ -25,8 +36,8 @@ struct PrintPieces {
   int print = 0;         // of the dose at the threshold
   int print_fewer = 0;   // and by how many it is in fewer or more with 1 and 2 % less and more dose [other_dose]
   int print_more = 0;
-  TornSets::Found broken = {};  // of the part
-  TornSets::Found shut = {};    // of gaps
+  Defects broken = {};     // of the part
+  Defects shut = {};       // of gaps
   std::int64_t holes = 0;  // tunnels of the print, smooth ones [SmoothPrint], beyond those of the part; not less than 0
   std::int64_t firm_holes = 0;  // of these, on which 2 % of the dose do not decide [firm_dose]
   int solids = 0;               // of the part's own surface; 0: not known
@@ -35,15 +46,15 @@ struct PrintPieces {
   std::optional<std::array<double, 3>> broken_at_mm = std::nullopt, shut_at_mm = std::nullopt;
 
   /// Both were counted on these voxels.
-  void set_places(const Grid& grid, double stretch_z) {
-    const auto place = [&](const TornSets::Found& found) -> std::optional<std::array<double, 3>> {
+  void set_places(const model::Grid& grid, double stretch_z) {
+    const auto place = [&](const Defects& found) -> std::optional<std::array<double, 3>> {
       if (found.voxels == 0) return std::nullopt;
       return std::array{grid.x_mm(found.at.column), grid.y_mm(found.at.row), grid.z_mm(found.at.slice) / stretch_z};
     };
     broken_at_mm = place(broken);
     shut_at_mm = place(shut);
   }
-  void set_solids(const PartSurface& surface) {
+  void set_solids(const model::PartSurface& surface) {
     solids = surface.solids;
     specks = surface.specks;
   }
@@ -69,24 +80,19 @@ struct PrintPieces {
 /// Slice by slice, from the lowest up.
 class PrintPieceCounter {
  public:
-  /// threshold: more than 0.
-  PrintPieceCounter(int width, int height, double threshold);
-  /// The next slices, row-major: coverage 0...1, and dose, 0 where it is not judged.
-  void add(int count, const float* coverage, const float* dose);
+  /// threshold: more than 0. Outside the circle only voxels of the part cure; none: all is judged.
+  PrintPieceCounter(int width, int height, double threshold, const std::optional<model::Circle>& circle = {});
+  ~PrintPieceCounter();
+  PrintPieceCounter(PrintPieceCounter&&) noexcept;
+  PrintPieceCounter& operator=(PrintPieceCounter&&) noexcept;
+  /// The next `count` slices, row-major: dose, 0 where it is not judged, and coverage 0...1.
+  void add(const float* dose, const float* coverage, int count);
   /// Of the slices so far, beyond which is nothing.
   [[nodiscard]] PrintPieces found() const;
 
  private:
-  using Slice = std::vector<std::uint8_t>;  // of bits
-  int width_, height_;
-  double threshold_;
-  PieceCounter part_;
-  FieldPieces part_at_half_, print_;
-  std::vector<FieldPieces> print_of_others_;  // of other doses
-  TunnelCounter of_part_, of_print_, of_smooth_, of_firm_;
-  SmoothPrint smooth_;
-  std::vector<Slice> last_;                        // up to two
-  TornSets broken_{Torn::part}, shut_{Torn::gap};  // in all but the last slice
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
-}  // namespace vam::model
+}  // namespace vam::verdict

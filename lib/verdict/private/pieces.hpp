@@ -7,17 +7,13 @@
 #include <functional>
 #include <vector>
 
-namespace vam::model {
+#include "verdict/print_pieces.hpp"
+
+namespace vam::verdict {
 
 /// Voxels of a row that are of a solid: [begin, end). Those of a slice come in order [BitSlice::runs].
 struct VoxelRun {
   int row, begin, end;
-};
-
-/// A voxel of a volume.
-struct VoxelPlace {
-  int column = 0, row = 0, slice = 0;
-  bool operator==(const VoxelPlace&) const = default;
 };
 
 /// Two voxels of a row and its neighbour rows, or of neighbouring slices.
@@ -112,4 +108,4 @@ class FieldPieces {
   std::vector<float> last_;
 };
 
-}  // namespace vam::model
+}  // namespace vam::verdict

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bits of a slice, against the voxels one by one.
-#include "model/bit_slice.hpp"
+#include "verdict/private/bit_slice.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 using namespace vam;
-using model::BitSlice;
+using verdict::BitSlice;
 
 namespace {
 
@@ -57,8 +57,8 @@ TEST_CASE("bits of a slice are its voxels, row by row, and its margin") {
           std::vector<std::vector<int>> in(static_cast<std::size_t>(height) + 2,
                                            std::vector<int>(static_cast<std::size_t>(width) + 3, 0));
           bool apart = true;
-          model::VoxelRun last{-2, 0, 0};
-          for (const model::VoxelRun& run : bits.runs(of, with_margin)) {
+          verdict::VoxelRun last{-2, 0, 0};
+          for (const verdict::VoxelRun& run : bits.runs(of, with_margin)) {
             apart = apart && run.begin < run.end && (run.row > last.row || run.begin > last.end);
             last = run;
             for (int x = run.begin; x < run.end; ++x) ++in.at(static_cast<std::size_t>(run.row + 1)).at(x + 1);
@@ -84,9 +84,9 @@ TEST_CASE("a float reaches a level where it reaches the least float that does") 
   std::uniform_real_distribution<double> any(0.01, 3);
   for (int n = 0; n < 1000; ++n) {
     const double level = any(random);
-    const float least = model::least_reaching(level);
+    const float least = verdict::least_reaching(level);
     CHECK(static_cast<double>(least) >= level);
     CHECK(static_cast<double>(std::nextafter(least, 0.0F)) < level);
   }
-  CHECK(model::least_reaching(0.5) == 0.5F);
+  CHECK(verdict::least_reaching(0.5) == 0.5F);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/pieces.hpp"
+#include "verdict/private/pieces.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "base/index.hpp"
-#include "model/bit_slice.hpp"
+#include "verdict/private/bit_slice.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 void for_near_runs(const std::vector<VoxelRun>& runs, const std::vector<VoxelRun>& others, int rows_apart,
                    const std::function<void(std::size_t i, std::size_t j)>& pair) {
@@ -144,4 +144,4 @@ void FieldPieces::add(std::vector<float> slice) {
   last_ = std::move(slice);
 }
 
-}  // namespace vam::model
+}  // namespace vam::verdict

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/smooth_print.hpp"
+#include "verdict/private/smooth_print.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include "base/parallel.hpp"
 #include "model/dose_metrics.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 namespace {
 
@@ -20,14 +20,14 @@ float firm_dose(float coverage, float dose, double threshold) {
   const auto least = static_cast<float>((1 - rough) * threshold);
   const auto most = static_cast<float>((1 + rough) * threshold);
   if (dose < least || dose > most) return dose;
-  return coverage >= static_cast<float>(half_surface) ? most : least;
+  return coverage >= static_cast<float>(model::half_surface) ? most : least;
 }
 
 float other_dose(double factor, float coverage, float dose, double threshold) {
   const float other = static_cast<float>(factor) * dose;
   const bool cures = static_cast<double>(other) >= threshold;
-  const bool stays =
-      factor < 1 ? label_of(coverage) == Label::part && !cures : label_of(coverage) == Label::void_ && cures;
+  const bool stays = factor < 1 ? model::label_of(coverage) == model::Label::part && !cures
+                                : model::label_of(coverage) == model::Label::void_ && cures;
   return stays ? dose : other;
 }
 
@@ -81,7 +81,7 @@ std::vector<float> SmoothPrint::add(int count, const float* coverage, const floa
     for (int y = 0; y < height_; ++y) {
       const float* from = coverage + first + product(y, width_);
       std::uint8_t* to = slice.part.data() + product(y + reach, row_) + reach;
-      for (int x = 0; x < width_; ++x) to[x] = from[x] >= static_cast<float>(half_surface) ? 1 : 0;
+      for (int x = 0; x < width_; ++x) to[x] = from[x] >= static_cast<float>(model::half_surface) ? 1 : 0;
     }
     slices_.push_back(std::move(slice));
   }
@@ -95,4 +95,4 @@ std::vector<float> SmoothPrint::add(int count, const float* coverage, const floa
 
 std::vector<float> SmoothPrint::rest() const { return smooth(returned_, count_of(slices_)); }
 
-}  // namespace vam::model
+}  // namespace vam::verdict

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "model/grid.hpp"
-#include "model/pieces.hpp"
+#include "verdict/private/pieces.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 struct Cavities {
   int count = 0;
@@ -23,7 +23,7 @@ struct Cavities {
 /// runs of two slices.
 class CavityFinder {
  public:
-  explicit CavityFinder(const Grid& grid);
+  explicit CavityFinder(const model::Grid& grid);
   /// The next slices of coverage 0...1, row-major, on all threads.
   void add(int count, const float* slices);
   /// In the volume, beyond which all is free. After the last slice.
@@ -38,11 +38,11 @@ class CavityFinder {
   };
   void add(const std::vector<VoxelRun>& runs);
 
-  Grid grid_;
+  model::Grid grid_;
   RunSets open_;           // that reach the last slice
   std::vector<Row> rows_;  // of each run
   int slices_ = -1;        // so far, without the margin below
   Cavities closed_;
 };
 
-}  // namespace vam::model
+}  // namespace vam::verdict

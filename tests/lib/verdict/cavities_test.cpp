@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/cavities.hpp"
+#include "verdict/cavities.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@ using namespace vam;
 namespace {
 
 // In slabs of 3 slices.
-model::Cavities cavities(int n, const std::function<double(double x, double y, double z)>& coverage) {
+verdict::Cavities cavities(int n, const std::function<double(double x, double y, double z)>& coverage) {
   const model::Grid grid = model::centred_grid(n, n, n, 0.5, -0.25 * (n - 1));
   std::vector<float> values;
   for (int k = 0; k < n; ++k) {
@@ -21,7 +21,7 @@ model::Cavities cavities(int n, const std::function<double(double x, double y, d
         values.push_back(static_cast<float>(coverage(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k))));
     }
   }
-  model::CavityFinder finder(grid);
+  verdict::CavityFinder finder(grid);
   for (int k = 0; k < n; k += 3) finder.add(std::min(3, n - k), values.data() + std::size_t(k) * grid.slice_size());
   return finder.found();
 }

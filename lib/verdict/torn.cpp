@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/torn.hpp"
+#include "verdict/private/torn.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/index.hpp"
-#include "model/bit_slice.hpp"
+#include "verdict/private/bit_slice.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 namespace {
 
@@ -281,10 +281,10 @@ void TornSets::judge_undecided(const std::vector<Piece>& now) {
 }
 
 // Above the last slice is nothing, so that all ends there.
-TornSets::Found TornSets::found() const {
+Defects TornSets::found() const {
   TornSets all = *this;
   all.add({});
   return all.found_;
 }
 
-}  // namespace vam::model
+}  // namespace vam::verdict

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pieces of solids of voxels, against a flood fill.
-#include "model/print_pieces.hpp"
+#include "verdict/print_pieces.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,8 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "lib/model/printed_volume.hpp"
-#include "model/bit_slice.hpp"
+#include "lib/verdict/printed_volume.hpp"
+#include "verdict/defect_voxels.hpp"
+#include "verdict/private/bit_slice.hpp"
 
 using namespace vam;
 using namespace vam::test;
@@ -20,10 +21,11 @@ using namespace vam::test;
 namespace {
 
 int counted(const Solid& solid, std::int64_t least) {
-  model::PieceCounter counter(least);
+  verdict::PieceCounter counter(least);
   for (int z = 0; z < solid.nz; ++z) {
     const auto is = [&](std::size_t i) { return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0; };
-    counter.add(model::BitSlice(solid.nx, solid.ny, false, is).runs(), [](const model::VoxelPair&) { return true; });
+    counter.add(verdict::BitSlice(solid.nx, solid.ny, false, is).runs(),
+                [](const verdict::VoxelPair&) { return true; });
   }
   return counter.count();
 }
@@ -215,7 +217,7 @@ TEST_CASE("of two gaps in rods the larger one tells the place, however the slice
     print.add([&](int i) { return rod(i) ? 1.0F : 0.0F; }, [&](int i) { return rod(i) && !lost(i); });
   }
   for (const int a_pass : {1, 3, 20}) {
-    model::PrintPieces found = print.found(a_pass);
+    verdict::PrintPieces found = print.found(a_pass);
     CHECK(found.broken.voxels == 6);
     CHECK(found.broken.largest == 4);
     CHECK(found.broken.at.column == 8);
@@ -258,7 +260,7 @@ TEST_CASE("holes of a thin wall are holes, and no broken voxels") {
 TEST_CASE("a hole that only a dose moved to void would open is none") {
   constexpr int size = 9;
   const auto found = [&](float middle) {  // of a plate beside the part, with one row of another dose through it
-    vam::model::PrintPieceCounter counter(size, size, 0.5);
+    vam::verdict::PrintPieceCounter counter(size, size, 0.5);
     for (int k = 0; k < 5; ++k) {
       const std::vector<float> coverage(size * size, 0);
       std::vector<float> dose(size * size, 0);
@@ -267,7 +269,7 @@ TEST_CASE("a hole that only a dose moved to void would open is none") {
         const int y = i / size;
         if (x > 0 && x < size - 1 && y > 0 && y < size - 1) dose[i] = x == 4 && y == 4 ? middle : 0.6F;
       }
-      counter.add(1, coverage.data(), dose.data());
+      counter.add(dose.data(), coverage.data(), 1);
     }
     return counter.found();
   };
@@ -293,30 +295,30 @@ TEST_CASE("a fin that loses its upper half is broken, a sharp edge that is round
 }
 
 TEST_CASE("coverage counts from its limits on") {
-  using namespace model::printed;
-  CHECK(model::printed_bits(0.03F, false) == 0);
-  CHECK(model::printed_bits(1 / 32.0F, true) == (trace | cured));
-  CHECK(model::printed_bits(0.249F, false) == trace);
-  CHECK(model::printed_bits(0.25F, false) == (trace | edge));
-  CHECK(model::printed_bits(0.499F, false) == (trace | edge));
-  CHECK(model::printed_bits(0.5F, false) == (trace | edge | part));
+  using namespace verdict::printed;
+  CHECK(verdict::printed_bits(0.03F, false) == 0);
+  CHECK(verdict::printed_bits(1 / 32.0F, true) == (trace | cured));
+  CHECK(verdict::printed_bits(0.249F, false) == trace);
+  CHECK(verdict::printed_bits(0.25F, false) == (trace | edge));
+  CHECK(verdict::printed_bits(0.499F, false) == (trace | edge));
+  CHECK(verdict::printed_bits(0.5F, false) == (trace | edge | part));
 }
 
 TEST_CASE("a volume of one slice, and of one column") {
   for (const auto& [width, height, slices] : {std::array{9, 1, 1}, std::array{1, 9, 1}, std::array{1, 1, 9}}) {
-    model::PrintPieceCounter counter(width, height, 1);
+    verdict::PrintPieceCounter counter(width, height, 1);
     const std::vector<float> line(9, 1.0F);
-    counter.add(slices, line.data(), line.data());
+    counter.add(line.data(), line.data(), slices);
     CHECK(counter.found().part == 1);
     CHECK(counter.found().print == 1);
     CHECK(counter.found().is_as_part());
   }
-  CHECK(model::PrintPieceCounter(4, 4, 1).found().part == 0);
+  CHECK(verdict::PrintPieceCounter(4, 4, 1).found().part == 0);
 }
 
 TEST_CASE("a field is joined across an edge or a corner where it is between them, by closed forms") {
   const auto pieces = [](std::vector<float> below, std::vector<float> slice) {
-    model::FieldPieces counter(2, 2, 1, 1);
+    verdict::FieldPieces counter(2, 2, 1, 1);
     counter.add(std::move(below));
     counter.add(std::move(slice));
     return counter.count();
@@ -339,15 +341,15 @@ TEST_CASE("a field is joined across an edge or a corner where it is between them
 TEST_CASE("1 % of the dose may cut off what 2 % no longer cure") {
   constexpr int width = 11;
   constexpr int height = 5;
-  model::PrintPieceCounter counter(width, height, 0.8);
+  verdict::PrintPieceCounter counter(width, height, 0.8);
   std::vector<float> part, dose;  // a block, a rod that 1 % break, and beyond it what 1 % leave
   for (int i = 0; i < width * height; ++i) {
     const int x = i % width;
     part.push_back(x < 5 ? 1.0F : x == 5 ? 0.6F : x < 9 ? 0.9F : 0.0F);
     dose.push_back(x < 5 ? 1.0F : x == 5 ? 0.805F : x < 9 ? 0.812F : 0.0F);
   }
-  for (int k = 0; k < height; ++k) counter.add(1, part.data(), dose.data());
-  const model::PrintPieces found = counter.found();
+  for (int k = 0; k < height; ++k) counter.add(dose.data(), part.data(), 1);
+  const verdict::PrintPieces found = counter.found();
   CHECK(found.print == 1);
   CHECK(found.print_least() == 1);
   CHECK(found.print_most() == 2);
@@ -357,17 +359,17 @@ TEST_CASE("a rod at the threshold, or a gap just below it, leaves the number of 
   const auto found = [](float covered, float dose) {  // between two blocks
     constexpr int width = 11;
     constexpr int height = 5;
-    model::PrintPieceCounter counter(width, height, 0.8);
+    verdict::PrintPieceCounter counter(width, height, 0.8);
     const auto slice = [&](float block, float between) {
       std::vector<float> values;
       for (int i = 0; i < width * height; ++i) values.push_back(i % width == width / 2 ? between : block);
       return values;
     };
-    for (int k = 0; k < height; ++k) counter.add(1, slice(1, covered).data(), slice(1, dose).data());
+    for (int k = 0; k < height; ++k) counter.add(slice(1, dose).data(), slice(1, covered).data(), 1);
     return counter.found();
   };
   const auto range = [&](float covered, float dose) {
-    const model::PrintPieces pieces = found(covered, dose);
+    const verdict::PrintPieces pieces = found(covered, dose);
     return std::array<int, 3>{pieces.print_least(), pieces.print, pieces.print_most()};
   };
   CHECK(range(0.6F, 0.81F) == std::array{1, 1, 2});
@@ -376,4 +378,27 @@ TEST_CASE("a rod at the threshold, or a gap just below it, leaves the number of 
   CHECK(range(1, 0.81F) == std::array{1, 1, 1});  // the process window tells of it
   CHECK(found(0.6F, 0.81F).may_be_in_other_pieces());
   CHECK(!found(0.6F, 0.83F).may_be_in_other_pieces());
+}
+
+TEST_CASE("what cures outside the circle is a piece only where it is of the part") {
+  constexpr int size = 16;
+  const auto print_pieces = [&](double radius, float beside) {  // of a block in the middle, and one in a corner
+    std::vector<float> target;
+    std::vector<float> dose;
+    for (int i = 0; i < size * size * 2; ++i) {
+      const int x = i % size;
+      const int y = i / size % size;
+      const bool middle = x >= 6 && x < 10 && y >= 6 && y < 10;
+      const bool corner = x < 3 && y < 3;
+      target.push_back(middle ? 1.0F : corner ? beside : 0.0F);
+      dose.push_back(middle || corner ? 5.0F : 1.0F);
+    }
+    verdict::PrintPieceCounter pieces(size, size, 3, vam::model::Circle{7.5, 7.5, radius});
+    pieces.add(dose.data(), target.data(), 1);
+    pieces.add(dose.data() + size * size, target.data() + size * size, 1);
+    return pieces.found().print;
+  };
+  CHECK(print_pieces(20, 0) == 2);
+  CHECK(print_pieces(7, 0) == 1);
+  CHECK(print_pieces(7, 1) == 2);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/unresolved.hpp"
+#include "verdict/unresolved.hpp"
 
 #include <algorithm>
 
@@ -7,8 +7,9 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "model/dose_metrics.hpp"
+#include "verdict/defect_voxels.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 namespace {
 
@@ -38,13 +39,13 @@ struct Place {
     return false;
   }
   [[nodiscard]] bool near_part() const {
-    return near([](float c) { return label_of(c) == Label::part; });
+    return near([](float c) { return model::label_of(c) == model::Label::part; });
   }
   [[nodiscard]] bool is_of_lost_wall(float covered) const {
     return covered < half && !near([](float c) { return c >= half; });
   }
   [[nodiscard]] bool near_void() const {
-    return at_border() || near([](float c) { return label_of(c) == Label::void_; });
+    return at_border() || near([](float c) { return model::label_of(c) == model::Label::void_; });
   }
   /// Free shares of it and its two neighbours along the axis of which that is least. Not at the border.
   [[nodiscard]] float gap() const {
@@ -83,7 +84,7 @@ void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
 
 std::string Unresolved::thin_places() const {
   if (!surface) return "";
-  const auto voxels_of = [&](const char* kind, const ThinPlaces& places) {
+  const auto voxels_of = [&](const char* kind, const model::ThinPlaces& places) {
     return std::string(kind) + " of " + format_number(places.mm / surface->voxel_mm, 2) + " voxels";
   };
   std::string text;
@@ -110,7 +111,7 @@ std::vector<std::size_t> lost_walls(int width, int height, const float* const* s
     for (int i = 0; i < width; ++i) {
       const std::size_t at = product(j, width) + static_cast<std::size_t>(i);
       const float covered = slices[1][at];
-      if (label_of(covered) != Label::surface) continue;
+      if (model::label_of(covered) != model::Label::surface) continue;
       if (Place{width, height, slices, i, j}.is_of_lost_wall(covered)) voxels.push_back(at);
     }
   }
@@ -125,7 +126,7 @@ UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) c
     for (int i = 0; i < width_; ++i, ++coverage) {
       const float covered = *coverage;
       sums.whole += covered;
-      if (label_of(covered) != Label::surface) continue;
+      if (model::label_of(covered) != model::Label::surface) continue;
       const Place place{width_, height_, slices + reach - 1, i, j};
       if (!place.near_part()) {
         sums.part += covered;
@@ -205,4 +206,4 @@ Unresolved UnresolvedFinder::found() const {
   return all;
 }
 
-}  // namespace vam::model
+}  // namespace vam::verdict

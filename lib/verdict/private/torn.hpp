@@ -7,27 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "model/dose_metrics.hpp"
-#include "model/pieces.hpp"
+#include "verdict/defect_voxels.hpp"
+#include "verdict/private/pieces.hpp"
 
-namespace vam::model {
-
-/// Of a voxel, as bits.
-namespace printed {
-inline constexpr std::uint8_t part = 1;   // at least half covered
-inline constexpr std::uint8_t cured = 2;  // receives the threshold
-inline constexpr std::uint8_t edge = 4;   // at least a quarter covered
-inline constexpr std::uint8_t trace = 8;  // at least 1/32 covered, as by a thin rod
-}  // namespace printed
-[[nodiscard]] constexpr std::uint8_t printed_bits(float coverage, bool cured) {
-  return static_cast<std::uint8_t>((coverage >= static_cast<float>(half_surface) ? printed::part : 0) |
-                                   (coverage >= 0.25F ? printed::edge : 0) |
-                                   (coverage >= 1 / 32.0F ? printed::trace : 0) | (cured ? printed::cured : 0));
-}
-
-/// Of the part what does not cure is lost, and what cures is left; of gaps, void that is less than a quarter covered
-/// and cures, and void that stays liquid.
-enum class Torn { part, gap };
+namespace vam::verdict {
 
 /// A slice of it, from three slices of printed:: bits.
 struct TornSlice {
@@ -41,9 +24,6 @@ struct TornSlice {
 
 /// slices: the middle one of three, nullptr beyond the volume, where nothing is lost and void is left.
 [[nodiscard]] TornSlice torn_slice(Torn what, int width, int height, const std::uint8_t* const* slices);
-/// The torn voxels of a slice, by their numbers: lost, and what is left among their 26 neighbours is nothing, as in a
-/// hole of a wall, or falls apart without them, as at the foot of a wall that hangs on by its ends.
-[[nodiscard]] std::vector<std::size_t> torn_voxels(Torn what, int width, int height, const std::uint8_t* const* slices);
 
 /// Sets of lost voxels that touch, slice by slice, from the lowest up. A set counts if the left voxels that touch it
 /// are in more than one piece, as at a rod that is cut, or in none, as of a cavity. Of others those torn voxels count
@@ -56,13 +36,7 @@ class TornSets {
   void add(const TornSlice& slice);
   /// That count.
   [[nodiscard]] std::int64_t voxels() const { return found().voxels; }
-  struct Found {
-    std::int64_t voxels = 0;   // of all that count
-    std::int64_t largest = 0;  // of these, that hang together
-    VoxelPlace at = {};        // one of them
-    bool operator==(const Found&) const = default;
-  };
-  [[nodiscard]] Found found() const;
+  [[nodiscard]] Defects found() const;
 
  private:
   /// Of left voxels: the run that stands for it in the last slice, or of one that ends before, a number of its own.
@@ -92,7 +66,7 @@ class TornSets {
   std::vector<std::pair<std::size_t, Piece>> touching_;  // a lost run and a piece
   std::vector<Undecided> undecided_;
   std::size_t ended_pieces_ = 0;
-  Found found_;  // of what is decided
+  Defects found_;  // of what is decided
 };
 
-}  // namespace vam::model
+}  // namespace vam::verdict

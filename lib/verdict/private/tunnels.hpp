@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/bit_slice.hpp"
-#include "model/pieces.hpp"
+#include "verdict/private/bit_slice.hpp"
+#include "verdict/private/pieces.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 /// Of where a field, linear in x, y and z between the centres of voxels, reaches a level > 0; slice by slice, from the
 /// lowest up. Its tunnels are pieces + cavities - Euler characteristic, cavities being the pieces of the rest that are
@@ -63,4 +63,4 @@ class TunnelCounter {
   std::int64_t euler_ = 0;
 };
 
-}  // namespace vam::model
+}  // namespace vam::verdict

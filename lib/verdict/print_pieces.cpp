@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/print_pieces.hpp"
+#include "verdict/print_pieces.hpp"
 
 #include <algorithm>
 #include <array>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "model/bit_slice.hpp"
+#include "verdict/private/bit_slice.hpp"
+#include "verdict/private/pieces.hpp"
+#include "verdict/private/smooth_print.hpp"
+#include "verdict/private/torn.hpp"
+#include "verdict/private/tunnels.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 namespace {
 
@@ -30,21 +35,67 @@ TornOfBoth torn(int width, int height, const std::vector<std::uint8_t>* below, c
 
 }  // namespace
 
-PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold)
+class PrintPieceCounter::State {
+ public:
+  State(int width, int height, double threshold, const std::optional<model::Circle>& circle);
+  void add(const float* dose, const float* coverage, int count);
+  [[nodiscard]] PrintPieces found() const;
+
+ private:
+  using Slice = std::vector<std::uint8_t>;  // of bits
+
+  /// Doses inside the circle, and those of voxels of the part.
+  [[nodiscard]] std::vector<float> judged(const float* dose, const float* coverage, int count) const;
+  void add_judged(const float* dose, const float* coverage, int count);
+
+  std::vector<bool> inside_;  // of a slice, whether the circle has it; empty: all is judged
+  int width_, height_;
+  double threshold_;
+  PieceCounter part_;
+  FieldPieces part_at_half_, print_;
+  std::vector<FieldPieces> print_of_others_;  // of other doses
+  TunnelCounter of_part_, of_print_, of_smooth_, of_firm_;
+  SmoothPrint smooth_;
+  std::vector<Slice> last_;                        // up to two
+  TornSets broken_{Torn::part}, shut_{Torn::gap};  // in all but the last slice
+};
+
+PrintPieceCounter::State::State(int width, int height, double threshold, const std::optional<model::Circle>& circle)
     : width_(width),
       height_(height),
       threshold_(threshold),
       part_(PrintPieces::least_voxels),
-      part_at_half_(width, height, half_surface, PrintPieces::least_voxels),
+      part_at_half_(width, height, model::half_surface, PrintPieces::least_voxels),
       print_(width, height, threshold, PrintPieces::least_voxels),
       print_of_others_(other_factors.size(), print_),
-      of_part_(width, height, half_surface),
+      of_part_(width, height, model::half_surface),
       of_print_(width, height, threshold),
       of_smooth_(width, height, threshold),
       of_firm_(width, height, threshold),
-      smooth_(width, height, threshold) {}
+      smooth_(width, height, threshold) {
+  if (!circle) return;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) inside_.push_back(circle->contains(x, y));
+  }
+}
 
-void PrintPieceCounter::add(int count, const float* coverage, const float* dose) {
+void PrintPieceCounter::State::add(const float* dose, const float* coverage, int count) {
+  if (inside_.empty()) return add_judged(dose, coverage, count);
+  add_judged(judged(dose, coverage, count).data(), coverage, count);
+}
+
+std::vector<float> PrintPieceCounter::State::judged(const float* dose, const float* coverage, int count) const {
+  std::vector<float> doses(product(count, inside_.size()), 0.0F);
+  parallel_for(count, [&](int k) {
+    const std::size_t first = product(k, inside_.size());
+    for (std::size_t i = 0; i < inside_.size(); ++i) {
+      if (inside_[i] || model::half_covered(coverage[first + i])) doses[first + i] = dose[first + i];
+    }
+  });
+  return doses;
+}
+
+void PrintPieceCounter::State::add_judged(const float* dose, const float* coverage, int count) {
   const std::size_t size = product(width_, height_);
   std::vector<Slice> slices(count, Slice(size));
   std::vector<float> firm(product(count, size));
@@ -104,7 +155,7 @@ void PrintPieceCounter::add(int count, const float* coverage, const float* dose)
   last_ = std::move(last);
 }
 
-PrintPieces PrintPieceCounter::found() const {
+PrintPieces PrintPieceCounter::State::found() const {
   TornSets broken = broken_;
   TornSets shut = shut_;
   if (!last_.empty()) {
@@ -139,4 +190,14 @@ PrintPieces PrintPieceCounter::found() const {
           .firm_holes = std::min(holes, beyond_part(of_firm_.tunnels()))};
 }
 
-}  // namespace vam::model
+PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold,
+                                     const std::optional<model::Circle>& circle)
+    : state_(std::make_unique<State>(width, height, threshold, circle)) {}
+PrintPieceCounter::~PrintPieceCounter() = default;
+PrintPieceCounter::PrintPieceCounter(PrintPieceCounter&&) noexcept = default;
+PrintPieceCounter& PrintPieceCounter::operator=(PrintPieceCounter&&) noexcept = default;
+
+void PrintPieceCounter::add(const float* dose, const float* coverage, int count) { state_->add(dose, coverage, count); }
+PrintPieces PrintPieceCounter::found() const { return state_->found(); }
+
+}  // namespace vam::verdict

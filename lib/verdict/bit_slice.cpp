@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/bit_slice.hpp"
+#include "verdict/private/bit_slice.hpp"
 
 #include <bit>
 #include <cmath>
 #include <cstring>
 
-namespace vam::model {
+namespace vam::verdict {
 
 namespace {
 
@@ -78,4 +78,4 @@ BitSlice reaching(int width, int height, const float* slice, double level) {
   return {width, height, false, [&](std::size_t pixel) { return slice[pixel] >= least; }};
 }
 
-}  // namespace vam::model
+}  // namespace vam::verdict

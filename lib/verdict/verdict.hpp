@@ -9,10 +9,10 @@
 
 #include "base/json_fwd.hpp"
 #include "model/dose_metrics.hpp"
-#include "model/print_pieces.hpp"
-#include "model/unresolved.hpp"
+#include "verdict/print_pieces.hpp"
+#include "verdict/unresolved.hpp"
 
-namespace vam::score {
+namespace vam::verdict {
 
 /// Figures are relative (DoseStatistics::metrics(true)).
 struct Verdict {
@@ -20,8 +20,8 @@ struct Verdict {
   model::DoseMetrics with_cut;  // with those that the surface cuts, as part from half coverage on, else as void
   std::optional<double> seconds = std::nullopt;    // of the print; none: the resin is not known
   std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
-  model::Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
-  std::optional<model::PrintPieces> pieces = std::nullopt;  // none: not counted
+  Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
+  std::optional<PrintPieces> pieces = std::nullopt;  // none: not counted
 };
 
 enum class Answer {
@@ -34,13 +34,13 @@ enum class Answer {
 [[nodiscard]] Answer answer(const Verdict& verdict);
 
 /// The pieces of part and print, of which the part's own surface may tell the number.
-void set_pieces(Verdict& verdict, const std::optional<model::PrintPieces>& pieces);
+void set_pieces(Verdict& verdict, const std::optional<PrintPieces>& pieces);
 
 /// What the print has otherwise than the part: pieces, walls, gaps and holes. Empty: nothing, nor may it have.
-[[nodiscard]] std::string words(const model::PrintPieces& pieces);
+[[nodiscard]] std::string words(const PrintPieces& pieces);
 
 /// The numbers of both.
-void add_to(Json& figures, const model::PrintPieces& pieces);
+void add_to(Json& figures, const PrintPieces& pieces);
 
 /// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
 /// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will not
@@ -52,4 +52,4 @@ void add_to(Json& figures, const model::PrintPieces& pieces);
 /// the pieces, where they are counted.
 void add_to(Json& figures, const Verdict& verdict);
 
-}  // namespace vam::score
+}  // namespace vam::verdict

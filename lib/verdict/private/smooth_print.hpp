@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vam::model {
+namespace vam::verdict {
 
 /// A dose within 2 % of the threshold is moved to the side of it on which the part has the voxel.
 [[nodiscard]] float firm_dose(float coverage, float dose, double threshold);
@@ -46,4 +46,4 @@ class SmoothPrint {
   int returned_ = 0;  // of these
 };
 
-}  // namespace vam::model
+}  // namespace vam::verdict

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "model/pieces.hpp"
+#include "verdict/private/pieces.hpp"
 
-namespace vam::model {
+namespace vam::verdict {
 
 /// The least number that is not below the level: a value reaches the one where it reaches the other.
 [[nodiscard]] float least_reaching(double level);
@@ -67,4 +67,4 @@ class BitSlice {
 /// The voxels that reach a level.
 [[nodiscard]] BitSlice reaching(int width, int height, const float* slice, double level);
 
-}  // namespace vam::model
+}  // namespace vam::verdict
