@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
+#include "manual_page.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace {
@@ -18,80 +19,6 @@ using calibrate_tool::CriticalDoseOptions;
 using calibrate_tool::ResinOptions;
 using calibrate_tool::ScanOptions;
 using calibrate_tool::WorkingCurveOptions;
-
-cli::Manual manual() {
-  return {
-      "vam-calibrate",
-      "measure the instrument and write calibration records",
-      {"Each scan command reads frames recorded by vam-capture, most of them while vam-project shows a test pattern, "
-       "measures one property of the instrument and writes a calibration record. --flips is the log of vam-project, "
-       "which states which pattern frame was on and when. check reports the records in force. vam-calibrate all, which "
-       "is vam-calibrate-all(1), shows the patterns, captures the frames and runs lag, latency, response, axis and "
-       "edges in this order; flat and beam on request.",
-       "lag determines the delay of the camera's time stamps from a bead that turns with the stage at known angles, in "
-       "both directions, captured with --lag 0 and the exposure in use. Its record is the default of --lag in "
-       "vam-capture. latency relies on the times of the frames and is therefore measured after lag.",
-       "latency: the screen shows vam-project --pattern blink --hold 0.02 --repeat, whose sequence has no period, "
-       "during "
-       "some 150 frames. It is refused where two latencies fit alike, as those of regular blinks do, and where camera "
-       "and screen keep step (15 fps and 60 Hz) and an exposure is shorter than a frame of the screen, by whose "
-       "difference the latency is then open: expose for a frame of the screen, or capture at a rate of which the "
-       "screen's is no multiple (13.69 fps).",
-       "edges: the camera must see the whole vial, from the position given by camera.distance_mm and "
-       "camera.azimuth_deg, 60 to 91 degrees from the projector. Frames at a single stage angle locate the vial, which "
-       "wobbles, and not the rotation axis. Frames at four stage angles (vam-capture --angle 0, 90, 180 and 270, their "
-       "stacks concatenated in one file) give both: the axis, and the wobble as its radius and the stage angle of the "
-       "greatest column.",
-       "beam: either a bare sensor is moved along the beam, with one frame per plane, or, with --side, the camera "
-       "beside the vial sees one lit row in fluorescent resin, where each image column is a different plane.",
-       "registration brings a print, as the camera saw it in the vial, onto its design and so determines where the "
-       "camera stands to the projector: camera.azimuth_deg, axis_row and, where it is wrong by more than two standard "
-       "deviations, pixel_mm. The standard deviations are from 16 parts of the surface; a fifth of a pixel is added "
-       "for "
-       "the scale. The print must be near already (a few degrees, a fifth of its size), not round and not "
-       "alike at all heights. A displacement across the axis is reported, which no setting of the camera explains. "
-       "What a print is larger all around, as by its exposure, is told from the scale by its different dimensions "
-       "(outside_mm); in the vial it has not shrunk yet.",
-       "resin determines the gelation threshold I_p from the scattering volume of a printed standard cylinder "
-       "(vam-ost): the threshold at which its cross-section, averaged over its height, has the known diameter. Its "
-       "record is the --resin of vam-ost and vam-sdf.",
-       "working-curve determines the dose with which the resin gels, and how scattering follows the light, from parts "
-       "that were given several doses in one vial (a staircase of heights or sectors, which the sinogram contains or "
-       "the part has by itself) while vam-ost --live reconstructed it: voxels are put together by their dose "
-       "(vam-dose), and the density of each class over the turns is fitted by a rise at the critical dose, the "
-       "saturation and a delay (vam-physics(7), Working curve of scattering). One volume, of the time after the print, "
-       "gives all but the delay. Its record is a --resin, too.",
-       "critical-dose determines the dose with which the resin gels at a print's surface: the dose (vam-dose "
-       "--exposure-plan, or --shown for what was really given) at points spread over the surface of a print that was "
-       "measured. "
-       "It differs from that of working-curve, which is of the inside of parts: inhibitor diffuses to a surface from "
-       "the resin that is left dark. With --design the report has next_critical_dose_mj_cm3, too: "
-       "resin.critical_dose_mj_cm3, and the difference between the doses at the surfaces of print and design added. "
-       "With it in the printer file the next print is as large as its design. The standard deviations are of eight "
-       "parts of the surface; gradient_mj_cm3_mm is what a millimetre of deviation costs. Status 1: the dose varies by "
-       "more than 20 %, so that the surface does not follow it.",
-       "A frame with more than 0.01 % of its pixels (and more than 3) at full scale is refused as over-exposed; the "
-       "error states the fraction. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
-       "A record is a JSON file in calibration.folder of the printer file: read-only, named "
-       "cal-INSTRUMENT-SCAN-UTC.json, with the unit, standard deviation, number of readings and method of each value, "
-       "the hashes of the frames, the validity period, the instrument and the vial. The link current-SCAN.json points "
-       "to the record in force, which is used by every tool that reads the printer file; precedence: option, --set, "
-       "record, file. A record that has expired or belongs to another instrument or vial is refused (status 65). A "
-       "result that does not meet its requirements is recorded but not put in force (status 1). Without a folder the "
-       "record is written to standard output."},
-      {{"The rotation axis from frames of a bead (here a printed piece) over one turn:",
-        "vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
-        "--binning 4 --speed 90 --view-step 9 -o turn.exr && vam-calibrate axis turn.exr --heights 3"},
-       {"The same as a record in force, and the list of records:",
-        "vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
-        "--binning 4 --speed 90 --view-step 9 -o turn.exr && mkdir cal && "
-        "vam-calibrate axis turn.exr --heights 3 --set calibration.folder=cal && "
-        "vam-calibrate check --set calibration.folder=cal"}},
-      {},
-      {"vam-calibrate-all", "vam-capture", "vam-project", "vam-ost"},
-      {},
-      {{1, "A result does not meet its requirements and is not put in force."}}};
-}
 
 enum class Flips { none, optional, required };
 
@@ -311,7 +238,10 @@ int become_script(std::string script, char** argv) {
 
 int main(int argc, char** argv) {
   if (argc > 1 && argv[1] == std::string("all")) return become_script("vam-calibrate-all", argv);
-  cli::App app(manual());
+  cli::App app({"vam-calibrate",
+                "measure the instrument and write calibration records",
+                manual_page,
+                {{1, "A result does not meet its requirements and is not put in force."}}});
   AllOptions all_options;
   declare(app, all_options);
   return app.run(argc, argv, [&] { run(app, all_options); });

@@ -18,6 +18,7 @@
 #include "io/stream/input_name.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
+#include "manual_page.hpp"
 
 namespace {
 
@@ -29,49 +30,6 @@ struct Options {
   bool fast = false;
   bool seal = false;
 };
-
-cli::Manual manual() {
-  return {
-      "vam-check",
-      "verify the integrity of files and show their provenance",
-      {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these "
-       "tools write into stacks, volumes, lossless videos, calibration records, reports and the printer file of a "
-       "print (vam-formats(7), SEALS). If a file differs, the exit status is 65, "
-       "after all others have been checked.",
-       "Of the run folder of a print every file is verified against its SHA256SUMS; files that were changed, that "
-       "are lost or that are not in the list are named, as are links (all but resumed.json, which a resumption adds, "
-       "and "
-       "sinogram.exr, a link that is verified against the hash in events.jsonl); flips.jsonl is verified against "
-       "summary.json, too, also where it is given alone; before the print has ended, or if it was killed, its lines "
-       "against the seals in events.jsonl, up to the last of which they are verified, as is said, its end and its "
-       "light "
-       "against angles.jsonl, what it began against what events.jsonl armed, and printer.toml against its own. A "
-       "print that was resumed must have its resumed.json: by its events.jsonl if it was killed, and by that of "
-       "the resumption if both folders are given. Of a folder of "
-       "vam-capture every line of the manifest is verified against the one above, and every image "
-       "against its line; images that are lost, exchanged or without a line are named; its manifest.jsonl stands for "
-       "the folder.",
-       "For each file vam-check prints whether it is sealed, and the commands that produced it: for each command "
-       "the seal of the file that it wrote, the command line, and the name of that file if it is among those "
-       "checked. A dash replaces the seal of a file that was not sealed or came through a pipe.",
-       "All tools verify the seals of the files that they read; vam-check is for archives and for files received "
-       "from others. Files of other programs have no seal, which is printed and is not an error; of their videos the "
-       "checksums of container and slices are verified, where they have some. Seals reveal bit "
-       "rot, truncation and edits; they are not signatures."},
-      {{"Check a part and its sinogram:",
-        "vam-slice --shape gyroid --voxel 0.2 -o part.vdb\n"
-        "vam-sinogram part.vdb -o sino.exr\n"
-        "vam-check part.vdb sino.exr"},
-       {"Headers only, for large archives:",
-        "vam-slice --shape gyroid --voxel 0.2 | vam-sinogram -o sino.exr\n"
-        "vam-check --fast sino.exr"},
-       {"Seal printer settings:",
-        "vam-slice --print-printer -o printer.toml\n"
-        "vam-check --seal printer.toml\n"
-        "vam-check printer.toml"}},
-      {"Memory: one image, or the topology of one volume. Speed: that of reading."},
-      {"vam-print", "vam-view"}};
-}
 
 // The names of the files that are checked, by their seals.
 using Names = std::map<std::string, std::string>;
@@ -162,7 +120,7 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(manual());
+  cli::App app({"vam-check", "verify the integrity of files and show their provenance", manual_page});
   Options options;
   app.positional("FILE ...", options.files,
                  "Stacks, volumes, videos, records, reports, printer files, run and capture folders, or other files.")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-convert: data of other programs, and from these tools to others.
 #include "io/stream/file_type.hpp"
+#include "manual_page.hpp"
 #include "printer.hpp"
 #include "vam-convert/export.hpp"
 #include "vam-convert/options.hpp"
@@ -30,7 +31,7 @@ void run(const cli::App& app, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(convert_tool::manual());
+  cli::App app({"vam-convert", "exchange volumes and projections with other programs", manual_page});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

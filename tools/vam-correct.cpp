@@ -17,6 +17,7 @@
 #include "io/settings/report.hpp"
 #include "io/settings/resin_record.hpp"
 #include "io/vdb/vdb.hpp"
+#include "manual_page.hpp"
 #include "metrology/ost/sensitivity.hpp"
 
 namespace {
@@ -39,42 +40,6 @@ struct Options {
   std::string field;
   std::string report;
 };
-
-cli::Manual manual() {
-  return {
-      "vam-correct",
-      "measure where a print cures ahead of its dose or behind it, once a turn",
-      {"Lamp, resin and vial of a print are never those of its plan. vam-correct compares the scattering volume of one "
-       "turn (vam-ost --live) with the dose that had been delivered by then, and finds the sensitivity of the resin: "
-       "the factor between the dose that acts and the planned one, a polynomial of second degree in x, y and z for its "
-       "logarithm. Its ten terms have the most probable values by the densities of this turn and by what was known "
-       "before: the report of the turn before (--before), or that nothing deviates, by 30 % as a whole and 10 % in "
-       "every further term.",
-       "The output is the volume 'dose' from which vam-optimize --delivered computes the light for the rest: D + D_c "
-       "(1 - 1 / s), D the planned dose and s the sensitivity. Completed by planned light to the critical dose D_c it "
-       "is that dose at which the resin gels indeed.",
-       "Where there is doubt, vam-correct writes the report alone and ends with status 1: the sensitivity is not known "
-       "well enough (--max-uncertainty), as before anything scatters; it is beyond what is plausible (--max-factor); "
-       "its mean has changed by more than 5 % and three of the standard deviations of --before; or the densities "
-       "differ from those of any smooth sensitivity. The print then goes on as before."},
-      {{"A cylinder whose resin is 10 % less sensitive than planned:",
-        "vam-slice --shape cylinder:diameter=6,height=4 --voxel 0.25 --stretch-z 1 -o part.vdb\n"
-        "vam-convert part.vdb -o part.npy\n"
-        "/usr/bin/python3 -c \"import numpy as n; p = n.load('part.npy'); d = 25 + 35 * p; n.save('d', d); "
-        "n.save('s', 0.08 / (1 + n.exp((50 - 0.9 * d) / 4)))\"\n"
-        "vam-convert d.npy --voxel 0.25 --grid dose --value-unit mJ/cm3 -o dose.vdb\n"
-        "vam-convert s.npy --voxel 0.25 --grid scatter --value-unit 'view units per mm' -o scatter.vdb\n"
-        "echo '{\"schema\":\"vam-working-curve/1\",\"isovalue\":0.04,\"saturation\":0.08,\"critical_dose_mj_cm3\":50,"
-        "\"rate_per_mj_cm3\":0.0625}' >curve.json\n"
-        "vam-correct scatter.vdb --curve curve.json --acted dose.vdb --dose dose.vdb "
-        "--resolution 0 -o delivered.vdb --report correction.json"}},
-      {"Memory: 32 bytes for each voxel with a third of the critical dose, besides the volumes.",
-       "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, which names new "
-       "projections during the print as future work."},
-      {"vam-ost", "vam-dose", "vam-optimize", "vam-calibrate", "vam-print"},
-      {},
-      {{1, "There is doubt: no new light should be computed from this turn."}}};
-}
 
 void declare(cli::App& app, Options& o) {
   app.positional("SCATTER", o.scatter, "Volume 'scatter' (VDB) of vam-ost --live.").reads();
@@ -240,7 +205,10 @@ void run(const cli::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(manual());
+  cli::App app({"vam-correct",
+                "measure where a print cures ahead of its dose or behind it, once a turn",
+                manual_page,
+                {{1, "There is doubt: no new light should be computed from this turn."}}});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

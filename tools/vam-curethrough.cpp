@@ -3,14 +3,14 @@
 #include <string>
 
 #include "cli/app.hpp"
+#include "manual_page.hpp"
 #include "printer.hpp"
-#include "vam-curethrough/manual.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
 using namespace vam;
 
 int main(int argc, char** argv) {
-  cli::App app(curethrough::manual());
+  cli::App app({"vam-curethrough", "model and correct cure-through in continuous stereolithography", manual_page});
   std::string chosen;
   curethrough::ModelOptions model;
   curethrough::CorrectOptions correct;

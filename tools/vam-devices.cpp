@@ -11,6 +11,7 @@
 #include "device/open/find.hpp"
 #include "device/port/lines.hpp"
 #include "io/settings/report.hpp"
+#include "manual_page.hpp"
 #include "model/device_schemes.hpp"
 
 namespace {
@@ -23,48 +24,19 @@ struct Options {
   std::string report;
 };
 
-void add_options(std::vector<std::string>& notes, const std::string& kind, const auto& schemes) {
-  notes.push_back("Options of a " + kind + ", after a question mark and separated by &:");
-  for (std::string& line : model::options_of(schemes)) notes.push_back(std::move(line));
-}
-
-std::vector<std::string> notes() {
-  std::vector<std::string> notes{
-      "Duration. About a second, the time allowed for replies of network cameras; with --probe up to 4 s more per "
-      "port.",
-      "Limits. A camera in another subnet is not found; give its IP address (aravis:192.168.1.7)."};
-  add_options(notes, "stage", model::stage_schemes);
-  add_options(notes, "camera", model::camera_schemes);
-  add_options(notes, "display", model::display_schemes);
-  add_options(notes, "light engine", model::light_schemes);
-  add_options(notes, "relay (projector.relay)", model::relay_schemes);
-  return notes;
-}
-
-cli::Manual manual() {
-  return {
-      "vam-devices",
-      "list stages, cameras, displays and light engines",
-      {"Lists the devices found on this machine, each with its device string, for the printer file and for --device, "
-       "--display and --light, and a description. A line below a device states why it cannot be used, and the remedy: "
-       "access denied (with the group to join or the udev rule to add), in use by another program (with its process "
-       "number), a graphics card controlled by a desktop session. If no device of a kind is found, the checks to make "
-       "are listed.",
-       "No commands are sent: nothing moves and no light is switched on. The device on a serial port cannot be "
-       "determined in this way; the port is listed as gcs: or, where the maker of its USB converter suggests another "
-       "protocol, by that scheme. --probe queries each port for the identity of a controller, by one protocol after "
-       "the other. This does not move the stage, but most GRBL boards are reset when their port is opened, and other "
-       "instruments on such ports receive commands of a protocol that they do not understand."},
-      {{"List the connected devices:", "vam-devices"},
-       {"A simulated stage on a pseudo-terminal, queried for its identity:",
-        "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "
-        "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --probe"}},
-      notes(),
-      {"vam-stage", "vam-capture", "vam-project", "vam-print"},
-      {},
-      {},
-      true,
-      false};
+/// A paragraph for the options of each kind of device, and one for each option.
+std::vector<std::string> device_texts() {
+  std::vector<std::string> texts;
+  const auto add = [&](const std::string& kind, const auto& schemes) {
+    texts.push_back("Options of a " + kind + ", after a question mark and separated by &:");
+    for (std::string& line : model::options_of(schemes)) texts.push_back(std::move(line));
+  };
+  add("stage", model::stage_schemes);
+  add("camera", model::camera_schemes);
+  add("display", model::display_schemes);
+  add("light engine", model::light_schemes);
+  add("relay (projector.relay)", model::relay_schemes);
+  return texts;
 }
 
 struct Kind {
@@ -111,7 +83,13 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  cli::App app(manual());
+  cli::App app({"vam-devices",
+                "list stages, cameras, displays and light engines",
+                manual_page,
+                {},
+                true,
+                false,
+                {{"devices", device_texts()}}});
   app.option("--port", "PATH", options.ports, "Serial port to list in addition to those of the system.");
   app.flag("--probe", options.probe, "Query the serial ports for stage controllers.");
   cli::add_report(app, options.report);

@@ -8,6 +8,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
+#include "manual_page.hpp"
 #include "printer.hpp"
 #include "vam-dose/expose.hpp"
 #include "vam-dose/light.hpp"
@@ -49,7 +50,7 @@ void run(const cli::App& app, Options& options) {
 int main(int argc, char** argv) {
   // Images of rows come and go among slabs that stay: each in pages of its own, or the gaps count as memory in use.
   mallopt(M_MMAP_THRESHOLD, 1 << 18);
-  cli::App app(dose_tool::manual());
+  cli::App app({"vam-dose", "simulate the dose that a print delivers to the resin", manual_page});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/aligned_memory.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/per_slice.hpp"
+#include "base/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
+#include "manual_page.hpp"
 #include "model/grid_size.hpp"
+#include "optimize/methods/method.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
@@ -111,10 +115,26 @@ void run(const cli::App& app, Options& options) {
   beginning.remove();
 }
 
+/// A paragraph for each row of the method table.
+std::vector<std::string> method_texts() {
+  std::vector<std::string> texts;
+  for (const auto& entry : optimize::method_table()) {
+    const std::string options = entry.options.empty() ? "" : " Options: " + join(entry.options, ", ") + ".";
+    texts.push_back("Method " + entry.name + ": " + entry.summary + options + " Source: " + entry.paper + ".");
+  }
+  return texts;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(optimize_tool::manual());
+  cli::App app({"vam-optimize",
+                "optimise the projections that print a part",
+                manual_page,
+                {{130, "SIGINT; with --checkpoint the run can be resumed."}, {143, "SIGTERM; likewise."}},
+                false,
+                true,
+                {{"methods", method_texts()}}});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] {

@@ -13,6 +13,7 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
+#include "manual_page.hpp"
 #include "plot/save.hpp"
 #include "printer.hpp"
 #include "vam-ost/print.hpp"
@@ -23,97 +24,6 @@ namespace {
 
 using namespace vam;
 using ost_tool::Options;
-
-std::vector<std::string> description() {
-  return {
-      "Liquid resin is clear; the solidifying part scatters light. A camera beside the vial records the scattered "
-      "light; the views of a full turn determine the whole volume. vam-ost corrects the views (dark, flat field, "
-      "binning), finds the rotation axis in them, corrects refraction and perspective by exact rays in three "
-      "dimensions, and reconstructs the scattering density by filtered back-projection into a volume 'scatter', in "
-      "view units per mm.",
-      "VIEWS is an EXR frame stack of a camera, a folder of numbered images, or a video; frames without recorded "
-      "angles require --view-step. Each view is used at its own angle: missing, repeated and unevenly spaced views are "
-      "weighted accordingly, and a gap of more than 15 degrees is an error. Views of three turns or more, in the order "
-      "of time, are "
-      "combined by their median. A uniform background is fitted and "
-      "subtracted, and views are divided by the intensity of their light where it varies by more than 0.5 % (RMS). "
-      "Specks on window or lens, which stay in place, and bubbles, which drift through the field of "
-      "view, are distinguished from the print because the values of a ray and of its reverse, half a turn later, "
-      "differ; they are replaced by the value of the other ray, and --report states their fractions. The run-out of "
-      "the "
-      "vial, by which its axis circles about that of the stage, is fitted to the same pairs of rays and removed where "
-      "it "
-      "exceeds what chance does in one of 370 cases and most edges agree with it. Resin that absorbs the scattered "
-      "light makes these pairs differ, too: an absorption that is not given and that they show is stated by a warning, "
-      "and no run-out is removed; beside one that is given the run-out is fitted. Where these pairs do not determine "
-      "it, as with many bubbles or specks, a warning says so. Cameras whose noise is cut off at 0 make prints smaller, "
-      "which a warning says, too: their black level must be above the noise. Image rows run "
-      "downwards along the axis; z = 0 "
-      "is the row at the height of the lens, camera.axis_row or the middle one.",
-      "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "
-      "scatter >= I_p }: --mesh writes its surface, --projections an image for the operator. Bodies of less than 1 % "
-      "of the largest body's volume (--min-body) and, with --target, bodies farther than 1 mm from the target are not "
-      "part of the print; they remain in the volume, and --report counts them.",
-      "--live reads views as they arrive, keeps the last full turn and, after every turn (or every --volume-step "
-      "degrees), writes a volume into the folder -o and a line of JSON to --log, and updates --projections and --page. "
-      "A name in the folder appears when the volume is whole, and that of scatter-NNNN.vdb after its "
-      "uncertainty-NNNN.vdb (--uncertainties), so that a program that watches the folder can take both. "
-      "With --target the cured, missing and overcured fractions of the target are reported; with --until one line of "
-      "JSON on standard output reports that the conditions hold, and vam-ost exits: the signal to switch off the "
-      "projector. Views are read while a volume is computed; dark and saturated views are skipped and counted. A turn "
-      "that gives no volume, because nothing has gelled yet or views are missing, is logged with the reason, and the "
-      "reconstruction continues with the next one."};
-}
-
-std::vector<std::string> notes() {
-  return {
-      "Memory. About four times the views of one turn, plus the volume. Time: about a second for 180 views of 480 x "
-      "300 "
-      "pixels on two cores.",
-      "Uncertainty. The noise of the views is measured in them (variance a + b times the value, from second "
-      "differences between neighbouring pixels) and taken through the same reconstruction twice; --uncertainty and "
-      "--uncertainties hold "
-      "the RMS over 9 x 9 x 9 voxels. Noise that neighbouring pixels share, as in compressed video, is "
-      "underestimated; systematic errors (isovalue, pixel pitch, indices, absorption) are not contained. It triples "
-      "the time and doubles the memory.",
-      "Resolution. Struts three voxels apart keep a contrast of 29 % with the default filter, 14 % with hann, which "
-      "smooths noise more. The axis is the centre of symmetry of the mean view, row by row, by least squares; column, "
-      "tilt and their standard deviations are reported.",
-      "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022; Shepp & Vardi, "
-      "maximum likelihood reconstruction, 1982 (--mlem-iterations)."};
-}
-
-cli::Manual manual() {
-  return {"vam-ost",
-          "reconstruct the scattering volume of a print from camera views of the rotating vial",
-          description(),
-          {{"Views of a synthetic cylinder, as a camera would record them:",
-            "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
-            "vam-resample -o seen.exr\n"
-            "vam-project seen.exr -o views --set projector.fps=2.5"},
-           {"Reconstruct from a folder of images taken every 4 degrees:",
-            "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
-            "vam-resample -o seen.exr\n"
-            "vam-project seen.exr -o views --set projector.fps=2.5\n"
-            "vam-ost views --view-step 4 --pixel 0.065 --binning 2 --set camera.distance_mm=119.808 --set "
-            "camera.azimuth_deg=0 -o "
-            "scatter.vdb --projections seen.png"},
-           {"Determine the gelation threshold from this volume, and use it:",
-            "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
-            "vam-resample -o seen.exr\n"
-            "vam-project seen.exr -o views --set projector.fps=2.5\n"
-            "vam-ost views --view-step 4 --pixel 0.065 --binning 2 --set camera.distance_mm=119.808 --set "
-            "camera.azimuth_deg=0 -o "
-            "scatter.vdb\n"
-            "vam-calibrate resin scatter.vdb --diameter 6 -o resin.json\n"
-            "vam-ost views --view-step 4 --pixel 0.065 --binning 2 --set camera.distance_mm=119.808 --set "
-            "camera.azimuth_deg=0 "
-            "--resin resin.json --mesh print.ply -o again.vdb"}},
-          notes(),
-          {"vam-calibrate", "vam-capture", "vam-sdf", "vam-view", "vam-resample"},
-          {"In captured stacks the attributes vam:angle_deg and vam:time_s give a view's angle and time; a view marked "
-           "vam:incomplete is skipped with a warning that names its vam:number."}};
-}
 
 void declare_camera(cli::App& app, Options& o) {
   app.group("Camera");
@@ -269,7 +179,8 @@ int main(int argc, char** argv) {
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   mallopt(M_ARENA_MAX, 1);
-  cli::App app(manual());
+  cli::App app(
+      {"vam-ost", "reconstruct the scattering volume of a print from camera views of the rotating vial", manual_page});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

@@ -3,6 +3,7 @@
 #include "base/json.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
+#include "manual_page.hpp"
 #include "printer.hpp"
 #include "vam-plan/options.hpp"
 #include "vam-plan/plan.hpp"
@@ -22,7 +23,7 @@ void run(const plan_tool::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(plan_tool::manual());
+  cli::App app({"vam-plan", "estimate within seconds whether and how a part can be printed", manual_page});
   plan_tool::Options options;
   declare(app, options);
   return app.run(argc, argv, [&] {

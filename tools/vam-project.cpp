@@ -6,6 +6,7 @@
 #include "io/exr/stack.hpp"
 #include "io/image/frame_sink.hpp"
 #include "io/stream/stream.hpp"
+#include "manual_page.hpp"
 #include "printer.hpp"
 #include "vam-project/files.hpp"
 #include "vam-project/match.hpp"
@@ -57,7 +58,8 @@ void run(const cli::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(project::manual());
+  cli::App app(
+      {"vam-project", "convert sinograms into projector frames and show them", manual_page, cli::device_statuses});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

@@ -15,6 +15,7 @@
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
+#include "manual_page.hpp"
 #include "optics/crossed_slices.hpp"
 #include "optics/ray_list.hpp"
 #include "optics/resample_stack.hpp"
@@ -90,7 +91,7 @@ void run(const cli::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(resample_tool::manual());
+  cli::App app({"vam-resample", "map sinograms between the parallel beam and a real projector or camera", manual_page});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

@@ -16,6 +16,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
+#include "manual_page.hpp"
 #include "model/conditions.hpp"
 #include "printer.hpp"
 #include "score/score.hpp"
@@ -130,7 +131,7 @@ void run(const cli::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(score_tool::manual());
+  cli::App app({"vam-score", "score a dose against its target", manual_page});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

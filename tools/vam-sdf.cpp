@@ -3,6 +3,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/mesh/file.hpp"
+#include "manual_page.hpp"
 #include "plot/save.hpp"
 #include "vam-sdf/options.hpp"
 
@@ -12,88 +13,6 @@ using namespace vam;
 using sdf_tool::HeightOptions;
 using sdf_tool::Options;
 using sdf_tool::TrendOptions;
-
-cli::Manual manual() {
-  return {
-      "vam-sdf",
-      "measure the deviation of a print from its design",
-      {"vam-sdf reads the print (a mesh, or a volume whose isosurface at --isovalue is used) and the design (a "
-       "mesh, or a target volume), aligns them, and measures signed distances: positive where the print is outside "
-       "the design, the convention of MeshLab, CloudCompare and Open3D. Statistics are computed from points "
-       "distributed evenly over the area, in both directions: from the print to the design, and from the design to "
-       "the print, which alone reveals missing pieces.",
-       "A volume is read in its own coordinate system; the stretch in z applied by vam-slice is removed, so that a "
-       "simulated dose can be compared with the original mesh.",
-       "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
-       "tried, and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps "
-       "it. A print that covers less than 6/7 of the design is taken for a part of it: poses all over the design are "
-       "tried, fracture faces are given no weight, and if two poses that no symmetry relates fit equally well, the "
-       "status is 65. With --fit-scale a uniform scale is also fitted and reported as shrinkage; all other figures, "
-       "the "
-       "shrinkage along the axes (shrinkage_xyz_percent) too, are then of the scaled print.",
-       "A summary is printed on standard error if that is a terminal; --report writes the figures as JSON, -o the "
-       "print with distances and blue-white-red colours. With --require the exit status is 1 unless all conditions "
-       "hold.",
-       "Every figure has an expanded uncertainty (coverage factor 2), determined by 20 Monte Carlo trials (JCGM 101) "
-       "in "
-       "which the surface is disturbed, the pose follows, and a quarter of the points is measured. It contains the "
-       "noise of the surface, from --uncertainty or a mesh of vam-ost --uncertainty, otherwise from the differences "
-       "between neighbouring vertices; the pose, which depends on it; the choice of points; --isovalue-uncertainty; "
-       "--scale-uncertainty; and, of volumes and meshes of vam-ost --uncertainty, their resolution: 0.04 voxels, the "
-       "same all over the print, which covers diameters from 12 voxels on. It does not contain what is common to the "
-       "whole print and not stated by these "
-       "options: "
-       "refractive indices, absorption, run-out that remains, errors of the design.",
-       "--region measures faces, bores and walls. Planes and cylinders are fitted by least squares; flatness and "
-       "cylindricity are the ranges of the departures from them, which noise and rounded edges in the box increase. "
-       "The thickness of a wall is "
-       "that "
-       "of the largest ball inside the design plus the distances of the print on both sides.",
-       "vam-sdf height compares a profilometer's height image of an embossed print with its design: the image is "
-       "levelled by the plane through its base, the outline of the design at half height is aligned with that of "
-       "the print, with a uniform scale reported as shrinkage, and outline, overlap and height are compared.",
-       "vam-sdf trend prints, as CSV, the mean, the spread (standard deviation) and the drift per print of every "
-       "figure "
-       "that all reports have, with the probability of such a drift by chance (Student's t): a process drifts where "
-       "drift_p is below 0.05, and varies where spread exceeds half the uncertainty."},
-      {{"Compare two boxes of slightly different size:",
-        "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-slice --shape "
-        "box:x=6.2,y=6.2,z=6.2 "
-        "--voxel 0.2 --stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
-        "deviation.json"},
-       {"Check a tolerance in a script:",
-        "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --voxel 0.2 --stretch-z 1 -o print.vdb\n"
-        "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
-       {"Measure the flatness of the upper face of a plate and its thickness, with uncertainties:",
-        "vam-slice --shape box:x=6,y=6,z=2 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --voxel 0.2 --stretch-z 1 -o print.vdb\n"
-        "vam-sdf print.vdb design.vdb --isovalue 0.5 --region top=plane:-2,-2,0.9,2,2,1.3 --region "
-        "body=wall:-2,-2,-2,2,2,2 --require 'top.flatness<=0.1,body.thickness>=2' --report regions.json"},
-       {"A face from a mesh of its own, with a closer tolerance than the rest:",
-        "vam-slice --shape box:x=6,y=6,z=2 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --voxel 0.2 --stretch-z 1 -o print.vdb\n"
-        "printf 'OFF\\n4 2 0\\n-3 -3 1\\n3 -3 1\\n3 3 1\\n-3 3 1\\n3 0 1 2\\n3 0 2 3\\n' >seat.off\n"
-        "vam-sdf print.vdb design.vdb --isovalue 0.5 --region seat=plane:seat.off --tolerance 0.2 --tolerance "
-        "seat=0.15 "
-        "--require 'within>=95,seat.within>=95'"},
-       {"Compare repeated prints:",
-        "vam-slice --shape box:x=6,y=6,z=6 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
-        "for n in 1 2 3 4; do vam-slice --shape box:x=6.$n,y=6.2,z=6.2 --voxel 0.2 --stretch-z 1 -o print.vdb; vam-sdf "
-        "print.vdb "
-        "design.vdb --isovalue 0.5 --samples 20000 --report run$n.json; done\nvam-sdf trend run1.json run2.json "
-        "run3.json run4.json "
-        "--plot trend.png"},
-       {"Compare an embossed badge that is 1 % too small with its design:",
-        "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
-        "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
-        "--pixel 0.1 -o outline.png --plot section.png"}},
-      {"Signs are determined by the generalised winding number, so that a design with holes is valid. Distances to "
-       "the triangles are exact; extreme percentiles depend on --samples.",
-       "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and "
-       "table S1; Chen & Medioni, point-to-plane registration, 1992; Barill et al., Fast winding numbers, 2018."},
-      {"vam-ost", "vam-dose", "vam-score", "vam-slice"}};
-}
 
 void declare_inspection(cli::App& app, Options& options) {
   app.group("Regions and uncertainty");
@@ -207,7 +126,7 @@ void declare_trend(cli::App& app, TrendOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(manual());
+  cli::App app({"vam-sdf", "measure the deviation of a print from its design", manual_page});
   Options options;
   HeightOptions height;
   declare(app, options);

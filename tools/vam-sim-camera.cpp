@@ -13,6 +13,7 @@
 #include "device/port/lines.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/vdb/vdb.hpp"
+#include "manual_page.hpp"
 #include "optics/patterns.hpp"
 #include "printer.hpp"
 #include "sim/cameras/gv_camera.hpp"
@@ -44,57 +45,6 @@ struct Options {
   cli::PrinterOptions printer;
   bool with_parent = false;
 };
-
-cli::Manual manual() {
-  return {
-      "vam-sim-camera",
-      "simulate a GigE Vision camera beside the vial",
-      {"Simulates a GenICam camera on GigE Vision at a network address of this machine: prints that address when it "
-       "is ready and serves any GenICam client until a signal ends it. The camera views a simulated, refracting "
-       "vial: the print scatters light and grows with its dose, and the projected image fluoresces in the resin.",
-       "The vial rotates as recorded in the log of vam-sim-stage (--follow), or at a constant --speed. The projector "
-       "shows the frames recorded in the log of vam-project (--flips): those of the test pattern that the log "
-       "describes, else those of --projected or --pattern. They also determine how the print grows. Without a log "
-       "the first frame is shown throughout. Where a print shows the frames of another sinogram (vam-project "
-       "--frames-from), its file is read by the name in the log. A camera frame integrates over its whole exposure, "
-       "also "
-       "across changes of the image.",
-       "With --cure the print is what the light makes of the resin, voxel by voxel: the frames that --flips states, at "
-       "the stage angles of --follow, along rays that climb, are first spent on the inhibitor, then convert the resin, "
-       "which scatters from its gel point on (vam-physics(7), Simulated print). The model shares nothing with that of "
-       "the tools that plan a print. The printer file is the true one: what it states otherwise than that of vam-print "
-       "(absorption, intensity, axis, vial) is what vam-print is wrong about. The camera then has a filter that no "
-       "light of the projector passes (--glow 0).",
-       "Its own log is the reference for tests of the tools: for each frame the number, the stage angle, the exposed "
-       "time so far in seconds, and the fingerprint of the grey levels that the manifest of vam-capture records, "
-       "too.",
-       "The camera behaves as makers document theirs: gain is automatic at power-on, and a gain set meanwhile is "
-       "lost; grey levels saturate; the clock runs from power-on, 30 ppm fast, and can be latched; time stamps name "
-       "the moment of the exposure that --maker documents.",
-       "Only one camera can serve an address, as the control port of GigE Vision is always 3956."},
-      {{"Identify a simulated camera:",
-        "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"},
-       {"A vial whose resin cures under a frame that stays on, and its state after each quarter turn:",
-        "vam-sim-camera --die-with-parent --speed 30 --cure --cure-voxel 0.5 --rows 180 --pattern grey --cured "
-        "cured.vdb --set "
-        "resin.absorption_per_mm=0.05 --set resin.critical_dose_mj_cm3=60 >address & sleep 1\n"
-        "vam-capture --device aravis:127.0.0.1 --binning 6 --fps 10 --frames 40 -o views/"}},
-      {"Faults. --drop and --incomplete list frames, counted from the first one sent, of which no packet arrives or "
-       "only some. --unplug N disconnects the cable before frame N: the program ends without informing its client. "
-       "--shrink N sends images of half the agreed height from frame N on, until a client sets the size again.",
-       "Misalignment. The options of that group are the quantities that vam-calibrate measures.",
-       "Resin. resin.absorption_per_mm and resin.critical_dose_mj_cm3 are required, the latter being the dose with "
-       "which resin of the mean inhibition just gels in the end; resin.diffusion_mm2_s is the diffusion of radicals. "
-       "Voxels cover what the projector lights and the camera sees. Where curing cannot keep up with the light, it "
-       "comes later: use a larger --cure-voxel.",
-       "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
-      {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
-      {},
-      {{75, "The address is in use by another camera, or cannot serve one."},
-       {129, "SIGHUP."},
-       {130, "SIGINT."},
-       {143, "SIGTERM."}}};
-}
 
 void declare_scene(cli::App& app, Options& o) {
   app.group("Scene");
@@ -320,7 +270,13 @@ void run(const cli::App& app, Options& o) {
 int main(int argc, char** argv) {
   Options options;
   options.pattern.name.clear();
-  cli::App app(manual());
+  cli::App app({"vam-sim-camera",
+                "simulate a GigE Vision camera beside the vial",
+                manual_page,
+                {{75, "The address is in use by another camera, or cannot serve one."},
+                 {129, "SIGHUP."},
+                 {130, "SIGINT."},
+                 {143, "SIGTERM."}}});
   declare(app, options);
   // A signal ends it at once: nothing needs a safe state, and waiting for the threads of Aravis may never end.
   return app.run(argc, argv, [&] { run(app, options); });

@@ -12,6 +12,7 @@
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"
 #include "device/port/lines.hpp"
+#include "manual_page.hpp"
 #include "sim/controllers/grbl.hpp"
 #include "sim/controllers/options.hpp"
 #include "sim/controllers/pty_host.hpp"
@@ -50,39 +51,6 @@ struct Options {
   bool shim = false;
   bool with_parent = false;
 };
-
-cli::Manual manual() {
-  return {
-      "vam-sim-stage",
-      "simulate a rotation stage on a pseudo-terminal",
-      {"Simulates a PI C-863 controller with an M-060.PD rotation stage on a serial line: opens a pseudo-terminal, "
-       "prints its path, and answers GCS 2.0 commands until a signal ends it. The stage has inertia and limits of "
-       "travel, must be powered and referenced, and rejects commands with the error codes of the controller.",
-       "Its log is the reference for tests of the tools: one JSON line per received command, per start, standstill and "
-       "zeroing of the stage, and the true angle every 10 ms during motion, all on CLOCK_MONOTONIC.",
-       "--protocol relay simulates the dead-man relay of vam-devices(7), which opens 0.3 s after the last heartbeat; "
-       "the log records when and why.",
-       "libserialport, which vam-stage uses, rejects pseudo-terminals unless a small library is preloaded; --shim "
-       "prints its path."},
-      {{"Identify a simulated stage:",
-        "vam-sim-stage --link stage --die-with-parent >path & while [ ! -s path ]; do sleep 0.1; done; "
-        "LD_PRELOAD=$(vam-sim-stage --shim) vam-stage identify --device gcs:$(cat path)"}},
-      {"Faults. --fault KIND@COMMAND[:N] injects a fault at the N-th arrival of a command (POS?, MOV, ERR?, #7, ...): "
-       "garbage, truncated, late (3 s) or silent (no reply), wrong-sender (a reply of controller 7), error (the "
-       "command "
-       "is rejected), unplug (the cable is disconnected; the motion continues), power-loss (the controller fails and "
-       "the stage coasts to a stop), block (the stage is blocked while the controller keeps replying) and stall (the "
-       "same, and a Zaber controller reports it). A command of a Zaber stage is identified by its first words (get "
-       "pos, move abs, home)."},
-      {"vam-stage", "vam-sim-camera"},
-      {},
-      {{69, "No pseudo-terminal is available, or the library of --shim is missing."},
-       {129, "SIGHUP."},
-       {130, "SIGINT."},
-       {143, "SIGTERM."}},
-      false,
-      false};
-}
 
 void declare(cli::App& app, Options& options) {
   auto& motor = options.stage.motor;
@@ -176,7 +144,15 @@ void run(Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  cli::App app(manual());
+  cli::App app({"vam-sim-stage",
+                "simulate a rotation stage on a pseudo-terminal",
+                manual_page,
+                {{69, "No pseudo-terminal is available, or the library of --shim is missing."},
+                 {129, "SIGHUP."},
+                 {130, "SIGINT."},
+                 {143, "SIGTERM."}},
+                false,
+                false});
   declare(app, options);
   return app.run(argc, argv, [&] { device::interruptible([&] { run(options); }); });
 }

@@ -12,6 +12,7 @@
 #include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
+#include "manual_page.hpp"
 #include "printer.hpp"
 #include "tomo/fbp.hpp"
 #include "tomo/negative_values.hpp"
@@ -87,7 +88,7 @@ void run(const cli::App& app, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(sinogram_tool::manual());
+  cli::App app({"vam-sinogram", "project a part along parallel rays, with or without ramp filter", manual_page});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

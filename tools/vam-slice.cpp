@@ -19,11 +19,13 @@
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "light/grids/lit_grid.hpp"
+#include "manual_page.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 #include "model/printer.hpp"
 #include "optics/writable_radius.hpp"
 #include "printer.hpp"
+#include "solid/shapes/shapes.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "solid/voxel/trapped_resin.hpp"
@@ -191,7 +193,13 @@ void run(const cli::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(slice_tool::manual());
+  cli::App app({"vam-slice",
+                "voxelise a mesh, images or a test part into the target volume",
+                manual_page,
+                {},
+                false,
+                true,
+                {{"shapes", solid::describe_shapes()}}});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

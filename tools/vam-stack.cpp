@@ -9,6 +9,7 @@
 #include "cli/common.hpp"
 #include "io/exr/stack_pieces.hpp"
 #include "io/stream/input_name.hpp"
+#include "manual_page.hpp"
 #include "slices.hpp"
 
 namespace {
@@ -21,37 +22,6 @@ struct Options {
   std::string output = "-";
   io::StackOptions stack;
 };
-
-cli::Manual manual() {
-  return {
-      "vam-stack",
-      "join pieces of a stack of images, or cut a piece out",
-      {"A piece is a stack (sinogram, frames) that holds some successive images of an undivided one and names them "
-       "in the attribute vam:piece, such as '64:128 of 160'. vam-optimize --slices computes pieces of a sinogram, "
-       "on several machines if wanted; vam-stack --slices cuts them out.",
-       "Without --slices vam-stack joins pieces. Files may be named in any order; on standard input pieces follow "
-       "each other in ascending order. They must be pieces of one stack, made by the same command, and none may be "
-       "missing. The result is the undivided stack, with its attributes, seals and history: vam-stack itself adds "
-       "no line to the history, as it changes nothing.",
-       "Pieces are stacks like others: vam-resample, vam-dose and vam-view read them."},
-      {{"Cut a sinogram into two pieces and join them:",
-        "vam-slice --shape gyroid --voxel 0.4 | vam-sinogram -o whole.exr\n"
-        "vam-stack whole.exr --slices 0:10 -o low.exr\n"
-        "vam-stack whole.exr --slices 10:26 -o high.exr\n"
-        "vam-stack high.exr low.exr -o joined.exr\n"
-        "cmp whole.exr joined.exr"},
-       {"Optimise the halves of a part at the same time:",
-        "vam-slice --shape gyroid --voxel 0.4 -o part.vdb\n"
-        "vam-optimize --geometry parallel part.vdb --slices 1/2 -o low.exr &\n"
-        "vam-optimize --geometry parallel part.vdb --slices 2/2 -o high.exr\n"
-        "wait\n"
-        "vam-stack low.exr high.exr -o sinogram.exr"},
-       {"Recompress a stack:",
-        "vam-slice --shape gyroid --voxel 0.4 | vam-sinogram | vam-stack --compression zip -o small.exr"}},
-      {"Memory: 32 images, and 0.5 kB for each image of the stack; compressed, 8 bytes more for each of its blocks of "
-       "rows. Speed: that of reading and compressing."},
-      {"vam-optimize", "vam-check", "vam-batch"}};
-}
 
 model::ImageRange chosen(const Options& options, const io::StackPieces& in, const std::string& name) {
   const model::ImageRange& there = in.images();
@@ -80,7 +50,7 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(manual());
+  cli::App app({"vam-stack", "join pieces of a stack of images, or cut a piece out", manual_page});
   Options options;
   app.positional("STACK ...", options.inputs, "A stack, or pieces of one (EXR).").reads();
   cli::add_output(app, options.output).writes_as({".exr"});

@@ -19,6 +19,7 @@
 #include "device/port/serial_port.hpp"
 #include "device/stage/spin.hpp"
 #include "io/settings/printer_file.hpp"
+#include "manual_page.hpp"
 #include "printer.hpp"
 
 namespace {
@@ -43,76 +44,6 @@ struct Options {
   device::SpinPlan plan;
   cli::PrinterOptions printer;
 };
-
-std::vector<std::string> description() {
-  return {
-      "Drives a rotation stage and reports its angle. spin performs the motion of a print: ramp, one run-up turn at "
-      "constant speed, the whole turns of the print, stop. During the motion it prints one JSON line per sample, "
-      "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma_deg\": ...}: the time on CLOCK_MONOTONIC, which all "
-      "processes of the machine share, the angle at that time, and its standard deviation. vam-project --follow and "
-      "vam-capture --follow read these lines. The angle is 0 where projection may begin, negative before, and 360 "
-      "times "
-      "the number of turns where projection must have ended. Angle 0 is always the same position of the stage: its "
-      "reference, found by home. Without a reference neither spin nor a motion to an angle starts (status 65).",
-      "The stage is that of --device or stage.device in the printer file; without either the command fails. A "
-      "simulator "
-      "is used only if it is named; log and identify mark it ({\"simulated\": true}).",
-      "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
-      "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is given; "
-      "?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. grbl:/dev/ttyACM0 is a GRBL 1.1 "
-      "board with the stage on axis X, in degrees (?axis=Y for another; ?home=here for a board without homing "
-      "switches: "
-      "--home takes the present position as 0 degrees, for this command only). zaber:/dev/ttyUSB0 is a Zaber rotary "
-      "stage "
-      "(ASCII protocol; ?address=2 and ?axis=2 for another of a chain, ?steps_per_deg=N for a controller without "
-      "stored "
-      "microsteps per turn). tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial "
-      "number may be omitted if there is only one. sim: is a PI controller simulated inside the tool; its options are "
-      "those of vam-sim-stage(1) on stage, replies and faults, with underscores (?speed_error=0.01&start_angle=30). "
-      "vam-sim-stage serves this simulator on a pseudo-terminal. vam-devices(1) lists the options of all devices. "
-      "Protocols and fault handling are described in "
-      "vam-devices(7).",
-      "A device has one user at a time: a second one exits with status 75 and names the process that holds it."};
-}
-
-std::vector<std::string> notes() {
-  return {
-      "Safety. Before the stage moves, a child process (the guardian) receives the stop command. When vam-stage ends "
-      "for "
-      "any reason, SIGKILL and a crash included, or makes no progress for 0.5 s, the guardian sends it: the stage "
-      "begins "
-      "to stop within 100 ms. Software is no interlock: it needs a running kernel and a connected cable. A "
-      "disconnected "
-      "controller completes its last motion, which is never longer than the requested turns. Install a hardware "
-      "interlock that cuts lamp and motor where people can reach either.",
-      "Accuracy. The time of a sample is the midpoint between query and reply; its standard deviation follows from "
-      "the excess of the interval between them over the shortest one, and from a third of the shortest one. spin fails "
-      "before angle 0 (status 76) when the speed error exceeds --speed-tolerance, and ends when the stage deviates "
-      "from uniform rotation by more than 2 degrees. Port latency adds to the error: at "
-      "25 "
-      "deg/s, 16 ms (the FTDI default, which is set to 1 ms where permitted) correspond to 0.4 degrees.",
-      "Priority. On a busy machine a reply may be read too late. As root, or with permission for a real-time priority "
-      "of "
-      "2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for the members of that group from their "
-      "next "
-      "login), vam-stage and its guardian run before other programs.",
-      "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."};
-}
-
-cli::Manual manual() {
-  return {"vam-stage",
-          "turn the rotation stage and report its angle",
-          description(),
-          {{"Identify the controller and its limits, here of a simulated stage:", "vam-stage identify --device sim:"},
-           {"Find the reference and move to 20 degrees:", "vam-stage move --device sim: --home --angle 20"},
-           {"One turn of a simulated stage that is 1 % too fast and replies up to 5 ms late:",
-            "vam-stage spin --device 'sim:?speed_error=0.01&jitter=5' --speed 90 --run-up 0.25 --rate 10 "
-            ">angles.jsonl"}},
-          notes(),
-          {"vam-project", "vam-sim-stage", "vam-capture"},
-          {},
-          cli::device_statuses};
-}
 
 void add_common(cli::App& command, Options& options) {
   command
@@ -244,7 +175,7 @@ void drive(const std::string& command, Options& options) {
 int main(int argc, char** argv) {
   Options options;
   std::string command;
-  cli::App app(manual());
+  cli::App app({"vam-stage", "turn the rotation stage and report its angle", manual_page, cli::device_statuses});
   add_commands(app, options, command);
   return app.run(argc, argv, [&] {
     device::interruptible([&] { device::logged(options.log, [&] { drive(command, options); }); });

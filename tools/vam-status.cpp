@@ -19,6 +19,7 @@
 #include "io/settings/flip_log.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
+#include "manual_page.hpp"
 #include "vam-status/correction.hpp"
 #include "vam-status/light_view.hpp"
 #include "vam-status/page.hpp"
@@ -36,46 +37,6 @@ struct Options {
   double period_s = 1;
   bool with_parent = false;
 };
-
-cli::Manual manual() {
-  return {
-      "vam-status",
-      "show the progress of a print",
-      {"Reads the logs in the run folder of vam-print, of a print in progress or finished, and prints one line: "
-       "the state (preparing; run-up, dark; printing; ended, with the outcome; or the time since the last log entry, "
-       "if the end of the print was not logged), turn and stage angle, the fraction of the exposure delivered, "
-       "the number of missed vertical blanks and, with live metrology (vam-print --until), the fractions of the part "
-       "that are cured and missing; of a print that corrects itself (vam-print --correct) also what its next light "
-       "will be, or why it stays as it is, and as the number of turns that at which the light ends. With --watch it "
-       "repeats this until the print ends; on a terminal the line is "
-       "refreshed in place.",
-       "--page writes a page for a browser, which refreshes itself: these figures, the newest camera image, the vial "
-       "from above with the dose so far and the current projection, the projected image, and the ages of the "
-       "calibration records. The page is one file, images included, and is opened directly (file:///...), without a "
-       "server; it shows when it is no longer updated.",
-       "The logs of a print that has ended are verified against its SHA256SUMS, and refused (65) if they were changed, "
-       "cut or lost since; vam-check verifies all files of the folder. Without that list a warning says so of a print "
-       "that has ended or was killed, and the end is that in summary.json, with a warning if events.jsonl does not "
-       "tell of it.",
-       "On a terminal vam-print prints this line itself; with --run-page it writes page.html into the run folder."},
-      {{"The progress of a print, here a dry run:",
-        "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\n"
-        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --run-up 0.25 --set stage.device=sim: "
-        "--set "
-        "stage.speed_deg_s=85 --run dry-run\n"
-        "vam-status dry-run"},
-       {"The same as a page:",
-        "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\n"
-        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --run-up 0.25 --set stage.device=sim: "
-        "--set "
-        "stage.speed_deg_s=85 --run dry-run\n"
-        "vam-status dry-run --page page.html"}},
-      {"Dose. The page shows the dose in the middle slice, by horizontal rays and without blur; vam-dose --shown "
-       "computes the dose of all slices with the full model.",
-       "Memory. The sinogram is read once, and at most 300 columns, slices and stage angles of it are kept.",
-       "The run folder is only read: vam-status can be started and ended at any time."},
-      {"vam-print", "vam-dose", "vam-ost"}};
-}
 
 void declare(cli::App& app, Options& o) {
   app.positional("RUN", o.run, "Run folder of vam-print.");
@@ -128,7 +89,7 @@ void run(const Options& o) {
 
 int main(int argc, char** argv) {
   Options options;
-  cli::App app(manual());
+  cli::App app({"vam-status", "show the progress of a print", manual_page});
   declare(app, options);
   return app.run(argc, argv, [&] { run(options); });
 }

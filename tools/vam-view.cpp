@@ -12,6 +12,7 @@
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/nrrd.hpp"
+#include "manual_page.hpp"
 #include "plot/save.hpp"
 #include "plot/view.hpp"
 #include "printer.hpp"
@@ -223,7 +224,7 @@ void run(const cli::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app(view_tool::manual());
+  cli::App app({"vam-view", "draw volumes, sinograms, frames, videos, meshes and traces as figures", manual_page});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

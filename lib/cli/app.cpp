@@ -244,7 +244,7 @@ App& App::needs(const std::vector<std::string>& any_of) {
 }
 
 App& App::subcommand(const std::string& name, const std::string& summary, std::string& chosen) {
-  auto nested = std::unique_ptr<App>(new App(Manual{name, summary, {}, {}, {}, {}}));
+  auto nested = std::unique_ptr<App>(new App(Manual{name, summary}));
   nested->state_->owned.reset();
   nested->state_->parser = state_->parser->add_subcommand(name, summary);
   nested->state_->parser->set_help_flag();

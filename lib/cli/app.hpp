@@ -17,18 +17,16 @@ struct ExitStatus {
   std::string meaning;
 };
 
-/// Sections of the manual beside the options. Paragraphs are plain text.
+/// What a tool declares for its manual page beside its options.
 struct Manual {
-  std::string name;                                           // vam-slice
-  std::string summary;                                        // one line, lower case, no full stop
-  std::vector<std::string> description;                       // paragraphs
-  std::vector<std::pair<std::string, std::string>> examples;  // sentence, shell command; run by a test, in this order
-  std::vector<std::string> notes;                             // paragraphs: memory, accuracy, sources
-  std::vector<std::string> see_also;                          // vam-sinogram, ...
-  std::vector<std::string> files = {};                        // paragraphs on what its files hold beside the usual
-  std::vector<ExitStatus> statuses = {};                      // beside those of all tools; device_statuses
-  bool locks = false;                                         // looks up who reserves devices, if it drives none
-  bool reads = true;                                          // files; else it never ends with 65 or 66
+  std::string name;                       // vam-slice
+  std::string summary;                    // one line, lower case, no full stop
+  std::string page = {};                  // man/vam-slice.1, whose blocks App prints [manual_page]; empty: only these
+  std::vector<ExitStatus> statuses = {};  // beside those of all tools; device_statuses
+  bool locks = false;                     // looks up who reserves devices, if it drives none
+  bool reads = true;                      // files; else it never ends with 65 or 66
+  /// Further blocks, from tables: name and paragraphs of plain text.
+  std::vector<std::pair<std::string, std::vector<std::string>>> lists = {};
 };
 
 /// For the manuals of tools that drive devices.

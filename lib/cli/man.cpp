@@ -223,33 +223,18 @@ std::string environment(const Declaration& tool) {
   return out.empty() ? "" : ".Sh ENVIRONMENT\n.Bl -tag -width Ds\n" + out + ".El\n";
 }
 
-std::string files_section(const Manual& manual) {
-  std::string out =
-      ".Sh FILES\n"
-      "The formats of volumes, stacks, records and the printer file are described in\n"
-      ".Xr vam-formats 7 .\n"
-      "A dash means standard input or standard output; outputs appear under their\n"
-      "final name only when complete.\n";
-  for (const auto& file : manual.files) out += ".Pp\n" + paragraph(file);
-  return out;
-}
-
-std::string examples(const Manual& manual) {
-  if (manual.examples.empty()) return "";
-  std::string out = ".Sh EXAMPLES\n";
-  for (const auto& [sentence, command] : manual.examples) {
-    if (&sentence != &manual.examples.front().first) out += ".Pp\n";
-    out += paragraph(sentence);
-    out += ".Bd -literal -offset indent\n" + guarded(escape(command)) + ".Ed\n";
-  }
-  return out;
+std::string files_section() {
+  return ".Sh FILES\n"
+         "The formats of volumes, stacks, records and the printer file are described in\n"
+         ".Xr vam-formats 7 .\n"
+         "A dash means standard input or standard output; outputs appear under their\n"
+         "final name only when complete.\n";
 }
 
 std::string head(const Manual& manual) {
   std::string upper = manual.name;
   for (char& c : upper) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
-  return ".\\\" Printed by " + manual.name + " --man; do not edit.\n.Dd " + VAM_DATE + "\n.Dt " + upper +
-         " 1\n.Os\n.Sh NAME\n.Nm " + manual.name + "\n.Nd " + escape(manual.summary) + "\n";
+  return ".Dt " + upper + " 1\n.Os\n.Sh NAME\n.Nm " + manual.name + "\n.Nd " + escape(manual.summary) + "\n";
 }
 
 std::string every_tool(const Declaration& tool) {
@@ -269,30 +254,44 @@ std::string paragraphs(const std::vector<std::string>& texts) {
   return out;
 }
 
-std::string see_also(std::vector<std::string> others) {
-  std::sort(others.begin(), others.end());
-  std::string out = others.empty() ? "" : ".Sh SEE ALSO\n";
-  for (const auto& name : others) out += ".Xr " + name + " 1" + (&name == &others.back() ? "\n" : " ,\n");
-  return out;
+std::string exit_status(const Declaration& tool) {
+  std::string out = ".Sh EXIT STATUS\n.Bl -tag -width Ds\n";
+  for (const auto& status : exit_statuses(tool))
+    out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";
+  return out + ".El\n";
 }
+
+using Blocks = std::vector<std::pair<std::string, std::string>>;  // name and lines
+
+Blocks blocks_of(const Declaration& tool) {
+  const bool has_files = find_option(tool, "--printer") != nullptr || find_option(tool, "--output") != nullptr ||
+                         !tool.positionals.empty();
+  Blocks blocks{{"name", head(tool.manual)},
+                {"synopsis", ".Sh SYNOPSIS\n" + synopsis(tool)},
+                {"options", positional_list(tool) + option_list(tool) + commands(tool) + every_tool(tool)},
+                {"environment", environment(tool)},
+                {"files", has_files ? files_section() : ""},
+                {"status", exit_status(tool)}};
+  for (const auto& [name, texts] : tool.manual.lists) blocks.emplace_back(name, paragraphs(texts));
+  return blocks;
+}
+
+// ".\" <options>" and ".\" </options>"
+std::string mark(const std::string& name) { return ".\\\" <" + name + ">\n"; }
 
 }  // namespace
 
 std::string manual_page(const Declaration& tool) {
-  const Manual& manual = tool.manual;
-  std::string out = head(manual) + ".Sh SYNOPSIS\n" + synopsis(tool);
-  out += ".Sh DESCRIPTION\n" + paragraphs(manual.description);
-  out += positional_list(tool) + option_list(tool) + commands(tool) + every_tool(tool);
-  if (!manual.notes.empty()) out += ".Sh IMPLEMENTATION NOTES\n" + paragraphs(manual.notes);
-  out += environment(tool);
-  if (find_option(tool, "--printer") != nullptr || find_option(tool, "--output") != nullptr ||
-      !tool.positionals.empty()) {
-    out += files_section(manual);
+  std::string page = tool.manual.page;
+  for (const auto& [name, lines] : blocks_of(tool)) {
+    const std::string begin = mark(name);
+    if (tool.manual.page.empty()) page += begin + lines + mark("/" + name);
+    const std::size_t from = page.find(begin);
+    const std::size_t end = page.find(mark("/" + name));
+    if (from == std::string::npos || end == std::string::npos) continue;  // a page that has no use for it
+    page.replace(from + begin.size(), end - from - begin.size(), lines);
   }
-  out += ".Sh EXIT STATUS\n.Bl -tag -width Ds\n";
-  for (const auto& status : exit_statuses(tool))
-    out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";
-  return out + ".El\n" + examples(manual) + see_also(manual.see_also);
+  return page;
 }
 
 }  // namespace vam::cli

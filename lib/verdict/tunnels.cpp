@@ -21,7 +21,7 @@ using Parts = std::array<int, 8>;
 
 constexpr bool is_solid(float value) { return value >= 0; }
 
-constexpr void join(int a, int b, Parts& parts) {
+constexpr void connect_parts(int a, int b, Parts& parts) {
   const int from = std::max(parts[a], parts[b]);
   std::replace(parts.begin(), parts.end(), from, std::min(parts[a], parts[b]));
 }
@@ -32,7 +32,7 @@ constexpr Parts along_edges(const Corners& corners) {
   std::iota(parts.begin(), parts.end(), 0);
   for (int n = 0; n < 8; ++n) {
     for (const int bit : {1, 2, 4}) {
-      if ((n & bit) == 0 && is_solid(corners[n]) == is_solid(corners[n | bit])) join(n, n | bit, parts);
+      if ((n & bit) == 0 && is_solid(corners[n]) == is_solid(corners[n | bit])) connect_parts(n, n | bit, parts);
     }
   }
   return parts;
@@ -67,7 +67,7 @@ constexpr bool is_solid_at_saddle(const Face& face, const Corners& corners) {
 void join_across(const Face& face, const Corners& corners, Parts& parts) {
   if (!is_ambiguous(face, corners)) return;
   const bool first = is_solid(corners[face.a]) == is_solid_at_saddle(face, corners);
-  first ? join(face.a, face.d, parts) : join(face.b, face.c, parts);
+  first ? connect_parts(face.a, face.d, parts) : connect_parts(face.b, face.c, parts);
 }
 
 /// Of the solid in a face: its pieces, as none has a hole.
@@ -102,7 +102,7 @@ void join_inside(const Corners& corners, Parts& parts) {
     const double way = at(low.a, t) * at(low.d, t) - at(low.b, t) * at(low.c, t);
     if (way * bend >= 0) continue;  // as at the faces
     const auto end = [&](int corner) { return is_solid(corners[corner]) == is(corner) ? corner : corner + up; };
-    way > 0 ? join(end(low.a), end(low.d), parts) : join(end(low.b), end(low.c), parts);
+    way > 0 ? connect_parts(end(low.a), end(low.d), parts) : connect_parts(end(low.b), end(low.c), parts);
   }
 }
 

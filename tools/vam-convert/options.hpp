@@ -39,7 +39,6 @@ struct Options {
   [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 
 /// Which axis of the array counts images, rows and columns, where `letters` name them in this order: "zyx", "zax".

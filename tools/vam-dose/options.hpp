@@ -34,7 +34,6 @@ struct Options {
   cli::PrinterOptions printer;
 };
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// Fills in what follows from other options, no file opened. Throws Fault::usage for options that contradict each
 /// other or the printer.

@@ -74,7 +74,6 @@ struct Options {
 /// As many angles as the projections have from which it starts, unless --angles says otherwise. Throws as StackReader.
 void settle_angles(const cli::App& app, Options& options);
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// Fills in what follows from other options, no file opened. Throws Fault::usage for options that contradict each
 /// other.

@@ -22,7 +22,6 @@ struct Options {
   cli::PrinterOptions printer;
 };
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 
 }  // namespace vam::plan_tool

@@ -61,7 +61,6 @@ struct Options {
 /// but is of no known kind.
 void refuse_live(const cli::App& app, const std::string& output);
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// The printer as options change it, and what options take from it. Throws Fault::usage for a depth no projector has.
 [[nodiscard]] model::Printer settle(Options& options);

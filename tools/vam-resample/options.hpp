@@ -34,7 +34,6 @@ struct Options {
   [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// Throws Fault::usage for options that have no meaning in this direction, and for rows that the projector lacks.
 void check(const Options& options, const model::Printer& printer);

@@ -28,7 +28,6 @@ struct Options {
   cli::PrinterOptions printer;
 };
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// Throws Fault::usage for options that a grey target has no use for.
 void check(const cli::App& app, const Options& options);

@@ -27,7 +27,6 @@ struct Options {
   io::StackOptions stack;
 };
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 
 }  // namespace vam::sinogram_tool

@@ -44,7 +44,6 @@ struct Options {
   cli::PrinterOptions printer;
 };
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// Throws Fault::usage for options that contradict each other or what PART is.
 void check(const cli::App& app, const Options& options);

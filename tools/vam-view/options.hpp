@@ -35,7 +35,6 @@ struct Options {
 /// With its folder where that of `other` is the same, as of two runs.
 [[nodiscard]] std::string file_name(const std::string& path, const std::string& other);
 
-[[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// Throws Fault::usage for options that contradict each other, and for an output that is an input.
 void check(const Options& options);

@@ -117,7 +117,7 @@ struct Stage {
   std::string chosen, device = "sim:", input = "-", file;
   double speed = 1, angle = 0;
   bool quick = false;
-  App app{Manual{"vam-demo", "shows commands", {}, {}, {}, {}}};
+  App app{Manual{"vam-demo", "shows commands"}};
   explicit Stage(bool plain = false) {
     if (plain) app.positional("INPUT", input, "What to read.").flag("--quick", quick, "Quick.");
     App& spin = app.subcommand("spin", "turn on", chosen);
@@ -231,7 +231,7 @@ TEST_CASE("an operand without a default, and any before it, is shown as required
 
 TEST_CASE("the manual lists the variables and statuses of what the tool has") {
   Declaration tool;
-  tool.manual = {"vam-demo", "shows", {"Shows."}, {}, {}, {}};
+  tool.manual = {"vam-demo", "shows"};
   const std::string bare = manual_page(tool);
   CHECK(bare.find("VAM_PRINTER") == std::string::npos);
   CHECK(bare.find(".It 1\n") == std::string::npos);
@@ -267,7 +267,7 @@ TEST_CASE("an option that stands for an operand is a form of its own in the syno
   const auto printed = [](const std::string& word) {
     std::string part = "-", shape;
     bool live = false;
-    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    App app(Manual{"vam-demo", "shows options"});
     app.positional("PART", part, "What to read.").reads({"--shape"});
     app.option("--shape", "NAME", shape, "Instead of PART.").form();
     app.flag("--live", live, "As it arrives.").form();
@@ -285,7 +285,7 @@ TEST_CASE("an option that stands for an operand is a form of its own in the syno
 TEST_CASE("required options of a form are shown as such and refused where missing") {
   const auto said = [](const std::vector<std::string>& words, std::FILE* stream) {
     std::string frames, log, chosen;
-    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    App app(Manual{"vam-demo", "shows options"});
     auto& scan = app.subcommand("scan", "one", chosen);
     scan.positional("FRAMES", frames, "Captured frames.");
     scan.option("--flips", "FILE", log, "Log.").required();
@@ -307,7 +307,7 @@ TEST_CASE("an option that stands for others is a form of its own without them") 
     std::string chosen;
     double first = 0;
     bool side = false;
-    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    App app(Manual{"vam-demo", "shows options"});
     auto& beam = app.subcommand("beam", "one", chosen);
     beam.flag("--side", side, "From the side.").form();
     beam.option("--first", "MM", first, any, "First plane.").required_without("--side");
@@ -335,9 +335,21 @@ TEST_CASE("a job is every option but those declared to be none of it, with the v
   CHECK(tool.app.job() == "--voxel=0.5\n--angles=90\n--rotate=1,2,3\n--set=a=1\n--window=hann\n--half=1\n--seconds=\n");
 }
 
+TEST_CASE("a page keeps its text, and has between its marks what the tool declares") {
+  Declaration tool;
+  tool.manual = {"vam-demo", "shows"};
+  tool.manual.page =
+      ".\\\" <name>\nof before\n.\\\" </name>\n.Sh DESCRIPTION\nShows.\n.\\\" <kinds>\n.\\\" </kinds>\nMore.\n";
+  tool.manual.lists = {{"kinds", {"One.", "Two."}}};
+  CHECK(manual_page(tool) ==
+        ".\\\" <name>\n.Dt VAM-DEMO 1\n.Os\n.Sh NAME\n.Nm vam-demo\n.Nd shows\n.\\\" </name>\n.Sh DESCRIPTION\nShows.\n"
+        ".\\\" <kinds>\nOne.\n.Pp\nTwo.\n.\\\" </kinds>\nMore.\n");
+}
+
 TEST_CASE("the manual page escapes the control characters of roff") {
   Declaration tool;
-  tool.manual = {"vam-demo", "shows", {".starts with a dot and a \\ and 5 µm. Next sentence."}, {}, {}, {}};
+  tool.manual = {"vam-demo", "shows"};
+  tool.manual.lists = {{"kinds", {".starts with a dot and a \\ and 5 µm. Next sentence."}}};
   const std::string page = manual_page(tool);
   CHECK(page.find("\\&.starts") != std::string::npos);
   CHECK(page.find("\\e") != std::string::npos);

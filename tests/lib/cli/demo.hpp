@@ -29,7 +29,7 @@ struct Tool {
   std::vector<double> rotate{0, 0, 0};
   std::vector<std::string> sets;
   bool half = false;
-  App app{Manual{"vam-demo", "shows options", {"First. Second."}, {{"Do it.", "vam-demo --half"}}, {}, {"vam-slice"}}};
+  App app{Manual{"vam-demo", "shows options"}};
   Tool() {
     app.positional("INPUT", input, "What to read.");
     app.option("--voxel", "MM", voxel_mm, positive, "Voxel edge.");

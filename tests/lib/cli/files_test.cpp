@@ -15,7 +15,7 @@ TEST_CASE("inputs: one standard input, none of them an output, their contents pa
   std::ofstream(file) << "first";
   const auto said = [](const std::vector<std::string>& words, std::string* job = nullptr) {
     std::string part = "-", weights, shape, out;
-    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    App app(Manual{"vam-demo", "shows options"});
     app.positional("PART", part, "What to read.").reads({"--shape"});
     app.option("--weights", "FILE", weights, "Weights.").reads();
     app.option("--shape", "NAME", shape, "Instead of PART.");
