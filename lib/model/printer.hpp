@@ -53,6 +53,7 @@ struct Resin {
   std::optional<double> critical_dose_mj_cm3;
   double psf_mm = 0;  // Gaussian sigma of the beam, across it and along z
   double diffusion_mm2_s = 0;
+  std::optional<double> dose_lifetime_s;  // of what diffuses; empty: it outlives the print
 };
 
 struct PrinterStage {

@@ -16,12 +16,13 @@
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
 #include "dark_part.hpp"
+#include "diffusion.hpp"
 #include "io/stream/input_name.hpp"
 #include "light/blur/blur_stream.hpp"
-#include "light/blur/gaussian_blur.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/simulation/dose_stream.hpp"
 #include "light/simulation/simulation.hpp"
+#include "model/dose_spread.hpp"
 #include "model/grid_size.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-dose/insert.hpp"
@@ -120,7 +121,8 @@ double blur_mm(const Options& options, const model::Printer& printer, const mode
   const double usual = model::repeat(info.poses) ? printer.stage.turns : optics::turns_of(info);
   const double turns = options.shown.empty() ? usual : shown_turns;
   const double seconds = options.diffusion_time_s.value_or(model::seconds_of(printer.stage, turns));
-  return light::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
+  tool::warn_of_diffusion(printer.resin, seconds);
+  return model::spread_mm(printer.resin, seconds);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ void declare_beam(cli::App& app, Options& options) {
              "Round as vam-project --dither N does, and expose to the mean over the N turns.")
       .needs({"--bits"});
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
-             "Time during which the dose diffuses.");
+             "Time in which the light arrives, and the dose diffuses.");
   app.default_is("the duration of stage.turns turns");
   app.flag("--exposure-plan", options.exposure_plan,
            "Determine the number of whole turns and the fraction of full intensity that put the critical dose in the "

@@ -8,12 +8,13 @@
 #include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "diffusion.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/stream/input_name.hpp"
-#include "light/blur/gaussian_blur.hpp"
 #include "light/grids/poses.hpp"
 #include "light/operators/make_operator.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/dose_spread.hpp"
 #include "model/magnification.hpp"
 #include "optics/lit_fraction.hpp"
 #include "optics/writable_radius.hpp"
@@ -170,6 +171,7 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
 }
 
 void warn_of(const Scene& scene, const io::SparseVolume& target, const Options& options) {
+  if (!options.no_blur) tool::warn_of_diffusion(scene.printer.resin, diffusion_s(scene, options));
   if (!options.in_vial()) return;
   warn_of_reach(target, scene.printer, options);
   if (scene.poses.empty()) warn_of_wobble(scene.printer, scene.grid.voxel_mm);
@@ -186,7 +188,7 @@ namespace {
 
 double blur_px(const model::Resin& resin, const Scene& scene, const Options& options) {
   if (options.no_blur) return 0;
-  return light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, diffusion_s(scene, options)) / scene.grid.voxel_mm;
+  return model::spread_mm(resin, diffusion_s(scene, options)) / scene.grid.voxel_mm;
 }
 
 }  // namespace

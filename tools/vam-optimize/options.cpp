@@ -243,7 +243,7 @@ void declare_beam(cli::App& app, Options& options) {
       "vam-score judge by footprints.");
   app.flag("--no-blur", options.no_blur, "Do not compensate for point spread and diffusion.");
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
-             "Time during which the dose diffuses.");
+             "Time in which the light arrives, and the dose diffuses.");
   app.default_is("the duration of stage.turns turns");
 }
 

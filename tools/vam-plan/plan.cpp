@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "diffusion.hpp"
 #include "io/stream/input_name.hpp"
 #include "mesh_in_unit.hpp"
 #include "model/magnification.hpp"
@@ -144,6 +145,7 @@ Plan plan(const Options& options, const model::Printer& printer) {
   made.stretch_z = 1 / model::vertical_magnification(printer);
   add_walls(made, part);
   if (options.no_preview) return made;
+  tool::warn_of_diffusion(printer.resin, model::seconds_of(printer.stage, printer.stage.turns));
   add_preview(made, part, printer);
   if (!made.preview) return made;
   const optimize::VolumeOutcome& outcome = made.preview->outcome;

@@ -29,10 +29,6 @@ std::vector<double> gaussian_weights(double sigma_px) {
   return weights;
 }
 
-double spread_mm(double psf_mm, double diffusion_mm2_s, double seconds) {
-  return std::sqrt(psf_mm * psf_mm + 2 * diffusion_mm2_s * seconds);
-}
-
 GaussianBlur::GaussianBlur(double sigma_px) {
   for (const double weight : gaussian_weights(sigma_px)) weights_.push_back(static_cast<float>(weight));
 }

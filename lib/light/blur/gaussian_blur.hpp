@@ -16,9 +16,6 @@ namespace vam::light {
 /// 1e-4 of its height. Cut where less than 1e-9 is left, then normalised.
 [[nodiscard]] std::vector<double> gaussian_weights(double sigma_px);
 
-/// Standard deviation that a point spread psf (mm) and diffusion for a time have together: sqrt(psf^2 + 2 D t).
-[[nodiscard]] double spread_mm(double psf_mm, double diffusion_mm2_s, double seconds);
-
 class GaussianBlur {
  public:
   /// sigma in voxels.

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "light/blur/gaussian_blur.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/operators/make_operator.hpp"
 #include "light/rays/vial_setup.hpp"
+#include "model/dose_spread.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/methods/method.hpp"
 
@@ -55,8 +55,7 @@ Preview preview(const PreviewTask& wanted) {
   task.count_pieces = true;
   task.limit.of_even = usual_of_even;
   const double seconds = model::seconds_of(wanted.printer.stage, wanted.printer.stage.turns);
-  const model::Resin& resin = wanted.printer.resin;
-  task.blur_px = light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / lit.grid.voxel_mm;
+  task.blur_px = model::spread_mm(wanted.printer.resin, seconds) / lit.grid.voxel_mm;
   task.make = [](double max_intensity) {
     MethodOptions how;
     how.max_intensity = max_intensity;

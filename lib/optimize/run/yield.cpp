@@ -9,8 +9,8 @@
 #include "base/json.hpp"
 #include "base/progress.hpp"
 #include "light/blur/blur_stream.hpp"
-#include "light/blur/gaussian_blur.hpp"
 #include "light/simulation/simulation.hpp"
+#include "model/dose_spread.hpp"
 #include "model/magnification.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/target/exclusions.hpp"
@@ -52,8 +52,7 @@ class Bench {
     const light::Simulation simulation(setup);
     std::vector<Image> doses(trial_.grid.nz);
     simulation.dose(frames_, doses, inserts_);
-    const model::Resin& resin = off.printer.resin;
-    const double blur_mm = light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, trial_.seconds);
+    const double blur_mm = model::spread_mm(off.printer.resin, trial_.seconds);
     return judged(blurred(std::move(doses), trial_.blur ? blur_mm / trial_.grid.voxel_mm : 0), off.intensity);
   }
 

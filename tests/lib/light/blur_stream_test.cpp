@@ -72,5 +72,3 @@ TEST_CASE("a narrow volume and a wide kernel: fewer slices than the kernel is hi
   CHECK(blurred(point(3, 1, 1, 1), 0)[1](1, 1) == 1);
   CHECK(blurred({}, 1).empty());
 }
-
-TEST_CASE("point spread and diffusion add in variance") { CHECK(spread_mm(0.03, 8e-6, 100) == doctest::Approx(0.05)); }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far the dose of a print is smeared in the end [physics §4].
+#pragma once
+
+#include "model/printer.hpp"
+
+namespace vam::model {
+
+/// Mean square, in mm2 along one axis, of how far what absorbed the light has diffused at the end of a print of
+/// `seconds`, lit evenly throughout: it diffuses from when it was lit until it dies or the print ends.
+[[nodiscard]] double diffused_mm2(const Resin& resin, double seconds);
+
+/// Standard deviation in mm along one axis, by the point spread of the beam and diffusion together.
+[[nodiscard]] double spread_mm(const Resin& resin, double seconds);
+
+}  // namespace vam::model
