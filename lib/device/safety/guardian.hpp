@@ -10,10 +10,11 @@
 
 namespace vam::device {
 
-/// Make it before any thread, window or device of the tool: it forks. While at least one action is registered, beat()
-/// must be called at least every stall_s; otherwise the guardian kills the tool (SIGKILL) and acts. When the tool ends
-/// with actions still registered, the guardian carries them out in ascending `order` (dark before still), at once.
-/// Without registered actions it exits silently. One line on stderr reports what it did when the tool could not.
+/// Make it before any thread, window or device of the tool: it forks. The child is called vam-guardian. While at least
+/// one action is registered, beat() must be called at least every stall_s; otherwise the guardian kills the tool
+/// (SIGKILL) and acts. When the tool ends with actions still registered, the guardian carries them out in ascending
+/// `order` (dark before still), at once. Without registered actions it exits silently. One line on stderr reports what
+/// it did when the tool could not.
 class Guardian {
  public:
   explicit Guardian(double stall_s = 0.5);

@@ -9,7 +9,9 @@
 
 #include <array>
 #include <csignal>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <string>
 
 #include "base/json.hpp"
@@ -145,4 +147,17 @@ TEST_CASE("A tool detects that its guardian is gone") {
     _exit(0);
   });
   CHECK(result.bytes == "noticed");
+}
+
+TEST_CASE("A guardian has a name of its own, so that who kills its tool by name or command line spares it") {
+  const Guardian guardian;
+  const auto file = [&](const char* name) {
+    std::ifstream read("/proc/" + std::to_string(guardian.pid()) + "/" + name);
+    return std::string{std::istreambuf_iterator<char>(read), {}};
+  };
+  for (int look = 0; look < 500 && !file("cmdline").starts_with("vam-guardian"); ++look) usleep(2000);
+  CHECK(file("comm") == "vam-guardian\n");
+  const std::string line = file("cmdline");
+  CHECK(line.find_last_not_of('\0') + 1 == std::string("vam-guardian").size());
+  CHECK(line.starts_with("vam-guardian"));
 }
