@@ -20,8 +20,9 @@ std::unique_ptr<LightEngine> open_sim(const Address& address, const LightSetting
 }
 
 std::unique_ptr<LightEngine> open_dlp(const Address& address, const LightSettings& settings, Guardian* guardian) {
-  auto link = open_usb(usb_id(address.scheme, address.place), 0);
-  auto lock = std::make_unique<DeviceLock>(link->name());
+  std::unique_ptr<DeviceLock> lock;  // first: of a claimed interface nobody says whose it is
+  auto link = open_usb(usb_id(address.scheme, address.place), 0,
+                       [&](const std::string& name) { lock = std::make_unique<DeviceLock>(name); });
   if (guardian != nullptr) guardian->keep(lock->handle());
   auto light = make_dlp_light(std::move(link), settings, real_clock(), guardian);
   light->hold(std::move(lock));

@@ -43,9 +43,11 @@ std::string release_text(int bcd) {
 
 class LibusbLink final : public UsbLink {
  public:
-  LibusbLink(Context context, Handle handle, int interface, Json about)
+  LibusbLink(Context context, Handle handle, int interface, Json about,
+             const std::function<void(const std::string& name)>& named)
       : context_(std::move(context)), handle_(std::move(handle)), interface_(interface), about_(std::move(about)) {
     name_ = "usb:" + about_["usb_id"].get<std::string>() + ":" + about_["serial"].get<std::string>();
+    if (named) named(name_);
     if (interface_ < 0) return;
     libusb_set_auto_detach_kernel_driver(handle_.get(), 1);
     require(libusb_claim_interface(handle_.get(), interface_), "cannot claim the interface");
@@ -150,7 +152,8 @@ std::vector<Listed> search(libusb_context* context, const UsbId& id, int& closed
 
 }  // namespace
 
-std::unique_ptr<UsbLink> open_usb(const UsbId& id, int interface) {
+std::unique_ptr<UsbLink> open_usb(const UsbId& id, int interface,
+                                  const std::function<void(const std::string& name)>& named) {
   libusb_context* raw = nullptr;
   if (libusb_init(&raw) != 0) throw Error{Fault::absent, "USB: not available on this machine"};
   Context context(raw);
@@ -170,7 +173,7 @@ std::unique_ptr<UsbLink> open_usb(const UsbId& id, int interface) {
                                   "; select one by serial number: " + join(serials, ", ")};
   }
   return std::make_unique<LibusbLink>(std::move(context), std::move(found.front().handle), interface,
-                                      std::move(found.front().about));
+                                      std::move(found.front().about), named);
 }
 
 }  // namespace vam::device

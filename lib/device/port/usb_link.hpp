@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,8 +35,9 @@ class UsbLink {
   [[nodiscard]] virtual Json about() const = 0;
 };
 
-/// Opens it; interface >= 0 is taken over from the kernel's HID driver. Throws Fault::absent (none, or no permission),
-/// Fault::usage (several, and no serial number to choose by).
-[[nodiscard]] std::unique_ptr<UsbLink> open_usb(const UsbId& id, int interface);
+/// Opens it; interface >= 0 is taken over from the kernel's HID driver, after `named` was called with the link's name.
+/// Throws Fault::absent (none, or no permission), Fault::usage (several, and no serial number to choose by).
+[[nodiscard]] std::unique_ptr<UsbLink> open_usb(const UsbId& id, int interface,
+                                                const std::function<void(const std::string& name)>& named = {});
 
 }  // namespace vam::device
