@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// vam-devices: the devices of this machine, and why some cannot be used.
+// vam-devices: the devices of this machine, and why some cannot be used; and all of them off.
 #include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "device/open/find.hpp"
+#include "device/open/off.hpp"
 #include "device/port/lines.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"
 #include "manual_page.hpp"
 #include "model/device_schemes.hpp"
+#include "printer.hpp"
 
 namespace {
 
@@ -22,6 +27,8 @@ struct Options {
   std::vector<std::string> ports;
   bool probe = false;
   std::string report;
+  std::string light;  // of off; empty: those that are found, "none": none
+  cli::PrinterOptions printer;
 };
 
 /// A paragraph for the options of each kind of device, and one for each option.
@@ -79,6 +86,49 @@ void run(const Options& options) {
   io::write_report(options.report, "vam-devices", {{"found", list}});
 }
 
+// A printer file that cannot be read keeps no light on.
+std::vector<device::Switched> to_switch_off(const Options& options, std::vector<std::string>& problems, Fault& fault) {
+  std::vector<device::Switched> devices;
+  const auto add = [&](const char* kind, const std::string& device) {
+    if (!device.empty()) devices.push_back({kind, device});
+  };
+  if (options.light.empty()) devices = device::find_lit();
+  if (options.light != "none") add("light", options.light);
+  try {
+    const auto printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
+    add("relay", printer.projector.relay);
+    add("stage", printer.stage.device);
+  } catch (const Error& error) {
+    problems.emplace_back(error.what());
+    fault = error.fault;
+  }
+  return devices;
+}
+
+void switch_off(const Options& options) {
+  if (tool::print_printer(options.printer)) return;
+  std::vector<std::string> problems;
+  Fault fault = Fault::busy;
+  auto devices = to_switch_off(options, problems, fault);
+  if (devices.empty() && problems.empty()) {
+    throw Error{Fault::usage,
+                "off: no device to switch off: the printer file names no stage and no relay, and no light engine is on "
+                "USB; give --printer FILE"};
+  }
+  device::switch_off(devices);
+  for (const auto& one : devices) {
+    if (one.problem.empty()) {
+      device::print_line(std::string(one.kind).append(9 - one.kind.size(), ' ') + one.device + "  " + one.state);
+      continue;
+    }
+    if (problems.empty()) fault = one.fault;
+    problems.push_back(one.kind + " " + one.problem);
+  }
+  if (!problems.empty()) {
+    throw Error{fault, "not everything is off: " + join(problems, "; ") + "; cut the power by hand"};
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -86,12 +136,19 @@ int main(int argc, char** argv) {
   cli::App app({"vam-devices",
                 "list stages, cameras, displays and light engines",
                 manual_page,
-                {},
-                true,
+                {{69, "off: a device is absent."},
+                 {75, "off: a device is in use, or timed out; try again."},
+                 {76, "off: device protocol error."}},
                 false,
+                true,
                 {{"devices", device_texts()}}});
   app.option("--port", "PATH", options.ports, "Serial port to list in addition to those of the system.");
   app.flag("--probe", options.probe, "Query the serial ports for stage controllers.");
   cli::add_report(app, options.report);
-  return app.run(argc, argv, [&] { run(options); });
+  std::string command;
+  auto& off = app.subcommand("off", "switch everything off: light, relay, displays, stage", command);
+  off.option("--light", "DEVICE", options.light, "Light engine, and no display; none for no light engine.")
+      .default_is("every light engine on USB, and every display in use");
+  cli::add_printer(off, options.printer);
+  return app.run(argc, argv, [&] { command == "off" ? switch_off(options) : run(options); });
 }

@@ -94,6 +94,56 @@ found 'a DLPC350' '^light *dlpc350:LCR4500  Texas' bus dlpc350:
 found 'a DLPC900' '^light *dlpc900:' bus dlpc900:
 is 'no command is sent' "$(grep -cv '"bits":0\|asleep' told 2>/dev/null)" 0
 
+# Everything off, whatever state the rest is in.
+off() { LD_PRELOAD=$shim vam-devices off --set "stage.device=$where" --light none "$@"; }
+spin() {  # spin PROTOCOL: a stage that turns for a tool; $user, and its guardian $guardian
+  stage_up --protocol $1; where=$1:$PWD/stage
+  LD_PRELOAD=$shim vam-stage spin --device "$where" --turns 50 --speed 30 --home >/dev/null 2>user.err & user=$!
+  await sh -c 'grep -q "angle_deg.*speed" truth'
+  guardian=$(pgrep -P $user)
+}
+for protocol in gcs grbl zaber; do
+  spin $protocol
+  kill -9 $guardian $user; wait $user 2>/dev/null
+  is "$protocol: a stage that nobody guards is stopped" "$(off) $(stood; echo $?)" "stage    $where  stopped 0"
+  is "$protocol: and again" "$(off) $(stood; echo $?)" "stage    $where  stopped 0"
+  stage_down
+done
+spin gcs
+ok 'a tool that still drives it is asked to end' off
+wait $user 2>/dev/null
+is 'and does, by that signal' "$? $(stood; echo $?)" '143 0'
+LD_PRELOAD=$shim vam-stage follow --device "$where" >/dev/null 2>&1 & user=$!
+await sh -c 'grep -q . "$VAM_LOCK_DIR"/*pts* 2>/dev/null'; sleep 0.2
+kill -STOP $user
+ok 'one that does not answer is killed' off
+wait $user 2>/dev/null
+is 'by that' $? 137
+vam-sim-stage --protocol relay --link relay --log opened --die-with-parent >/dev/null & relay=$!
+await test -e relay
+is 'an unplugged stage does not keep the relay closed' \
+  "$(LD_PRELOAD=$shim vam-devices off --light none --set stage.device=gcs:/dev/ttyUSB99 --set "projector.relay=relay:$PWD/relay" 2>err; echo $?)" \
+  "relay    relay:$PWD/relay  open
+69"
+ok 'and is named, with the remedy' grep -q 'not everything is off: stage /dev/ttyUSB99: .*; cut the power by hand$' err
+kill $relay; stage_down
+switch() { umockdev-wrapper "$VAM_BUILD/usb_host" "$1" told vam-devices off; }
+for engine in dlpc350 dlpc900; do
+  is "$engine is found and put into standby" "$(switch $engine: 2>err | cut -d' ' -f5) $(cut -d' ' -f8- err)" "$engine:LCR$([ $engine = dlpc350 ] && echo 4500 || echo 6500) "
+done
+for fault in silent unplug garbage; do
+  switch "dlpc350:?fault=$fault" >list 2>err; status=$?
+  is "$fault: $(cut -c -60 err)" "$(grep -c 'not everything is off: light .*usb:0451' err) $((status > 64))" '1 1'
+done
+printf '[stage\n' >broken.toml
+umockdev-wrapper "$VAM_BUILD/usb_host" dlpc350: told vam-devices off --printer broken.toml >list 2>err; status=$?
+is 'a printer file that cannot be read keeps no light on' "$status $(grep -c 'dlpc350:LCR4500  in standby' list) $(grep -c broken.toml err)" '65 1 1'
+fails 64 'names no stage and no relay' vam-devices off
+fails 69 'no such device' vam-devices off --light dlpc900:
+fails 64 'unknown scheme|is not one of|use one of' vam-devices off --light laser:1
+fails 64 'unknown device scheme|use one of' vam-devices off --light none --set stage.device=motor:1
+is 'simulated ones end with their tools' "$(vam-devices off --light none --set stage.device=sim:)" 'stage    sim:  simulated: ends with its tool'
+
 # Screens: of a card, of another program's card, of a desktop.
 mkdir -p card/dri; touch card/dri/card0
 card() { FAKE_DRM=$PWD/card LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card.so vam-devices >list 2>err; }
@@ -104,6 +154,12 @@ card; ok 'a card of another master' grep -q '! another program is master of the 
 unset FAKE_DRM_FAULT
 screen_up 64 48
 list; ok 'a desktop' grep -q '^display *sdl:0  *64 x 48 at' list
+tiny_print part.exr
+vam-project --pattern grey -o sdl:0 --hold 60 >/dev/null 2>&1 & user=$!
+await grep -qs $user "$VAM_LOCK_DIR"/vam-sdl*
+is 'a display in use' "$(vam-devices off | sed 's/ .* / /')" 'display dark'
+wait $user
+is 'is dark, as its tool ends' $? 143
 screen_down; unset DISPLAY
 
 # A camera on the network.

@@ -53,6 +53,18 @@ std::string holder(int fd) {
   return pid;
 }
 
+// Whether that process has the file open. A number that is out of date may be another program's by now.
+bool has_open(const std::string& pid, int fd) {
+  struct stat mine {};
+  fstat(fd, &mine);
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/" + pid + "/fd", none)) {
+    struct stat its {};
+    if (stat(entry.path().c_str(), &its) == 0 && its.st_ino == mine.st_ino && its.st_dev == mine.st_dev) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 DeviceLock::DeviceLock(const std::string& name) {
@@ -69,8 +81,9 @@ DeviceLock::DeviceLock(const std::string& name) {
   }
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
     const std::string pid = holder(fd_);
+    const int process = has_open(pid, fd_) ? std::atoi(pid.c_str()) : 0;
     close(fd_);
-    throw Error{Fault::busy, name + ": in use by process " + pid + "; try again when it has ended"};
+    throw InUse{name + ": in use by process " + pid + "; try again when it has ended", process};
   }
   const std::string pid = std::to_string(getpid()) + "\n";
   if (ftruncate(fd_, 0) != 0 || pwrite(fd_, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
@@ -81,5 +94,21 @@ DeviceLock::DeviceLock(const std::string& name) {
 }
 
 DeviceLock::~DeviceLock() { close(fd_); }
+
+std::vector<std::string> locked_names(const std::string& beginning) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(lock_folder(), none)) {
+    const std::string file = entry.path().filename().string();
+    if (!file.starts_with("vam-" + beginning) || !file.ends_with(".lock")) continue;
+    const std::string name = file.substr(4, file.size() - 9);
+    try {
+      const DeviceLock free(name);
+    } catch (const Error&) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
 
 }  // namespace vam::device

@@ -3,13 +3,22 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "base/error.hpp"
 
 namespace vam::device {
 
+/// Fault::busy: another process holds the lock.
+struct InUse : Error {
+  InUse(const std::string& line, int process) : Error(Fault::busy, line), holder(process) {}
+  int holder;  // seen to hold it; 0: its guardian does, or a process of another user
+};
+
 /// Holds the device of that name for this process and, through handle(), for its guardian until the device is safe.
 /// The name is a path of a device node (links are followed, so /dev/serial/by-id/X and /dev/ttyUSB0 are one) or any
-/// other unique text ("usb-1ffb-00b3-00312345"). Throws Fault::busy naming the holder's pid, Fault::no_output when no
-/// lock can be made. Lock files are in $VAM_LOCK_DIR, or /run/lock, or /tmp; each holds its holder's pid.
+/// other unique text ("usb-1ffb-00b3-00312345"). Throws InUse naming the holder's pid, Fault::no_output when no lock
+/// can be made. Lock files are in $VAM_LOCK_DIR, or /run/lock, or /tmp; each holds its holder's pid.
 class DeviceLock {
  public:
   explicit DeviceLock(const std::string& name);
@@ -21,5 +30,8 @@ class DeviceLock {
  private:
   int fd_ = -1;
 };
+
+/// Names of devices that are locked now and begin so: "drm-" gives "drm-HDMI-A-1".
+[[nodiscard]] std::vector<std::string> locked_names(const std::string& beginning);
 
 }  // namespace vam::device

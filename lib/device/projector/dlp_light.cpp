@@ -4,6 +4,7 @@
 // thread 451589, and what TI's own LightCrafter 4500 GUI sends: 255 less the current, at normal polarity.
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <functional>
 #include <utility>
 
@@ -125,11 +126,18 @@ class DlpLight final : public LightEngine {
     action_.reset();
   }
 
+  // Asleep it is dark, too: an engine that does not confirm the first is told the second.
   void standby() override {
-    dark();
+    std::exception_ptr lit;
+    try {
+      dark();
+    } catch (const Error&) {
+      lit = std::current_exception();
+    }
     stop_patterns();
     link_.tell(power, {asleep});
     awake_ = false;
+    if (lit) std::rethrow_exception(lit);
   }
 
  private:

@@ -130,4 +130,9 @@ void Relay::open() {
   action_.reset();
 }
 
+void Relay::force_open() {
+  closed_ = true;
+  open();
+}
+
 }  // namespace vam::device

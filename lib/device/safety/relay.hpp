@@ -34,6 +34,8 @@ class Relay {
   void cut();
   /// cut(), then waits for the reply. Throws Fault::busy when there is none; the guardian keeps its order then.
   void open();
+  /// open() for who has not closed it.
+  void force_open();
 
   void hold(std::unique_ptr<DeviceLock> lock) { lock_ = std::move(lock); }
 

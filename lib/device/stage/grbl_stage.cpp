@@ -144,11 +144,13 @@ class GrblStage final : public Stage {
   }
 
   // Both stops are the cancelling of the jog, at the axis' acceleration: a reset would stop harder, but lose the
-  // position. A search for the reference hears nothing else, and has no position yet.
-  void stop(Stop) override {
+  // position. A search for the reference hears nothing else, and has no position yet; another process may have begun
+  // one, or have left half a line.
+  void stop(Stop how) override {
     stop_order_.beat();
-    port_.write(homing_ ? soft_reset : jog_cancel);
-    if (homing_) referenced_ = false;
+    const bool reset = homing_ || (how == Stop::abrupt && !stop_order_.standing());
+    port_.write(reset ? soft_reset : jog_cancel);
+    if (reset) referenced_ = false;
     homing_ = false;
   }
 
