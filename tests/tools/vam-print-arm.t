@@ -36,7 +36,7 @@ refused_by 65 'exceeds the stage.s maximum' --set stage.speed_deg_s=1000
 # The plan: the figures, every problem, and no file left.
 plan() { print --plan "$@"; }
 sed 's/sim:?/sim:?log=moved\&/' printer.toml >watched.toml
-is 'a plan' "$(plan --turns 3 --printer watched.toml 2>&1 | sed 's/ .*//' | tr '\n' ' ')" 'sinogram records frames exposure intensity dose display engine stage motion disk '
+is 'a plan' "$(plan --turns 3 --printer watched.toml 2>&1 | sed 's/ .*//' | tr '\n' ' ')" 'sinogram records frames exposure intensity dose display relay engine stage motion disk '
 is 'in which nothing moves' "$(grep -c '"event":"moving"' moved)" 0
 plan --turns 3 --light 'sim:?log=leds' >plan.txt
 is 'and no light is on' "$(grep -c '"bits":[1-9]' leds)" 0

@@ -34,7 +34,7 @@ fails 64 'report: describes what was shown' vam-project part.exr -o null: --plan
 vam-project part.exr -o null: --plan --turns 2 --from 180 >plan
 ok "the plan of a print's rest has its turns" grep -q '^exposure   1.5 turns from 180 deg on at ' plan
 vam-project --pattern star --plan -o null: --light 'sim:?log=planned' >plan
-is 'the plan of a pattern: its devices, without light' "$? $(cut -d' ' -f1 plan | tr '\n' ' ') $(cat planned 2>/dev/null)" '0 display engine  '
+is 'the plan of a pattern: its devices, without light' "$? $(cut -d' ' -f1 plan | tr '\n' ' ') $(cat planned 2>/dev/null)" '0 display relay engine  '
 fails 64 'is not one of dlpc350:, dlpc900:, sim:|sim0' vam-project --pattern star --plan -o null: --light sim0:
 fails 64 'pattern: conflicts with SINOGRAM' vam-project sino.exr --pattern star -o star/
 for pattern in star axis grid grey ramp sweep row blink; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done

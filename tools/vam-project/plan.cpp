@@ -117,6 +117,8 @@ void print_devices(const Options& options, const model::Printer& printer) {
   if (const auto relay = device::open_relay(options.live.relay, &guardian)) {
     say("relay", options.live.relay + ", opens " + format_number(relay->identify()["limit_ms"]) +
                      " ms after the last heartbeat");
+  } else {
+    say("relay", "none (projector.relay): nothing switches the lamp off when this machine fails");
   }
   if (options.live.light.empty()) return say("engine", "none (--light not given)");
   const auto light = device::open_light(options.live.light, options.live.max_led_current_percent, &guardian);
