@@ -2,8 +2,8 @@
 // Runs a program on a machine with a simulated USB device: libusb in it is the real one, umockdev stands for the kernel
 // and the simulators of lib/device for the hardware. usage: umockdev-wrapper usb_host DEVICE LOG PROGRAM ARGS...
 // DEVICE: tic:, dlpc350: or dlpc900:, the last two with what is wrong with them (lib/sim/controllers/dlp.hpp):
-// dlpc900:?fault=silent. Exit status: the program's. The device lives on for 120 ms after the program: its guardian is
-// late after 100.
+// dlpc900:?fault=silent. Exit status: the program's. The device lives on for 120 ms after the program, as its guardian
+// is late after 100; ?outlives=MS for longer.
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 #include <sys/wait.h>
@@ -43,6 +43,7 @@ struct Host {
   std::string descriptors;
   GMainLoop* loop = nullptr;
   int status = 70;
+  int outlives_ms = 120;
 };
 
 int low_byte_first(const std::uint8_t* bytes) { return bytes[0] | bytes[1] << 8; }
@@ -218,7 +219,7 @@ void ended(GPid, gint status, gpointer user) {
   Host& host = *static_cast<Host*>(user);
   host.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   g_timeout_add(
-      120,
+      static_cast<guint>(host.outlives_ms),
       [](gpointer loop) {
         g_main_loop_quit(static_cast<GMainLoop*>(loop));
         return FALSE;
@@ -231,8 +232,10 @@ void ended(GPid, gint status, gpointer user) {
 int main(int argc, char** argv) {
   if (argc < 4) return 64;
   const auto address = vam::device::parse_address(argv[1], {"tic", "dlpc350", "dlpc900"});
-  address.allow({"current_percent", "inverted", "referenced", "stuck_grey", "slow_reads", "fault", "fault_after"});
+  address.allow(
+      {"current_percent", "inverted", "referenced", "stuck_grey", "slow_reads", "fault", "fault_after", "outlives"});
   Host host;
+  host.outlives_ms = address.integer("outlives", 0, 10000).value_or(host.outlives_ms);
   host.link = simulate(address, vam::sim::file_sim_log(argv[2]));
   const std::string ids = host.link->about()["usb_id"];
   host.descriptors = descriptors(ids, address.scheme == "tic" ? 255 : 3);
@@ -243,7 +246,8 @@ int main(int argc, char** argv) {
       "E: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=002\nE: MAJOR=189\nE: MINOR=1\nA: busnum=1\\n\n"
       "A: devnum=2\\n\nA: speed=12\\n\nA: bConfigurationValue=1\\n\nA: idVendor=" +
       ids.substr(0, 4) + "\\n\nA: idProduct=" + ids.substr(5) +
-      "\\n\nH: descriptors=" + vam::device::to_hex(host.descriptors) + "\n";
+      "\\n\nH: descriptors=" + vam::device::to_hex(host.descriptors) +
+      "\n\nP: /devices/virtual/tty/tty\nE: SUBSYSTEM=tty\n";  // for which the shim takes every pseudo-terminal
   GError* problem = nullptr;
   if (umockdev_testbed_add_from_string(testbed, tree.c_str(), &problem) == FALSE) {
     std::fprintf(stderr, "usb_host: %s\n", problem->message);

@@ -1,0 +1,23 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A print of which a tool and its guardian are killed, or vam-print with one of them [devices §7]: image and LEDs are off, the relay
+# is open and the stage stands within 2 s, and a line says so. A fifth of VAM_TRIALS a cause (5; 100: "long").
+# In memory: a disk that is busy with others would hold up the screen that the trials read.
+[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+PATH=$VAM_SOURCE/scripts:$PATH; export PATH
+ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes
+tiny_print frames.exr
+printf 'relay = "relay:%s/relay"\n' "$PWD" >>printer.toml
+printf '[stage]\ndevice = "gcs:%s/stage"\nspeed_deg_s = 180\n' "$PWD" >>printer.toml
+screen_up 64 48
+python3 "$VAM_SOURCE/tests/device/print_trials.py" $((${VAM_TRIALS:-5} / 5)) several >table; status=$?
+screen_down
+cat table
+is 'every trial was dark and still in time' $status 0
+is 'every cause was tried' "$(grep -c trials table)" 32
+said() { grep -c "^vam-print: $1 killed, and no guardian answered for it; switched off by vam-devices: light .* in standby, relay .* open, stage .* stopped$" said; }
+ok 'a line says so, of each tool' test "$(said 'project was')" -ge 1 -a "$(said 'stage was')" -ge 1
+ok 'also when vam-print was killed, too' test "$(said 'vam-print and project were')" -ge 1 -a "$(said 'vam-print and stage were')" -ge 1
+is 'nothing was left on' "$(grep -c 'MAY BE ON' said)" 0
+done_testing
