@@ -92,11 +92,16 @@ View camera_view(const model::Printer& printer) {
   return make_view(printer, lens_mm, lens_mm, printer.camera.index_resin);
 }
 
-ChiefRay chief_ray(const View& view, double x_p_mm) {
-  const Approach before = approach(view, x_p_mm);
-  const double nb = view.bath_index * before.impact_mm;
-  if (!(std::abs(nb) < largest_invariant(view))) return {};
+namespace {
 
+/// Rays that graze an interface miss, or cosines were 0 and rates and transmittances 0 / 0.
+bool passes(const View& view, double nb) {
+  constexpr double grazing = 1 - 1e-10;
+  return std::abs(nb) < grazing * largest_invariant(view);
+}
+
+/// The ray of the invariant nb = n b, which passes.
+ChiefRay ray_inside(const View& view, const Approach& before, double nb) {
   ChiefRay ray{true, 0, -before.phi_rad, before.transmittance, 0, -before.phi_rate};
   const double nb_rate = view.bath_index * before.impact_rate;
   double n = view.bath_index;
@@ -113,6 +118,14 @@ ChiefRay chief_ray(const View& view, double x_p_mm) {
   ray.x_v_mm = nb / n;  // (n_0 / n_last) b
   ray.jacobian = nb_rate / n;
   return ray;
+}
+
+}  // namespace
+
+ChiefRay chief_ray(const View& view, double x_p_mm) {
+  const Approach before = approach(view, x_p_mm);
+  const double nb = view.bath_index * before.impact_mm;
+  return passes(view, nb) ? ray_inside(view, before, nb) : ChiefRay{};
 }
 
 double column_of_impact(const View& view, double impact_mm) {
@@ -132,10 +145,14 @@ double column_of_impact(const View& view, double impact_mm) {
   return x_p;
 }
 
-std::optional<double> column_of(const View& view, double x_v_mm) {
-  if (!(std::abs(x_v_mm) < reach_mm(view))) return std::nullopt;
-  return column_of_impact(view, x_v_mm * view.shells.back().index / view.bath_index);
+std::optional<ColumnRay> column_of(const View& view, double x_v_mm) {
+  const double nb = x_v_mm * view.shells.back().index;
+  if (!passes(view, nb)) return std::nullopt;
+  const double x_p_mm = column_of_impact(view, nb / view.bath_index);
+  return ColumnRay{x_p_mm, ray_inside(view, approach(view, x_p_mm), nb)};
 }
+
+ColumnRay edge_column(const View& view) { return column_of(view, rim * reach_mm(view)).value(); }
 
 double resin_radius_mm(const View& view) { return view.shells.back().radius_mm; }
 

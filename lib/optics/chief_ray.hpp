@@ -31,7 +31,7 @@ struct View {
 /// One chief ray. In the lab it runs along the line of offset x_v at angle delta, so at stage angle theta it lights
 /// the part's line L(x_v, theta + delta) = { x_v (cos, sin) + u (-sin, cos) } [physics §2].
 struct ChiefRay {
-  bool hits = false;         // false: passes beside the resin or is totally reflected; the rest is 0 then
+  bool hits = false;         // false: passes beside the resin, grazes it or is totally reflected; the rest is 0 then
   double x_v_mm = 0;         // signed offset from the axis in the resin
   double delta_rad = 0;      // angle of the line
   double transmittance = 0;  // T, unpolarised intensity transmittance of all interfaces (Fresnel) [0, 1]
@@ -47,9 +47,22 @@ struct ChiefRay {
 /// The ray of the column at x_p_mm.
 [[nodiscard]] ChiefRay chief_ray(const View& view, double x_p_mm);
 
-/// The column whose ray has offset x_v_mm in the resin: the inverse of chief_ray, which is monotone in x_p.
-/// Empty beyond reach_mm.
-[[nodiscard]] std::optional<double> column_of(const View& view, double x_v_mm);
+/// Of the reach: rays farther out graze the glass and carry no light. Nothing is asked of them, and the outermost miss.
+inline constexpr double rim = 1 - 1e-9;
+
+/// A column and the ray of it, which hits.
+struct ColumnRay {
+  double x_p_mm = 0;
+  ChiefRay ray;
+};
+
+/// The column whose ray has offset x_v_mm in the resin, and that ray: the inverse of chief_ray, which is monotone in
+/// x_p. The ray is made of the offset and not traced from the column, so that rounding cannot make it miss. Empty where
+/// no ray hits, never within rim * reach_mm.
+[[nodiscard]] std::optional<ColumnRay> column_of(const View& view, double x_v_mm);
+
+/// The outermost column with x_p > 0 and its ray, at rim * reach_mm.
+[[nodiscard]] ColumnRay edge_column(const View& view);
 
 /// The column whose ray passes the axis at that distance before it meets the vial: the inverse of impact_mm.
 [[nodiscard]] double column_of_impact(const View& view, double impact_mm);

@@ -37,12 +37,18 @@ ResamplePlan empty_plan(int columns_in, int columns_out, const Turn& turn, const
 
 bool on(const Detector& detector, double column) { return column > -0.5 && column < detector.columns - 0.5; }
 
+/// What the interfaces let through; light of which less than a hundredth passes is made a hundred times as bright.
+double passed(const ChiefRay& ray, const ResampleOptions& options) {
+  constexpr double faintest = 0.01;
+  return options.fresnel ? std::max(ray.transmittance, faintest) : 1.0;
+}
+
 }  // namespace
 
 MapPoint map_point(const View& view, double x_p_mm, const ResampleOptions& options) {
   MapPoint point{x_p_mm, chief_ray(view, x_p_mm), 0};
   if (!point.ray.hits) return point;
-  point.weight = (options.jacobian ? point.ray.jacobian : 1.0) / (options.fresnel ? point.ray.transmittance : 1.0);
+  point.weight = (options.jacobian ? point.ray.jacobian : 1.0) / passed(point.ray, options);
   return point;
 }
 
@@ -74,18 +80,19 @@ ResamplePlan plan_to_virtual(const View& view, const Detector& camera, const Det
   plan.rows_out = {turn.rows, turn.start_rad, std::abs(turn.step_rad)};
   plan.sense = options.direction * (turn.step_rad < 0 ? -1 : 1);
   for (int c = 0; c < virtual_.columns; ++c) {
-    const auto x_c = column_of(view, virtual_.x_mm(c));
-    if (!x_c || !on(camera, camera.column(*x_c))) {
+    const auto found = column_of(view, virtual_.x_mm(c));
+    const double column = found ? camera.column(found->x_p_mm) : 0;
+    if (!found || !on(camera, column)) {
       plan.sources.emplace_back();
       continue;
     }
-    const ChiefRay ray = chief_ray(view, *x_c);
+    const ChiefRay& ray = found->ray;
     // S_c(x_c, theta - delta): the stage angle that puts the part at theta of row 0, in rows of the input.
     const double part = plan.rows_out.start_rad - ray.delta_rad - options.angle_offset_rad;
     const double row = (options.direction * part - turn.start_rad) / turn.step_rad;
     const double width = std::max(1.0, virtual_.pixel_mm / (ray.jacobian * camera.pixel_mm));
-    const double weight = 1.0 / ((options.fresnel ? ray.transmittance : 1.0) * (options.jacobian ? ray.jacobian : 1.0));
-    add_source(plan, options.interpolation, camera.column(*x_c), width, row, weight);
+    const double weight = 1.0 / (passed(ray, options) * (options.jacobian ? ray.jacobian : 1.0));
+    add_source(plan, options.interpolation, column, width, row, weight);
   }
   return plan;
 }

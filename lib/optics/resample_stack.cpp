@@ -35,8 +35,8 @@ Detector projector_detector(const model::Printer& printer, const AxisAlignment& 
 
 Detector camera_detector(const model::Printer& printer, const AxisAlignment& alignment) {
   const View view = camera_view(printer);
-  const double edge_mm = column_of(view, reach_mm(view) * (1 - 1e-12)).value_or(resin_radius_mm(view));
-  Detector camera = centred_detector(2 * ceil_int(edge_mm / printer.camera.pixel_mm) + 1, printer.camera.pixel_mm);
+  const int side = ceil_int(edge_column(view).x_p_mm / printer.camera.pixel_mm);
+  Detector camera = centred_detector(2 * side + 1, printer.camera.pixel_mm);
   camera.axis_column += alignment.column_offset;
   return camera;
 }

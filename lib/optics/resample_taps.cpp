@@ -12,6 +12,9 @@ namespace vam::optics {
 
 namespace {
 
+// Input columns: a kernel so wide has its moments unhelped, to a float's precision.
+constexpr double smooth = 4096;
+
 double kernel(Interpolation interpolation, double x) {
   return interpolation == Interpolation::linear ? std::max(0.0, 1.0 - std::abs(x)) : cubic_kernel(x);
 }
@@ -24,16 +27,16 @@ std::vector<double> kernel_taps(Interpolation interpolation, double column, doub
   const double half = order - 1;
   const auto bump = [&](double d) { return (1 - d / half) * (1 + d / half); };
   std::vector<double> taps;
+  for (int c = first; c <= last; ++c) taps.push_back(kernel(interpolation, (c - column) / width) / width);
+  if (width == 1.0 || width >= smooth) return taps;
   double system[3][4] = {{0, 0, 0, 1}, {}, {}};  // moments of the bump; what the kernel's moments lack
   for (int c = first; c <= last; ++c) {
     const double d = (c - column) / width;
-    taps.push_back(kernel(interpolation, d) / width);
     for (int i = 0; i < order; ++i) {
       for (int j = 0; j < order; ++j) system[i][j] += bump(d) * std::pow(d, i + j);
-      system[i][3] -= taps.back() * std::pow(d, i);
+      system[i][3] -= taps[c - first] * std::pow(d, i);
     }
   }
-  if (width == 1.0) return taps;
   for (int i = 0; i < order; ++i) {  // Gauss without pivoting: a Gram matrix is positive definite
     for (int below = i + 1; below < order; ++below) {
       const double ratio = system[below][i] / system[i][i];
@@ -59,8 +62,10 @@ void add_source(ResamplePlan& plan, Interpolation interpolation, double column, 
                 double weight) {
   ColumnSource source;
   const double half = (interpolation == Interpolation::linear ? 1.0 : 2.0) * width;
-  const int first = floor_int(column - half) + 1;
-  const int last = ceil_int(column + half) - 1;
+  // The moments are those of the whole kernel; without need of them it ends where the input does.
+  const double beyond = width < smooth ? half : 0;
+  const int first = floor_int(std::max(column - half, -1 - beyond)) + 1;
+  const int last = ceil_int(std::min(column + half, plan.columns_in + beyond)) - 1;
   const std::vector<double> taps = kernel_taps(interpolation, column, width, first, last);
   source.first = std::max(first, 0);
   source.count = std::max(0, std::min(last, plan.columns_in - 1) - source.first + 1);

@@ -100,6 +100,14 @@ report $? 'also through a pipe'
 quiet 'binned by four, by MLEM' vam-ost other.exr $glass --binning 4 --mlem-iterations 10 -o coarse.vdb --report coarse.json
 is 'makes voxels of four pixels' "$(json coarse.json voxel_mm)" 0.48
 
+# Where resin and bath match and the vial is 80 pixels in radius, rounding decides whether a column is on its rim.
+"$render" cylinder:diameter=6,height=2 round.exr noise=0.05 columns=201 rows=24 pixel=0.155 angles=60 step=0.3
+matched='--pixel 0.155 --set resin.index=1.53 --set bath.index=1.53 --set bath.window_mm=30 --set camera.distance_mm=150
+  --set camera.azimuth_deg=90 --keep-run-out'
+ok 'a radius of whole pixels in a matched bath' timeout 60 vam-ost round.exr $matched --set vial.radius_mm=12.4 -o round.vdb
+ok 'and one that is not' vam-ost round.exr $matched --set vial.radius_mm=12.43 -o uneven.vdb
+ok 'give the same print' vam-sdf round.vdb uneven.vdb --isovalue 0.5 --align none --require 'rms<=0.005'
+
 # A print that grows: nothing at first, then three turns; live through a pipe until it is done.
 "$render" cylinder:diameter=4,height=4 grows.exr noise=0.05 turns=4 growth=0.5 angles=60
 cat grows.exr | vam-ost --live $glass --resin glass.json --target four.vdb --until 'missing<=5%' \

@@ -11,10 +11,10 @@
 namespace vam::light {
 
 ChiefRayDose::OnCircle ChiefRayDose::at(double r_mm, double b_rad) const {
-  const double t = std::clamp(r_mm * std::cos(b_rad), -rim * reach_mm, rim * reach_mm);
+  const double widest = optics::rim * reach_mm;
+  const double t = std::clamp(r_mm * std::cos(b_rad), -widest, widest);
   const double u = r_mm * std::sin(b_rad);
-  const double x_p = optics::column_of(scope.view, t).value_or(0);
-  const optics::ChiefRay ray = optics::chief_ray(scope.view, x_p);
+  const auto [x_p, ray] = optics::column_of(scope.view, t).value();
   return {b_rad + ray.delta_rad,
           1 - u * ray.delta_rate / ray.jacobian,
           x_p,

@@ -29,7 +29,7 @@ RayTable::RayTable(const Scope& scope)
   scope_.height_mm = std::max(scope.height_mm, 1e-3);
   const ChiefRayDose light{scope_, edge_mm, reach_mm};
   const double pitch_mm = climbs_ ? scope.voxel_mm : 0.5 * scope.voxel_mm;
-  const double inside = std::min(reach_mm * (climbs_ ? 0.9995 : ChiefRayDose::rim), std::max(scope.r_max_mm, pitch_mm));
+  const double inside = std::min(reach_mm * (climbs_ ? 0.9995 : optics::rim), std::max(scope.r_max_mm, pitch_mm));
   inner.rows = std::max(2, ceil_int(inside / pitch_mm) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
   inner_edge_mm = std::max(inside, std::min(reach_mm, scope.r_max_mm));

@@ -46,7 +46,7 @@ class RayCount {
     Circle circle;
     circle.fill(RaySheet(directions_));
     if (r_mm >= light_.edge_mm) return circle;
-    const double open = std::acos(std::min(1.0, ChiefRayDose::rim * light_.reach_mm / r_mm));
+    const double open = std::acos(std::min(1.0, optics::rim * light_.reach_mm / r_mm));
     count_side(r_mm, -std::numbers::pi + open, std::numbers::pi - 2 * open, 0, circle);  // light enters at u < 0
     count_side(r_mm, open, std::numbers::pi - 2 * open, 1, circle);
     return circle;

@@ -25,7 +25,7 @@ double node(std::size_t i) {
 EdgeShape::EdgeShape(const model::Printer& printer, const SightLines& side, double edge_mm, double sign)
     : integral_{EdgeTerms{}} {
   const optics::View view = optics::projector_view(printer);
-  const double most_rad = std::abs(optics::chief_ray(view, edge_mm * (1 - 1e-9)).delta_rad);
+  const double most_rad = std::abs(optics::edge_column(view).ray.delta_rad);
   for (std::size_t i = 1; i <= cells; ++i) {
     const double q = 0.5 * (node(i - 1) + node(i));
     const auto ray = optics::chief_ray(view, sign * q * edge_mm);

@@ -9,7 +9,6 @@
 #include "base/constants.hpp"
 #include "model/absorption.hpp"
 #include "model/circle.hpp"
-#include "optics/writable_radius.hpp"
 
 namespace vam::metrology {
 
@@ -21,7 +20,7 @@ SightLines::SightLines(const model::Printer& printer) : absorption_per_mm_(print
   const optics::View view = optics::camera_view(printer);
   radius_mm_ = optics::resin_radius_mm(view);
   const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
-  const double edge_mm = optics::column_of(view, optics::reach_mm(view) * (1 - 1e-9)).value_or(radius_mm_);
+  const double edge_mm = optics::edge_column(view).x_p_mm;
   const auto column_mm = [&](double i) { return -edge_mm * std::cos(std::numbers::pi * i / columns); };
   for (int i = 0; i <= columns; ++i) {  // denser towards the edges, where they turn fast
     const auto ray = optics::chief_ray(view, column_mm(i));

@@ -69,8 +69,8 @@ double climb_rate_per_mm(const Eye& eye, double x_v_mm) {
   if (!eye.view.rows_lens_mm) return 0;
   const double most = optics::reach_mm(eye.view) * (1 - 1e-3);  // beyond, as at the rim
   const double z_p = std::max(0.5 * tallest_mm(eye), 1e-3);
-  const auto x_p = optics::column_of(eye.view, std::clamp(x_v_mm, -most, most));
-  const auto ray = x_p ? optics::skew_ray(eye.view, *x_p, z_p) : optics::SkewRay{};
+  const auto column = optics::column_of(eye.view, std::clamp(x_v_mm, -most, most)).value();
+  const auto ray = optics::skew_ray(eye.view, column.x_p_mm, z_p);
   return ray.hits ? ray.climb / ray.height_mm : 0.0;
 }
 

@@ -75,7 +75,7 @@ TEST_CASE("chief rays agree with a vector ray tracer for random lenses, baths an
     // Up to 98 % of the reach: at the very edge the tracer itself divides by a vanishing cosine.
     const auto edge = column_of(view, 0.98 * reach_mm(view));
     REQUIRE(edge.has_value());
-    const double x_p = std::uniform_real_distribution<double>(-*edge, *edge)(random);
+    const double x_p = std::uniform_real_distribution<double>(-edge->x_p_mm, edge->x_p_mm)(random);
     const auto truth = vam::oracle::trace(bench_of(view), x_p);
     const ChiefRay ray = chief_ray(view, x_p);
     REQUIRE(truth.has_value());
@@ -116,9 +116,13 @@ TEST_CASE("column_of inverts chief_ray") {
   for (int trial = 0; trial < 1000; ++trial) {
     const View view = random_view(random);
     const double x_v = std::uniform_real_distribution<double>(-0.999, 0.999)(random) * reach_mm(view);
-    const auto x_p = column_of(view, x_v);
-    REQUIRE(x_p.has_value());
-    CHECK(std::abs(chief_ray(view, *x_p).x_v_mm - x_v) < 1e-12 * view.shells.front().radius_mm);
+    const auto found = column_of(view, x_v);
+    REQUIRE(found.has_value());
+    const ChiefRay ray = chief_ray(view, found->x_p_mm);
+    CHECK(std::abs(ray.x_v_mm - x_v) < 1e-12 * view.shells.front().radius_mm);
+    CHECK(std::abs(found->ray.x_v_mm - x_v) < 1e-12 * view.shells.front().radius_mm);
+    CHECK(found->ray.delta_rad == doctest::Approx(ray.delta_rad).epsilon(1e-9));
+    CHECK(found->ray.transmittance == doctest::Approx(ray.transmittance).epsilon(1e-9));
   }
   CHECK_FALSE(column_of(ray21(), 1.001 * reach_mm(ray21())).has_value());
 }

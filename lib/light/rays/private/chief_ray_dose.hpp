@@ -11,9 +11,6 @@ namespace vam::light {
 /// The chief rays of a level fan at the points of a circle of radius r: everything at the angle b from the ray's own
 /// normal, where t = r cos b and u = r sin b.
 struct ChiefRayDose {
-  /// Rays at the very rim graze the glass and carry no light.
-  static constexpr double rim = 1 - 1e-9;
-
   struct OnCircle {
     double alpha = 0;
     double alpha_rate = 1;  // d alpha / d b = 1 - u (d delta / d x_p) / J
