@@ -1,0 +1,402 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a file of the tools says, in few figures that do not depend on the machine, for tests/corpus/run.
+
+of_file(path) gives a list of (what, record). A record has some of
+    is       facts: whole names are compared as they are, numbers to 1e-4 of their value
+    values   signed sums of up to 64 blocks of the values, in the order of the file, beside least and mean, each to 1e-5
+             of the largest: a change of a single value by as much moves the sum of its block; that of rounding, some
+             1e-7 in each value, moves it less by an order of magnitude
+    text     the numbers of a table as printed: to 1e-4, and to a unit of the last place
+    picture  means of 12 x 12 blocks, in grey levels of 255: to 2
+Histories, seals, times and hashes are left out.
+"""
+import array
+import base64
+import json
+import math
+import operator
+import os
+import random
+import re
+import struct
+import subprocess
+import zipfile
+import zlib
+
+LEFT_OUT = re.compile(r"(^|[._:])(history|seals?|facts_seal|version|utc|sha256.*|hash|hashes|commands?|t_monotonic_s|"
+                      r"wall_s|process(es)?|pid|uuid|host|started|computed_s|seconds|memory_.*)$")
+SIGNS = [1.0 if bit else -1.0 for bit in (random.Random(49).getrandbits(1) for _ in range(4096))]
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+
+
+def rounded(value, digits=7):
+    return value if not isinstance(value, float) or not math.isfinite(value) else float("%.*g" % (digits, value))
+
+
+def values_of(numbers):
+    """Block sums of floats; their places are to 1e-7 of the largest."""
+    count = len(numbers)
+    broken = sum(1 for v in numbers if not math.isfinite(v))
+    if broken or count == 0:
+        return {"is": {"values": count, "not_finite": broken}}
+    low, high = min(numbers), max(numbers)
+    largest = max(abs(low), abs(high))
+    places = 7 - math.floor(math.log10(largest)) if largest > 0 else 7
+    size = max(64, -(-count // 64))
+    sums = []
+    for start in range(0, count, size):
+        block = numbers[start:start + size]
+        sums.append(sum(sum(map(operator.mul, SIGNS, block[at:at + 4096])) for at in range(0, len(block), 4096)))
+    tidy = [round(v, places) + 0.0 for v in (low, high, math.fsum(numbers) / count, *sums)]
+    return {"values": tidy}
+
+
+def flat(value, path=""):
+    """{path: leaf} of parsed JSON; long lists of numbers as count, mean and block sums."""
+    if isinstance(value, dict):
+        for key, inner in sorted(value.items()):
+            if not LEFT_OUT.search(key):
+                yield from flat(inner, path + "." + key if path else key)
+    elif isinstance(value, list):
+        if len(value) > 24:
+            yield path + ".count", len(value)
+            if all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in value):
+                size = -(-len(value) // 8)
+                for start in range(0, len(value), size):
+                    yield "%s.%d" % (path, start), rounded(math.fsum(value[start:start + size]) / size, 6)
+                return
+            value = value[:4] + value[-4:]
+        for at, inner in enumerate(value):
+            yield from flat(inner, "%s.%d" % (path, at))
+    elif isinstance(value, str):
+        if path.split(".")[-1] == "verdict":
+            yield path, value.split(":")[0]
+        elif value and " " not in value and "/" not in value and not value.startswith("xxh3:"):
+            yield path, value
+    else:
+        yield path, rounded(value, 6)
+
+
+def text_of(text):
+    """Numbers of a text, as printed; of a list of words, one a line, the words."""
+    lines = text.split("\n")
+    if all(" " not in line and "," not in line for line in lines) and not NUMBER.search(text):
+        return {"is": {"words": [line for line in lines if line][:400]}}
+    found = NUMBER.findall(text)
+    if len(found) <= 96:
+        return {"text": found}
+    size = -(-len(found) // 48)
+    sums = ["%.5g" % (math.fsum(map(float, found[at:at + size])) / size) for at in range(0, len(found), size)]
+    return {"is": {"numbers": len(found)}, "text": sums}
+
+
+def json_of(text):
+    parsed = json.loads(text)
+    return {"is": dict(flat(parsed))}
+
+
+def json_lines_of(text):
+    lines = [json.loads(line) for line in text.split("\n") if line.strip()]
+    picked = {0: lines[0], len(lines) // 2: lines[len(lines) // 2], len(lines) - 1: lines[-1]} if lines else {}
+    facts = {"lines": len(lines)}
+    for at, line in picked.items():
+        facts.update(flat(line, str(at)))
+    return {"is": facts}
+
+
+def settings_of(text):
+    facts, room = {}, ""
+    for line in text.split("\n"):
+        line = line.split("#")[0].strip()
+        if line.startswith("["):
+            room = line.strip("[]")
+        elif "=" in line:
+            key, value = (part.strip() for part in line.split("=", 1))
+            try:
+                facts[room + "." + key] = json.loads(value)
+            except ValueError:
+                facts[room + "." + key] = value.strip('"')
+    return {"is": facts}
+
+
+def fact(value):
+    try:
+        return rounded(float(value), 6)
+    except ValueError:
+        return value if len(value) <= 240 else text_of(value)
+
+
+def grids_of(path):
+    """(name, facts) of the grids of an OpenVDB file, by the published format."""
+    with open(path, "rb") as file:
+        data = file.read()
+    at = 20 + 1 + 36
+
+    def number(kind):
+        nonlocal at
+        value = struct.unpack_from("<" + kind, data, at)[0]
+        at += struct.calcsize(kind)
+        return value
+
+    def text():
+        nonlocal at
+        size = number("I")
+        at += size
+        return data[at - size:at].decode("utf-8", "replace")
+
+    def metadata():
+        nonlocal at
+        found = {}
+        for _ in range(number("I")):
+            key, kind, size = text(), text(), number("I")
+            found[key] = (kind, data[at:at + size])
+            at += size
+        return found
+    offsets = data[20] != 0
+    metadata()
+    for _ in range(number("i")):
+        name = text().split("\x1e")[0]
+        text(), text()
+        end = None
+        if offsets:
+            at, _, end = number("q"), number("q"), number("q")
+        number("I")
+        facts = {key[4:]: raw.decode("utf-8", "replace") for key, (kind, raw) in metadata().items()
+                 if key.startswith("vam:") and kind == "string" and not LEFT_OUT.search(key)}
+        yield name, facts
+        if end is None:
+            return
+        at = end
+
+
+def attributes_of(path):
+    """Facts of the first part of an EXR file, and the places of its last one."""
+    with open(path, "rb") as file:
+        data = file.read(1 << 26)
+    many = struct.unpack_from("<I", data, 4)[0] & 0x1000
+    at, first, last = 8, None, {}
+    while data[at] != 0:
+        head = {}
+        while data[at] != 0:
+            name = data[at:data.index(0, at)].decode()
+            at = data.index(0, at) + 1
+            kind = data[at:data.index(0, at)].decode()
+            at = data.index(0, at) + 1
+            size = struct.unpack_from("<i", data, at)[0]
+            raw = data[at + 4:at + 4 + size]
+            at += 4 + size
+            if name.startswith("vam:") and not LEFT_OUT.search(name):
+                head[name[4:]] = (struct.unpack("<" + {"double": "d", "int": "i", "float": "f"}[kind], raw)[0]
+                                  if kind in ("double", "int", "float") else raw.decode("utf-8", "replace"))
+        at += 1
+        first, last = first or head, head
+        if not many:
+            break
+    facts = {key: fact(str(value)) for key, value in (first or {}).items()}
+    facts.update(("last." + key, rounded(float(last[key]), 6)) for key in ("z_mm", "angle_deg", "time_s") if key in last)
+    return facts
+
+
+def nrrd_of(data):
+    head, raw = data.split(b"\n\n", 1)
+    keys = dict(re.split(r":=?\s*", line, maxsplit=1) for line in head.decode("utf-8", "replace").splitlines()
+                if ":" in line and line[0] != "#")
+    facts = {key: [fact(word) for word in re.split(r"[\s,()]+", keys[key]) if word]
+             for key in ("sizes", "content", "spacings", "axis mins", "space directions", "space origin") if key in keys}
+    return {"is": facts, **values_of(array.array("f", raw))}
+
+
+def exported(path, *grid):
+    data = subprocess.run(["vam-view", path, "--quiet", "--export", "/dev/stdout", *grid], check=True,
+                          stdout=subprocess.PIPE).stdout
+    return nrrd_of(data)
+
+
+def volumes_of(path):
+    for name, facts in grids_of(path):
+        record = exported(path, "--grid", name)
+        record["is"].update((key, fact(value)) for key, value in facts.items())
+        yield name, record
+
+
+def stack_of(path):
+    record = exported(path)
+    record["is"].update(attributes_of(path))
+    return record
+
+
+def numpy_of(data):
+    size = struct.unpack_from("<H", data, 8)[0]
+    head = data[10:10 + size].decode().strip()
+    record = values_of(array.array("f", data[10 + size:])) if "'<f4'" in head else {}
+    return {"is": {"head": head}, **record}
+
+
+def rows_of_png(data):
+    """Width, height, channels, samples a channel (levels of 255), row by row."""
+    at, head, packed, palette = 8, None, b"", b""
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        body = data[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            head = struct.unpack(">IIBBBBB", body)
+        elif kind == b"IDAT":
+            packed += body
+        elif kind == b"PLTE":
+            palette = body
+        at += 12 + size
+    width, height, depth, colour = head[:4]
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[colour]
+    step, stride = max(1, depth * channels // 8), (width * depth * channels + 7) // 8
+    raw, above, rows = zlib.decompress(packed), bytearray(stride), []
+    for y in range(height):
+        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        if kind == 2:
+            row = bytearray(map(lambda a, b: (a + b) & 255, row, above))
+        elif kind:
+            for i in range(stride):
+                left, up = row[i - step] if i >= step else 0, above[i]
+                corner = above[i - step] if i >= step else 0
+                guess = left + up - corner
+                near = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))[2]
+                row[i] = (row[i] + (0, left, up, (left + up) // 2, near)[kind]) & 255
+        above = row
+        if depth == 16:
+            rows.append(row[::2])
+        elif depth == 8:
+            rows.append(row if not palette else bytes(v for i in row for v in palette[3 * i:3 * i + 3]))
+        else:
+            per, top = 8 // depth, (1 << depth) - 1
+            rows.append(bytes(((row[x // per] >> (8 - depth * (x % per + 1))) & top) * 255 // top for x in range(width)))
+    return width, height, 3 if palette else channels, rows
+
+
+def picture_of(data, blocks=12):
+    width, height, channels, rows = rows_of_png(data)
+    across, down = min(blocks, width), min(blocks, height)
+    means = []
+    for j in range(down):
+        band = rows[j * height // down:(j + 1) * height // down]
+        for i in range(across):
+            left, right = i * width // across * channels, (i + 1) * width // across * channels
+            means.append(round(sum(sum(row[left:right]) for row in band) / (len(band) * (right - left)), 1))
+    return {"is": {"columns": width, "rows": height, "channels": channels}, "picture": means}
+
+
+def frames_of(folder, names):
+    """A folder of images: their number, and the first, the middle and the last of them."""
+    picked = [names[0], names[len(names) // 2], names[-1]]
+    pictures = [picture_of(open(os.path.join(folder, name), "rb").read(), 8) for name in picked]
+    return {"is": {"images": len(names), "first": names[0], "last": names[-1], **pictures[0]["is"]},
+            "picture": [v for picture in pictures for v in picture["picture"]]}
+
+
+def video_of(path):
+    shown = subprocess.run(["vam-view", path, "--quiet", "--sheet", "4", "--plain", "-o", "/dev/stdout"], check=True,
+                           stdout=subprocess.PIPE).stdout
+    return picture_of(shown)
+
+
+def pdf_of(data):
+    box = re.search(rb"/MediaBox *\[([^]]*)\]", data)
+    return {"is": {"page": [rounded(float(v), 6) for v in box.group(1).split()],
+                   "images": len(re.findall(rb"/Subtype */Image", data))}}
+
+
+def svg_of(text):
+    size = re.search(r'<svg[^>]* width="([^"]*)" height="([^"]*)"', text)
+    return {"is": {"width": size.group(1), "height": size.group(2), "images": text.count("<image ")}}
+
+
+def page_of(text):
+    """An HTML page: the numbers of its text, and what is embedded."""
+    inside = re.sub(r"(?s)<(script|style)\b.*?</\1>", " ", text)
+    facts = {tag: len(re.findall("<%s[ >]" % tag, text)) for tag in ("img", "table", "tr", "svg", "canvas", "section")}
+    words = re.sub(r"<[^>]*>", " ", inside)
+    words = re.sub(r"\b[0-9a-f]{12,}\b|\b\d+\.\d+\.\d+\b|\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d", " ", words)
+    pictures = [base64.b64decode(body) for body in re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", text)]
+    picked = [pictures[i] for i in sorted({0, len(pictures) // 2, len(pictures) - 1})] if pictures else []
+    found = text_of(words)
+    facts.update(found.get("is", {}))
+    return {"is": {**facts, "pictures": len(pictures)}, "text": found.get("text", []),
+            "picture": [v for picture in picked for v in picture_of(picture, 6)["picture"]]}
+
+
+def binary_ply(data):
+    head, body = data.split(b"end_header\n", 1)
+    codes = {"float": "f", "uchar": "B", "int": "i", "double": "d", "uint": "I", "short": "h", "ushort": "H"}
+    elements = []
+    for line in head.decode().splitlines():
+        words = line.split()
+        if words[:1] == ["element"]:
+            elements.append((words[1], int(words[2]), []))
+        elif words[:1] == ["property"]:
+            elements[-1][2].append(words[1:])
+    at, points, faces, extra = 0, [], [], {}
+    for name, count, properties in elements:
+        if any(words[0] == "list" for words in properties):
+            for _ in range(count):
+                size = body[at]
+                faces.append(struct.unpack_from("<%di" % size, body, at + 1))
+                at += 1 + 4 * size
+            continue
+        form = struct.Struct("<" + "".join(codes[words[0]] for words in properties))
+        rows = list(form.iter_unpack(body[at:at + count * form.size]))
+        at += count * form.size
+        if name == "vertex":
+            points = [row[:3] for row in rows]
+            extra = {words[1]: math.fsum(row[i] for row in rows) / max(1, count)
+                     for i, words in enumerate(properties) if i > 2}
+    return points, faces, extra
+
+
+def mesh_of(path):
+    """Numbers of vertices and faces, box, area and volume."""
+    extra = {}
+    with open(path, "rb") as file:
+        data = file.read()
+    if path.endswith(".ply"):
+        points, faces, extra = binary_ply(data)
+    elif path.endswith(".stl"):
+        points, faces = [], []
+        for at in range(84, len(data), 50):
+            faces.append((len(points), len(points) + 1, len(points) + 2))
+            points += [struct.unpack_from("<3f", data, at + 12 * k) for k in (1, 2, 3)]
+    elif path.endswith(".3mf"):
+        text = zipfile.ZipFile(path).read("3D/3dmodel.model").decode()
+        points = [tuple(map(float, p)) for p in re.findall(r'<vertex x="([^"]*)" y="([^"]*)" z="([^"]*)"', text)]
+        faces = [tuple(map(int, f)) for f in re.findall(r'<triangle v1="(\d+)" v2="(\d+)" v3="(\d+)"', text)]
+    else:
+        lines = data.decode().splitlines()
+        points = [tuple(map(float, line.split()[1:4])) for line in lines if line.startswith("v ")]
+        faces = [tuple(int(c.split("/")[0]) - 1 for c in line.split()[1:4]) for line in lines if line.startswith("f ")]
+    area = volume = 0.0
+    for a, b, c in ((points[f[0]], points[f[1]], points[f[2]]) for f in faces):
+        u, v = [b[i] - a[i] for i in range(3)], [c[i] - a[i] for i in range(3)]
+        n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+        area += math.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2) / 2
+        volume += (a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) / 6
+    facts = {"vertices": len(points), "faces": len(faces), "area": area, "volume": volume, **extra}
+    for i, axis in enumerate("xyz"):
+        facts["box." + axis] = [rounded(f(p[i] for p in points), 6) for f in (min, max)] if points else []
+    return {"is": {key: rounded(value, 6) for key, value in facts.items()}}
+
+
+def of_file(path):
+    ending = os.path.splitext(path)[1]
+    if ending == ".vdb":
+        return list(volumes_of(path))
+    if ending == ".exr":
+        return [("", stack_of(path))]
+    if ending in (".mkv", ".mp4"):
+        return [("", video_of(path))]
+    if ending in (".ply", ".stl", ".3mf", ".obj"):
+        return [("", mesh_of(path))]
+    with open(path, "rb") as file:
+        data = file.read()
+    by_bytes = {".png": picture_of, ".pdf": pdf_of, ".npy": numpy_of, ".nrrd": nrrd_of}
+    if ending in by_bytes:
+        return [("", by_bytes[ending](data))]
+    text = data.decode("utf-8", "replace")
+    by_text = {".json": json_of, ".jsonl": json_lines_of, ".toml": settings_of, ".svg": svg_of, ".html": page_of}
+    return [("", by_text.get(ending, text_of)(text))]
