@@ -3,9 +3,10 @@
 
 of_file(path) gives a list of (what, record). A record has some of
     is       facts: whole names are compared as they are, numbers to 1e-4 of their value
-    values   signed sums of up to 64 blocks of the values, in the order of the file, beside least and mean, each to 1e-5
-             of the largest: a change of a single value by as much moves the sum of its block; that of rounding, some
-             1e-7 in each value, moves it less by an order of magnitude
+    values   least, greatest and mean, and sums of up to 64 blocks in the order of the file, in which one of two
+             neighbours is added and the other one subtracted by chance, each to 1e-5 of the largest (the mean to 1e-6):
+             a change of a single value by as much moves the sum of its block; rounding, some 1e-7 in each value, less by
+             an order of magnitude
     text     the numbers of a table as printed: to 1e-4, and to a unit of the last place
     picture  means of 12 x 12 blocks, in grey levels of 255: to 2
 Histories, seals, times and hashes are left out.
@@ -24,13 +25,16 @@ import zipfile
 import zlib
 
 LEFT_OUT = re.compile(r"(^|[._:])(history|seals?|facts_seal|version|utc|sha256.*|hash|hashes|commands?|t_monotonic_s|"
-                      r"wall_s|process(es)?|pid|uuid|host|started|computed_s|seconds|memory_.*)$")
-SIGNS = [1.0 if bit else -1.0 for bit in (random.Random(49).getrandbits(1) for _ in range(4096))]
-NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+                      r"time_s|wall_s|process(es)?|pid|uuid|host|started|computed_s|seconds|memory_.*|"
+                      r"limited_by[.]\d+[.]z_mm)$")  # the last: of slices alike, any
+SIGNS = [sign for bit in map(random.Random(49).getrandbits, [1] * 2048) for sign in ((1.0, -1.0) if bit else (-1.0, 1.0))]
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?!\w|\.\d)")  # neither versions nor seals
 
 
 def rounded(value, digits=7):
-    return value if not isinstance(value, float) or not math.isfinite(value) else float("%.*g" % (digits, value))
+    if not isinstance(value, float):
+        return value
+    return float("%.*g" % (digits, value)) if math.isfinite(value) else str(value)
 
 
 def values_of(numbers):
@@ -42,7 +46,7 @@ def values_of(numbers):
     low, high = min(numbers), max(numbers)
     largest = max(abs(low), abs(high))
     places = 7 - math.floor(math.log10(largest)) if largest > 0 else 7
-    size = max(64, -(-count // 64))
+    size = max(64, -(-count // 128) * 2)  # even: pairs stay together
     sums = []
     for start in range(0, count, size):
         block = numbers[start:start + size]
@@ -55,8 +59,9 @@ def flat(value, path=""):
     """{path: leaf} of parsed JSON; long lists of numbers as count, mean and block sums."""
     if isinstance(value, dict):
         for key, inner in sorted(value.items()):
-            if not LEFT_OUT.search(key):
-                yield from flat(inner, path + "." + key if path else key)
+            inside = path + "." + key if path else key
+            if not LEFT_OUT.search(inside):
+                yield from flat(inner, inside)
     elif isinstance(value, list):
         if len(value) > 24:
             yield path + ".count", len(value)
@@ -193,8 +198,8 @@ def attributes_of(path):
         if not many:
             break
     facts = {key: fact(str(value)) for key, value in (first or {}).items()}
-    facts.update(("last." + key, rounded(float(last[key]), 6)) for key in ("z_mm", "angle_deg", "time_s") if key in last)
-    return facts
+    facts.update(("last." + key, float(last[key])) for key in ("z_mm", "angle_deg") if key in last)
+    return {key: round(value, 3) if key.endswith("angle_deg") else rounded(value, 6) for key, value in facts.items()}
 
 
 def nrrd_of(data):
@@ -208,7 +213,7 @@ def nrrd_of(data):
 
 def exported(path, *grid):
     data = subprocess.run(["vam-view", path, "--quiet", "--export", "/dev/stdout", *grid], check=True,
-                          stdout=subprocess.PIPE).stdout
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
     return nrrd_of(data)
 
 
@@ -292,8 +297,8 @@ def frames_of(folder, names):
 
 
 def video_of(path):
-    shown = subprocess.run(["vam-view", path, "--quiet", "--sheet", "4", "--plain", "-o", "/dev/stdout"], check=True,
-                           stdout=subprocess.PIPE).stdout
+    shown = subprocess.run(["vam-view", path, "--quiet", "--sheet", "4", "--title", "", "-o", "/dev/stdout"], check=True,
+                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
     return picture_of(shown)
 
 
@@ -310,10 +315,10 @@ def svg_of(text):
 
 def page_of(text):
     """An HTML page: the numbers of its text, and what is embedded."""
-    inside = re.sub(r"(?s)<(script|style)\b.*?</\1>", " ", text)
+    inside = re.sub(r"(?s)<(script|style|code)\b.*?</\1>", " ", text)
     facts = {tag: len(re.findall("<%s[ >]" % tag, text)) for tag in ("img", "table", "tr", "svg", "canvas", "section")}
     words = re.sub(r"<[^>]*>", " ", inside)
-    words = re.sub(r"\b[0-9a-f]{12,}\b|\b\d+\.\d+\.\d+\b|\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d", " ", words)
+    words = re.sub(r"\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d", " ", words)
     pictures = [base64.b64decode(body) for body in re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", text)]
     picked = [pictures[i] for i in sorted({0, len(pictures) // 2, len(pictures) - 1})] if pictures else []
     found = text_of(words)

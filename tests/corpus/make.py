@@ -3,9 +3,10 @@
 
     make.py mesh KIND FILE               a test mesh by the ending of FILE (.stl .off .obj .ply .3mf); KIND: see MESHES
     make.py part KIND MM FILE.off        a part near the edge of printing; KIND: see PARTS
-    make.py array KIND FILE NZ NY NX     a ball's coverage (KIND 'ball'), its dose and scatter ('dose', 'scatter'), or a
-                                         ramp ('ramp'), as .npy .npz .nrrd .mrc .tif by the ending of FILE
+    make.py array KIND FILE NZ NY NX     a ball's coverage, a dose and what scatters of it, ...; KIND: see KINDS; as .npy
+                                         .npz .nrrd .mrc .tif by the ending of FILE
     make.py images FOLDER COUNT ROWS COLUMNS ENDING   numbered grey images (.png, .tif) of a bar that turns
+    make.py disc FILE.png PIXELS RADIUS  a bright disc beside the middle
     make.py cut FILE SHARE OUT           the first bytes of a file
     make.py flip FILE PLACE OUT          a file with one byte changed
 """
@@ -155,14 +156,21 @@ def ball(k, j, i, nz, ny, nx):
     return min(1.0, max(0.0, (0.36 * min(nz, ny, nx) - r) / 2 + 0.5))
 
 
+def ripple(k, j, i, *sizes):
+    """A dose about a critical one of 50."""
+    return 50 + 15 * math.sin(0.6 * i) * math.cos(0.5 * j) * math.sin(0.5 * k)
+
+
 KINDS = {
     "ball": lambda *at: ball(*at),
     "ramp": lambda k, j, i, nz, ny, nx: (k * ny * nx + j * nx + i) % 101,
-    "dose": lambda *at: 25 + 35 * ball(*at),
-    "scatter": lambda *at: 0.08 / (1 + math.exp((50 - 0.9 * (25 + 35 * ball(*at))) / 4)),
-    "uneven": lambda k, *at: 0.08 / (1 + math.exp((50 - (0.85 + 0.15 * k / at[2]) * (25 + 35 * ball(k, *at))) / 4)),
+    "dose": lambda *at: ripple(*at),
+    "scatter": lambda *at: 0.08 / (1 + math.exp((50 - 0.9 * ripple(*at)) / 4)),
+    "uneven": lambda k, *at: 0.08 / (1 + math.exp((50 - (0.85 + 0.15 * k / at[2]) * ripple(k, *at)) / 4)),
+    "stairs": lambda k, *at: 20 + 6 * (k // 6),
+    "risen": lambda k, *at: 0.08 / (1 + math.exp((50 - 20 - 6 * (k // 6)) / 4)),
+    "peak": lambda k, j, i, nz, ny, nx: max(0.0, 100 - 3 * math.dist((k, j, i), ((nz - 1) / 2, (ny - 1) / 2, (nx - 1) / 2))),
     "band": lambda *at: 0.3,
-    "deviation": lambda *at: 0.002,
 }
 
 
@@ -236,6 +244,11 @@ def main(verb, *words):
         write_array(words[0], words[1], *map(int, words[2:]))
     elif verb == "images":
         write_images(words[0], *map(int, words[1:4]), words[4])
+    elif verb == "disc":
+        count, radius = int(words[1]), float(words[2])
+        with open(words[0], "wb") as out:
+            out.write(png([[200 if math.hypot(x - count / 2 - 2, y - count / 2 + 3) < radius else 20 for x in range(count)]
+                           for y in range(count)]))
     elif verb in ("cut", "flip"):
         data = bytearray(open(words[0], "rb").read())
         place = int(float(words[1]) * len(data))
