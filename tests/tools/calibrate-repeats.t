@@ -95,7 +95,7 @@ is 'a late answer to identify is asked for again' "$status $(grep -c 'vam-stage 
 answers vam-project '69 dlpc350: no such device'
 calibrate lag,latency
 is 'an absent light engine ends it' "$status $(cat errors)" '69 vam-project: dlpc350: no such device'
-is 'the event of a failure before any scan names none' "$(grep -c '"event":"failed","status":69}' events)" 1
+is 'the event of a failure before any scan names none' "$(grep -c '"event":"failed","status":69[,}]' events)" 1
 is 'before anything moves or shines' "$(grep -Ec 'spin|move|--repeat|--frames' calls)" 0
 calibrate latency
 is 'by the plan of this display and light' "$(grep -c -- '--plan -o null: --light sim:' calls)" 1
