@@ -111,9 +111,9 @@ is 'by its plan, too' "$(live 'iou>=1' --turns 1 --plan 2>&1 >/dev/null | grep -
 fails 64 ".--view-step: 'ten' is not an angle above 0" print --view-step ten --run none
 is 'by its plan' "$(live 'foo>=1' --plan 2>&1 >/dev/null | grep -c "unknown figure 'foo'")" 1
 is 'which does not mention valid options' "$(live 'iou>=1' --plan 2>&1 | grep -c '^metrology\|empty')" 0
-# A tool that fails later is the cause, and not those that are ended because of it.
+# A tool that fails later, when the light is on, is the cause, and not those that are ended because of it.
 mkdir fake
-printf '#!/bin/sh\n[ -p /dev/stdin ] || { echo "vam-ost: stdin: is empty" >&2; exit 65; }\necho "vam-ost: died" >&2; exit 71\n' >fake/vam-ost
+printf '#!/bin/sh\n[ -p /dev/stdin ] || { echo "vam-ost: stdin: is empty" >&2; exit 65; }\nuntil grep -qs "\"frame\":[0-9]" died/flips.jsonl; do sleep 0.02; done\necho "vam-ost: died" >&2; exit 71\n' >fake/vam-ost
 chmod +x fake/vam-ost
 PATH=$PWD/fake:$PATH live 'iou>=1' --set camera.device=sim: --run died 2>errors
 is 'the cause is the tool that failed first' "$? $(cat errors) $(json died/summary.json outcome)" '71 vam-ost: died ost failed'
