@@ -6,9 +6,10 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
-printf '[stage]\ndevice = "sim:?acceleration=9000&min_angle=-1e7&max_angle=1e7"\nspeed_deg_s = 90\n' >>printer.toml
+printf '[stage]\ndevice = "sim:?acceleration=9000&max_speed=360&min_angle=-1e7&max_angle=1e7"\nspeed_deg_s = 90\n' >>printer.toml
 dry() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 "$@"; }
 print() { dry --uncalibrated "$@"; }
+quick='--set stage.speed_deg_s=360 --run-up 0.2'  # a turn in a second, where its light is not compared
 
 # Limits of the system.
 for files in 5 7 10 63; do
@@ -17,9 +18,17 @@ for files in 5 7 10 63; do
 done
 fails 71 '^vam-print: needs 64 processes, and the limit is 1; raise it \(ulimit -u\)$' prlimit --nproc=1 vam-print frames.exr --display null:
 
+# A path with special characters of shells, sed and TOML, and files relative to the printer file.
+odd='a&b #c "d" \e
+f'
+mkdir "$odd"
+printf 'grey,intensity\n0,0\n255,1\n' >"$odd/r.csv"
+sed 's/^rows/response = "r.csv"\nrows/' printer.toml >"$odd/printer.toml"
+(cd "$odd" && vam-print ../frames.exr --display null: --light sim: --uncalibrated --max-missed 0.9 $quick --run 'r & #1') 2>odd.err & far_away=$!
+
 # A sinogram for another printer.
 fails 65 'frames.exr: computed for another printer: vial.radius_mm 12.7, now 6; ' print --set vial.radius_mm=6 --run other
-ok 'which can be accepted' print --set vial.radius_mm=6 --accept-printer --run accepted
+ok 'which can be accepted' print $quick --set vial.radius_mm=6 --accept-printer --run accepted
 is 'and is reported' "$(grep -c 'vial.radius_mm 12.7, now 6; accepted' .log/err) $(json accepted/summary.json project.printer_differences)" "1 ['vial.radius_mm 12.7, now 6']"
 is 'progress at the end' "$(json accepted/summary.json reached.turns | cut -c1-3) $(json accepted/summary.json reached.lit_flips)" "$(json accepted/summary.json reached.turns | grep -E '^(0.9|1.0)' | cut -c1-3) $(json accepted/summary.json project.lit_flips)"
 
@@ -79,27 +88,16 @@ is 'states their age' "$(grep -Ec '^record     axis: [a-z]+, 0.0 h old, valid un
 rm -f cal/current-axis.json
 fails 65 'has no record of axis' dry --need axis --set calibration.folder=cal --run none
 
-# A path with special characters of shells, sed and TOML, and files relative to the printer file.
-odd='a&b #c "d" \e
-f'
-mkdir "$odd"
-printf 'grey,intensity\n0,0\n255,1\n' >"$odd/r.csv"
-sed 's/^rows/response = "r.csv"\nrows/' printer.toml >"$odd/printer.toml"
-(cd "$odd" && vam-print ../frames.exr --display null: --light sim: --uncalibrated --max-missed 0.9 --run-up 0.05 --run 'r & #1') 2>errors
-is 'a path with & # quotes and a newline' "$? $(cat errors)" '0 '
+wait $far_away
+is 'a path with & # quotes and a newline' "$? $(cat odd.err)" '0 '
 ok 'whose settings can be read from elsewhere' vam-project frames.exr -o again.exr --printer "$odd/r & #1/printer.toml"
 
-# A condition that is never met.
+# A condition that is never met; beside it, what is refused.
 vam-slice --shape half-cylinder:diameter=3,height=2 --voxel 0.26 -o part.vdb
 print --turns 2 --view-step 10 --until 'iou>=0.99' --target part.vdb --isovalue 0.001 --run unmet --set stage.speed_deg_s=45 \
   --set stage.device="sim:?acceleration=9000&log=$PWD/truth" \
-  --set camera.axis_column=63.5 --set camera.tilt_deg=0 --set camera.pixel_mm=0.26 --set camera.device="sim:?follow=$PWD/truth&lit=0.01&columns=128&rows=96" >out 2>errors
-is 'a condition that is not met is status 1' "$? $(grep -c . errors)" '1 1'
-sed 's/^/# /' errors
-is 'with the last figures' "$(grep -Ec "^vam-print: --until 'iou>=0.99' was not met in 2 turns; last figures: turns [0-9.]+, missing_percent [-0-9.e+]+, overcure_percent [-0-9.e+]+, iou [-0-9.e+]+$" errors)" 1
-is 'and an outcome of its own' "$(json unmet/summary.json outcome)" 'complete, --until not met'
-holds 'the summary has them, too' "$(json unmet/summary.json reached.figures.iou) < 0.99"
-
+  --set camera.axis_column=63.5 --set camera.tilt_deg=0 --set camera.pixel_mm=0.26 --set camera.device="sim:?follow=$PWD/truth&lit=0.01&columns=128&rows=96" >unmet.out 2>unmet.err & unmet=$!
+await test -s unmet/angles.jsonl
 # The options of live metrology are checked before any motion, by the plan, too.
 live() { print --turns 2 --view-step 10 --isovalue 1 --target part.vdb --until "$@"; }
 fails 64 "unknown figure 'foo'" live 'foo>=1' --run none
@@ -118,10 +116,19 @@ chmod +x fake/vam-ost
 PATH=$PWD/fake:$PATH live 'iou>=1' --set camera.device=sim: --run died 2>errors
 is 'the cause is the tool that failed first' "$? $(cat errors) $(json died/summary.json outcome)" '71 vam-ost: died ost failed'
 
+# Prints that are begun together, as that takes its time, and end in several ways.
+for name in stopped project lines; do
+  (exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run $name) 2>$name.err &
+  eval "pid_$name=\$!"
+done
+# One that was started in the background by a script ignores an interrupt, its tools do not.
+perl -e 'setpgrp(0, 0); $SIG{INT} = "IGNORE"; exec @ARGV' vam-print frames.exr --display null: --light sim: --max-missed 0.9 \
+  --run-up 0.05 --uncalibrated --turns 50 --run interrupted 2>interrupted.err &
+interrupted=$!
+for name in stopped project lines interrupted; do await grep -qs '"frame":[0-9]' $name/flips.jsonl; done
+
 # A stopped tool does not delay the end.
-(exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run stopped) 2>errors &
-printing=$!
-await grep -qs '"frame":[0-9]' stopped/flips.jsonl
+printing=$pid_stopped
 fails 75 'stopped: is still being printed' print --resume stopped --run none
 stuck=$(pgrep -P $printing -x tee); kill -STOP "$stuck"
 start=$(date +%s)
@@ -134,37 +141,41 @@ holds 'and the progress' "$(json stopped/summary.json reached.lit_flips) > 0 && 
 
 # Nor is it waited for: the others would wait with the light on.
 for name in project lines; do
-  (exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run stood-$name) 2>errors &
-  printing=$!
-  await grep -qs '"frame":[0-9]' stood-$name/flips.jsonl
+  eval "printing=\$pid_$name"
   program=vam-$name; [ $name = project ] || program=tee
   kill -STOP "$(pgrep -P $printing -x $program)"
   start=$(date +%s)
   wait $printing
-  is "a print whose $name is stopped fails" "$? $(json stood-$name/summary.json outcome)" "137 $name failed"
-  ok 'the error names it' grep -qx "vam-print: $name was stopped by a signal and is ended" errors
+  is "a print whose $name is stopped fails" "$? $(json $name/summary.json outcome)" "137 $name failed"
+  ok 'the error names it' grep -qx "vam-print: $name was stopped by a signal and is ended" $name.err
   holds 'soon' "$(date +%s) - $start < 6"
 done
 
-# An interrupt of all its processes, as Ctrl-C is; one that was started in the background by a script ignores it, its tools
-# do not.
-perl -e 'setpgrp(0, 0); $SIG{INT} = "IGNORE"; exec @ARGV' vam-print frames.exr --display null: --light sim: --max-missed 0.9 \
-  --run-up 0.05 --uncalibrated --turns 50 --run interrupted 2>errors &
-printing=$!
-await grep -qs '"frame":[0-9]' interrupted/flips.jsonl
+# An interrupt of all its processes, as Ctrl-C is.
+printing=$interrupted
 perl -e 'kill "-INT", @ARGV' $printing; wait $printing
 is 'an interrupt of all processes is not a failure of one' "$? $(json interrupted/summary.json outcome)" '130 aborted'
-is 'and is reported in one line' "$(cat errors)" "$(grep -E '^vam-print: aborted: (stage|project|lines) was ended by a signal$' errors)"
+is 'and is reported in one line' "$(cat interrupted.err)" "$(grep -E '^vam-print: aborted: (stage|project|lines) was ended by a signal$' interrupted.err)"
 
 # A killed print is resumed, and both parts deliver the dose of a whole one, by vam-dose.
-print --turns 2 --run whole
+print --turns 2 --run whole & whole=$!
 (exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --turns 2 --run killed) 2>errors &
 printing=$!
 lit() { [ "$(cat killed/flips.jsonl 2>/dev/null | grep -c '"frame":[0-9]')" -gt 300 ]; }  # a turn has 240
 await lit; kill -KILL $printing; wait $printing 2>/dev/null
+wait $whole
+wait $unmet
+is 'a condition that is not met is status 1' "$? $(grep -c . unmet.err)" '1 1'
+sed 's/^/# /' unmet.err
+is 'with the last figures' "$(grep -Ec "^vam-print: --until 'iou>=0.99' was not met in 2 turns; last figures: turns [0-9.]+, missing_percent [-0-9.e+]+, overcure_percent [-0-9.e+]+, iou [-0-9.e+]+$" unmet.err)" 1
+is 'and an outcome of its own' "$(json unmet/summary.json outcome)" 'complete, --until not met'
+holds 'the summary has them, too' "$(json unmet/summary.json reached.figures.iou) < 0.99"
 for tool in '[v]am-project' '[v]am-stage'; do await sh -c "! pgrep -f '$tool.*killed/printer.toml' >/dev/null"; done
 cp -r killed known; cp -r killed cut; cp -r killed again
 is 'a killed print leaves its pipes' "$(ls -A killed | grep '^[.]' | tr '\n' ' ')" '.capture .project .reserve .stage .views '
+# One that was calibrated needs no records to be resumed: its settings hold them. Its devices must be the same.
+vam-stage identify --printer killed/printer.toml >known/stage.json; echo '{"edges": 1}' >known/calibration.json
+dry --resume known --run rest2 & rest2=$!
 ok 'a killed print is resumed' print --resume killed --run rest
 is 'which removes them' "$(ls -A killed | grep -c '^[.]')" 0
 fails 65 'killed: already resumed, by .*/rest; resume that one instead' print --resume killed --run none
@@ -194,9 +205,7 @@ is 'is taken back' "$? $(grep -o '"event":"re[a-z]*"' early/events.jsonl | tr '\
 ok 'and the print can be resumed' print --resume early --plan
 ok 'both are verified' vam-check early dark
 is 'for its last turn' "$(grep -o '"turns":[0-9]*,"from_deg":[0-9]*' rest/events.jsonl | cut -d, -f1) $(json rest/summary.json outcome)" '"turns":1 done'
-# One that was calibrated needs no records to be resumed: its settings hold them. Its devices must be the same.
-vam-stage identify --printer killed/printer.toml >known/stage.json; echo '{"edges": 1}' >known/calibration.json
-ok 'a calibrated print is resumed with its own settings' dry --resume known --run rest2
+ok 'a calibrated print is resumed with its own settings' wait $rest2
 is 'its records are copied' "$(cat rest2/calibration.json)" '{"edges": 1}'
 rm known/resumed.json; sed -i '/"event":"resumed"/d' known/events.jsonl
 is 'by its plan' "$(dry --resume known --plan | grep ^records)" 'records    as in known/printer.toml'
@@ -321,6 +330,18 @@ is 'with the same turns' "$(json b.json shown_turns)" "$(json a.json shown_turns
 fails 65 'whole: was printed with other settings: stage.speed_deg_s 90, now 60; omit --printer and --set' vam-dose frames.exr --shown whole --set stage.speed_deg_s=60 -o none.vdb
 fails 65 'whole: was printed with other settings: projector.max_intensity_mw_cm2 3.8, now 10; omit' vam-dose frames.exr --shown whole --set projector.max_intensity_mw_cm2=10 -o none.vdb
 ok 'the settings of a run are its own' env VAM_PRINTER=nowhere vam-dose frames.exr --shown whole -o own.vdb
+# A disk that fills during the print.
+mkdir small
+if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=200k none small 2>/dev/null; then
+  trap 'umount small 2>/dev/null; rm -rf "$scratch"' EXIT
+  print --turns 50 --run small/run --light "sim:?log=$PWD/full-leds" >full.out 2>full.err & full=$!
+  await grep -qs '"frame":[0-9]' small/run/flips.jsonl
+else
+  full=
+  echo '# no small disk can be mounted: none is filled'
+fi
+print --turns 50 --run hang 2>hang.err & hang=$!
+await grep -qs '"frame":[0-9]' hang/flips.jsonl
 dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o "$1.vdb" $2; }
 ok 'the dose of a run' dose whole.dose '--shown whole'
 ok 'that of a killed one' dose killed.dose '--shown killed'
@@ -349,9 +370,7 @@ fails 66 'nowhere' vam-dose frames.exr --shown nowhere -o x.vdb
 fails 65 'other.exr: is not the sinogram of whole' vam-status whole --page page.html --sinogram other.exr
 
 # A projector that hangs is ended; how long its last image stayed on is logged.
-print --turns 9 --run hang 2>hang.err & printing=$!
-lit() { grep -q '"frame":[0-9]' hang/flips.jsonl 2>/dev/null; }
-await lit
+printing=$hang
 kill -STOP "$(pgrep -f 'vam-project .*--printer hang/printer.toml' | head -n 1)"
 wait $printing
 is 'a hanging projector ends the print' "$? $(grep -c 'project was stopped by a signal and is ended' hang.err)" '137 1'
@@ -363,13 +382,10 @@ fails 74 'standard output: cannot be written' sh -c 'vam-print frames.exr --disp
 
 fails 64 'omit --exposure-plan' vam-dose frames.exr --shown whole --exposure-plan --like part.vdb --set resin.absorption_per_mm=0.1 --set resin.critical_dose_mj_cm3=5 -o x.vdb
 
-# A disk that fills during the print.
-mkdir small
-if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=200k none small 2>/dev/null; then
-  trap 'umount small 2>/dev/null; rm -rf "$scratch"' EXIT
-  print --turns 50 --run small/run --light "sim:?log=$PWD/full-leds" >out 2>errors
-  is 'a full disk ends a print' "$? $(grep -c 'No space left on device' errors)" '74 1'
-  is 'reported with the name of the tool or of the file' "$(grep -Evc '^vam-[a-z]+: .*small/run' errors)" 0
+if [ -n "$full" ]; then
+  wait $full
+  is 'a full disk ends a print' "$? $(grep -c 'No space left on device' full.err)" '74 1'
+  is 'reported with the name of the tool or of the file' "$(grep -Evc '^vam-[a-z]+: .*small/run' full.err)" 0
   is 'the light is off' "$(grep -o '"bits":[0-9]*' full-leds | tail -n 1)" '"bits":0'
   is 'and a summary is written' "$(json small/run/summary.json status) $(json small/run/summary.json outcome | grep -c failed)" '74 1'
   holds 'which states the progress' "$(json small/run/summary.json reached.lit_flips) > 0"
@@ -377,7 +393,5 @@ if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=200k none small 2>/dev/null; the
   mount -t tmpfs -o size=60k none small
   fails 74 '^vam-print: small/run: has no room for 64 kB' print --run small/run
   umount small
-else
-  echo '# no small disk can be mounted: none is filled'
 fi
 done_testing
