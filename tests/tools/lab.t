@@ -12,14 +12,14 @@ fails 73 'lab: taken: exists' "$lab" taken
 
 # Control-C while the camera sees and the stage turns: it reaches the whole foreground, as a terminal does it.
 cat >interrupt.py <<'PY'
-import os, signal, subprocess, sys, time
+import json, os, signal, subprocess, sys, time
 lab = subprocess.Popen([sys.argv[1], 'stopped'], stderr=open('stopped.err', 'w'), stdout=subprocess.DEVNULL, start_new_session=True,
                        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
 until = time.time() + 120
-while time.time() < until and not os.path.exists('stopped/scans/lag.exr') and not os.path.exists('stopped/records'):
-    if 'CALIBRATION' in open('stopped.err').read(): break
-    time.sleep(0.1)
-time.sleep(3)
+def turned():  # in the first scan, whose views the camera takes meanwhile
+    try: return any(json.loads(line).get('angle_deg', 0) >= 180 for line in open('stopped/scans/angles.jsonl'))
+    except (OSError, ValueError): return False
+while time.time() < until and not turned(): time.sleep(0.05)
 bench = subprocess.run(['ps', '--ppid', str(lab.pid), '-o', 'pid='], capture_output=True, text=True).stdout.split()
 began = time.time()
 os.killpg(lab.pid, signal.SIGINT)
