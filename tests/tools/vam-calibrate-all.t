@@ -7,7 +7,7 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 mkdir keep
 judge="python3 $VAM_SOURCE/tests/tools/scan_judge.py"
-camera_bench "sim:?acceleration=1000&log=$PWD/truth" 85
+camera_bench "sim:?acceleration=1000&max_speed=180&log=$PWD/truth" 85
 value() { json "cal/current-$1.json" "values.$2.value"; }
 sigma() { json "cal/current-$1.json" "values.$2.sigma"; }
 within() { near "$1 is within its stated sigma" "$2" "$3" "4 * $4"; }  # within NAME GOT WANT SIGMA: one of 16 000 is not
@@ -25,7 +25,7 @@ bench() {  # bench OPTIONS...
   camera_up --follow truth --flips keep/flips --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --projector-gamma 1.8 \
     --lag 40 --latency 30 --maker basler --axis-offset 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
 }
-calibrate() { vam-calibrate-all --display sdl:0 --light sim: --set stage.speed_deg_s=30 --keep keep --log events --home --pitch 4 \
+calibrate() { vam-calibrate-all --display sdl:0 --light sim: --set stage.speed_deg_s=120 --keep keep --log events --home --pitch 4 \
     --sweep-exposure 19000 --scans "$@"; }
 
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --beam 0.5 --focus 1.5 --divergence 1.5
