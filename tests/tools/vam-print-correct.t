@@ -5,7 +5,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 . "$VAM_SOURCE/tests/tools/printlib.sh"
 sed -e 's/^max_intensity_mw_cm2.*/max_intensity_mw_cm2 = 3/' \
-  -e "s|^speed_deg_s.*|device = \"sim:?acceleration=1000\&log=$PWD/truth\"\nspeed_deg_s = 60|" \
+  -e 's/^speed_deg_s.*/speed_deg_s = 60/' \
   -e 's/^\[camera\]/&\ndevice = "aravis:127.0.0.1"\naxis_column = 32.5/' \
   "$VAM_SOURCE/tests/tools/curing_printer.toml" >printer.toml
 export VAM_PRINTER=$PWD/printer.toml
@@ -13,7 +13,9 @@ vam-slice --shape gyroid:cell=6,sheet=1.2,diameter=7,height=5 --voxel 0.2 -o par
 vam-optimize --angles 60 part.vdb -o whole.exr
 vam-project whole.exr --fps 10 --turns 1 -o whole.mkv
 echo '{"schema":"vam-working-curve/1","isovalue":0.04,"saturation":0.08,"critical_dose_mj_cm3":60,"rate_per_mj_cm3":0.07,"delay_s":1}' >curve.json
-print() { vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --view-step 6 --target part.vdb "$@"; }
+print() { vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --view-step 6 --target part.vdb \
+    --set stage.device="sim:?acceleration=1000&max_speed=120&log=$PWD/truth.$run" "$@"; }
+run=none
 fails 64 'correct: requires --until' print --correct --run none
 fails 64 'correct: requires --resin' print --correct --until 'missing<=1' --isovalue 0.04 --run none
 fails 64 'axis-sigma: requires --correct' print --axis-sigma 1 --run none
@@ -21,30 +23,52 @@ echo '{"schema":"vam-resin/1","isovalue":0.04}' >resin.json
 fails 65 'resin.json: not a record of vam-calibrate working-curve' print --correct --until 'missing<=1' --resin resin.json --run none
 fails 64 'turns: is 2, but the sinogram is planned for' print --correct --until 'missing<=1' --resin curve.json --turns 2 --run none
 
-one_print() {  # one_print RUN: with the options of vam-print that follow; the camera of the run `lost` dies at turn 3
-  run=$1; shift; rm -f truth
-  vam-sim-camera --die-with-parent --cure --cure-voxel 0.25 --cure-delay 1 --inhibitor-diffusion 0 --follow truth \
-    --flips "$run/flips.jsonl" --projected whole.mkv --columns 66 --rows 46 --noise 0.002 --background 0.01 \
-    --set resin.absorption_per_mm=0.07 --set projector.max_intensity_mw_cm2=2.6 >address 2>camera.err &
-  camera=$!
-  await test -s address
-  [ $run != lost ] || { while ! lit_for 1080 && kill -0 $camera; do sleep 0.1; done; kill -9 $camera; } 2>/dev/null &
-  print --run "$run" "$@" 2>errors
-  status=$?
-  kill $camera; wait $camera 2>/dev/null
+# Side by side, as prints mostly wait: before the GigE Vision camera one after the other, beside them some before one of
+# vam-capture's own.
+go() {  # go RUN OPTIONS...: that print in the background, without the camera's lock; $printing
+  run=$1; shift
+  (exec 9>&-; print --run "$run" "$@") 2>"$run.err" & printing=$!
 }
-lit_for() { grep '"event":"flip"' "$run/flips.jsonl" 2>/dev/null | tail -n 1 | sed -nE 's/.*"angle_deg":([0-9.]+).*/\1/p' | awk -v least="$1" '{ last = $1 } END { exit !(last >= least) }'; }
+seen() {  # seen RUN OPTIONS...: the same before the GigE Vision camera, which sees resin cure
+  run=$1; rm -rf "$run" "truth.$run"
+  camera_up --cure --cure-voxel 0.25 --cure-delay 1 --inhibitor-diffusion 0 --follow "truth.$run" \
+    --flips "$run/flips.jsonl" --projected whole.mkv --columns 66 --rows 46 --noise 0.002 --background 0.01 \
+    --set resin.absorption_per_mm=0.07 --set projector.max_intensity_mw_cm2=2.6
+  go "$@"
+}
+seen_to_end() { seen "$@"; wait $printing; status=$?; camera_down; }
+beside() {  # beside RUN OPTIONS...: the same before a camera of vam-capture's own, which sees a cylinder grow
+  go "$@" --set camera.device="sim:?follow=$PWD/truth.$1&flips=$PWD/$1/flips.jsonl&part=cylinder:diameter=7,height=5&lit=20&columns=66&rows=46&noise=0.002&background=0.01"
+}
+lit_for() { grep '"event":"flip"' "$1/flips.jsonl" 2>/dev/null | tail -n 1 | sed -nE 's/.*"angle_deg":([0-9.]+).*/\1/p' | awk -v least="$2" '{ last = $1 } END { exit !(last >= least) }'; }
 fails 64 'dark-turns: requires --view-step' vam-print whole.exr --display null: --uncalibrated --dark-turns 1 --run none
 fails 64 'dark-turns: .08. is not a whole number' print --dark-turns 08 --run none
 fails 64 'dark-turns: .two. is not a whole number' print --dark-turns two --run none
 fails 64 'turns' print --turns two --dark-turns 1 --run none
 fails 64 'dark-turns: conflicts with --until' print --until 'missing<=1' --isovalue 0.04 --dark-turns 1 --run none
-one_print dark --turns 2 --dark-turns 1
-sed 's/^/# /' errors
+sed 's/"critical_dose_mj_cm3":60/"critical_dose_mj_cm3":20/; s/"delay_s":1/"delay_s":100/' curve.json >other.json
+beside open --correct --until 'missing<=50' --resin other.json --turns 14
+open=$printing
+seen lost --correct --until 'missing<=0.01' --resin curve.json --turns 14
+lost=$printing
+# vam-ost is lost first, then vam-print itself is killed.
+beside ost-killed --correct --until 'missing<=0.01' --resin curve.json --turns 14
+until lit_for ost-killed 90 || ! kill -0 $printing 2>/dev/null; do sleep 0.1; done
+pkill -KILL -f -- "-o ost-killed/[o]st"
+await grep -q 'open loop from turn' ost-killed.err
+ok 'without vam-ost it goes on in open loop, too' lit_for ost-killed 90
+pkill -KILL -P $printing; wait $printing 2>/dev/null
+await flock -n ost-killed/events.jsonl true
+ok 'one that is killed then leaves nothing that prints' sh -c "flock -n ost-killed/events.jsonl true && ! pgrep -f -- '--log ost-killed/[f]lips.jsonl'"
+while ! lit_for lost 360 && kill -0 $lost 2>/dev/null; do sleep 0.1; done
+camera_down
+await grep -q 'open loop from turn' lost.err  # before there is a camera again
+seen_to_end dark --turns 2 --dark-turns 1 --view-step 18 --set stage.speed_deg_s=120
+sed 's/^/# /' dark.err
 is 'the light goes off after two turns, the stage after three' "$(grep '"frame":[0-9]' dark/flips.jsonl | tail -n 1 | sed -E 's/.*"angle_deg":([0-9.]+).*/\1/' | awk '{ print ($1 > 700 && $1 <= 720) }') $(tail -n 1 dark/angles.jsonl | sed -E 's/.*"angle_deg": ?([0-9.]+).*/\1/' | awk '{ print ($1 > 1079) }')" '1 1'
-holds 'with views of all three' "$(ls dark/views | wc -l) > 175"
-one_print corrected --correct --until 'missing<=0.01' --resin curve.json --turns 14
-sed 's/^/# /' errors
+holds 'with views of all three' "$(ls dark/views | wc -l) > 58"
+seen_to_end corrected --correct --until 'missing<=0.01' --resin curve.json --turns 14
+sed 's/^/# /' corrected.err
 cut -c 1-180 corrected/renewed.jsonl | sed 's/^/# /'
 is 'a corrected print ends by its light' "$status $(json corrected/summary.json outcome)" '0 complete, corrected'
 ok 'new light was made' grep -q '"event":"renewed"' corrected/renewed.jsonl
@@ -54,36 +78,15 @@ ok 'all is in the run folder, with its hashes' sh -c 'cd corrected && sha256sum 
 holds 'how often is in the summary' "$(json corrected/summary.json correction.renewed) == $(grep -c '"event":"renewed"' corrected/renewed.jsonl)"
 vam-status corrected >line
 ok 'its state names the turn at which it ended, and the sensitivity' awk '{ for (i = 1; i < NF; ++i) if ($i == "turn" && $(i + 2) == "of") off = $(i + 1) - $(i + 3) } END { exit !(off * off < 0.01 && /(light from turn .* sensitivity|light as before)/) }' line
-sed 's/"critical_dose_mj_cm3":60/"critical_dose_mj_cm3":20/; s/"delay_s":1/"delay_s":100/' curve.json >other.json
-one_print open --correct --until 'missing<=50' --resin other.json --turns 14
-is 'with the record of another resin it goes on as planned' "$status $(json open/summary.json outcome)" '0 stopped by vam-ost'
-ok 'and says so' grep -q 'not corrected: vam-dose: flips.jsonl: no light .*; see .*renewed.jsonl' errors
+wait $open
+is 'with the record of another resin it goes on as planned' "$? $(json open/summary.json outcome)" '0 stopped by vam-ost'
+ok 'and says so' grep -q 'not corrected: vam-dose: flips.jsonl: no light .*; see .*renewed.jsonl' open.err
 is 'why, without names of scratch files' "$(grep -c '"event":"hold".*vam-renew[.]' open/renewed.jsonl)" 0
-one_print lost --correct --until 'missing<=0.01' --resin curve.json --turns 14
-sed 's/^/# /' errors
+wait $lost; status=$?
+sed 's/^/# /' lost.err
 is 'without its camera it is completed in open loop' "$status $(json lost/summary.json outcome)" '1 complete, in open loop'
-ok 'which it says at once, and at the end' sh -c 'grep -q "warning: .*; the print goes on in open loop from turn [3-9].*, as planned, to turn" errors && grep -q "nothing was measured after turn" errors'
-holds 'and in the summary' "$(json lost/summary.json correction.open_loop_from) >= 3"
+ok 'which it says at once, and at the end' sh -c 'grep -q "warning: .*; the print goes on in open loop from turn [1-9].*, as planned, to turn" lost.err && grep -q "nothing was measured after turn" lost.err'
+holds 'and in the summary' "$(json lost/summary.json correction.open_loop_from) >= 1"
 planned=$(awk -F'[:,]' '/"turns"/ { t = $2 } /"multiplier"/ { m = $2 } END { n = int(t * m); print n < t * m ? n + 1 : n }' lost/plan.json)
 holds 'for the turns of the plan' "$(json lost/summary.json reached.turns) >= $planned - 0.1 && $(json lost/summary.json reached.turns) <= $planned + 0.1"
-# vam-ost is lost first, then vam-print itself is killed.
-camera_up() {
-  rm -f truth
-  vam-sim-camera --die-with-parent --follow truth --columns 66 --rows 46 >address 2>camera.err &
-  camera=$!
-  await test -s address
-}
-run=ost-killed
-rm -f address; camera_up
-(exec vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --view-step 6 --target part.vdb --correct \
-  --until 'missing<=0.01' --resin curve.json --turns 14 --run $run 2>errors) &
-printing=$!
-until lit_for 90 || ! kill -0 $printing 2>/dev/null; do sleep 0.1; done
-pkill -KILL -f -- "-o $run/[o]st"
-await grep -q 'open loop from turn' errors
-ok 'without vam-ost it goes on in open loop, too' lit_for 90
-kill -9 $printing; wait $printing 2>/dev/null
-await flock -n $run/events.jsonl true
-ok 'one that is killed then leaves nothing that prints' sh -c "flock -n $run/events.jsonl true && ! pgrep -f -- '$run/[f]lips.jsonl'"
-kill $camera
 done_testing
