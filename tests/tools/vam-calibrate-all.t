@@ -32,12 +32,12 @@ bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --beam 0.5 --focus 1.5 
 quiet 'six scans in one run' calibrate 'edges axis beam latency lag response'
 # A signal ends what moves and what is lit at once: a stage that turns for a minute, or a capture beside a lit projector.
 aborted() {  # aborted SCAN CONDITION: TERM to the script alone, once the condition holds
-  (exec env --default-signal=INT vam-calibrate-all --display sdl:0 --light sim: --keep keep --log aborted --scans "$1" 2>aborted.err) & scans=$!
+  (exec env --default-signal=INT vam-calibrate-all --display sdl:0 --light sim: --keep keep --log aborted --scans "$1" --set resin.name=test$$ 2>aborted.err) & scans=$!
   await "$2"
   sent=$(date +%s%N); kill -TERM $scans; wait $scans
   is "TERM in $1: status" $? 143
   holds "TERM in $1: within 2 s" "$(date +%s%N) - $sent < 2000000000"
-  is "TERM in $1: no tool is left" "$(pgrep -f 'vam-(capture|project|stage) .* calibration.folder=' | wc -l)" 0
+  is "TERM in $1: no tool is left" "$(pgrep -f "vam-(capture|project|stage) .* resin.name=test$$ .*calibration.folder=" | wc -l)" 0
 }
 turning() { [ -s keep/angles.jsonl ]; }
 rm -f keep/angles.jsonl

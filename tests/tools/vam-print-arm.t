@@ -371,7 +371,7 @@ fails 65 'other.exr: is not the sinogram of whole' vam-status whole --page page.
 
 # A projector that hangs is ended; how long its last image stayed on is logged.
 printing=$hang
-kill -STOP "$(pgrep -f 'vam-project .*--printer hang/printer.toml' | head -n 1)"
+kill -STOP "$(pgrep -s 0 -f 'vam-project .*--printer hang/printer.toml' | head -n 1)"
 wait $printing
 is 'a hanging projector ends the print' "$? $(grep -c 'project was stopped by a signal and is ended' hang.err)" '137 1'
 is 'how long its image stayed on is said' "$(grep -Ec 'warning: the last image stayed on for [0-9.]+ s, while the stage turned by [0-9]+ deg' hang.err)" 1

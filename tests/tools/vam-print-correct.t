@@ -52,14 +52,15 @@ open=$printing
 seen lost --correct --until 'missing<=0.01' --resin curve.json --turns 14
 lost=$printing
 # vam-ost is lost first, then vam-print itself is killed.
-beside ost-killed --correct --until 'missing<=0.01' --resin curve.json --turns 14
-until lit_for ost-killed 90 || ! kill -0 $printing 2>/dev/null; do sleep 0.1; done
-pkill -KILL -f -- "-o ost-killed/[o]st"
-await grep -q 'open loop from turn' ost-killed.err
-ok 'without vam-ost it goes on in open loop, too' lit_for ost-killed 90
+killed=ost-killed-$$
+beside $killed --correct --until 'missing<=0.01' --resin curve.json --turns 14
+until lit_for $killed 90 || ! kill -0 $printing 2>/dev/null; do sleep 0.1; done
+pkill -KILL -f -- "-o $killed/[o]st"
+await grep -q 'open loop from turn' $killed.err
+ok 'without vam-ost it goes on in open loop, too' lit_for $killed 90
 pkill -KILL -P $printing; wait $printing 2>/dev/null
-await flock -n ost-killed/events.jsonl true
-ok 'one that is killed then leaves nothing that prints' sh -c "flock -n ost-killed/events.jsonl true && ! pgrep -f -- '--log ost-killed/[f]lips.jsonl'"
+await flock -n $killed/events.jsonl true
+ok 'one that is killed then leaves nothing that prints' sh -c "flock -n $killed/events.jsonl true && ! pgrep -f -- '--log $killed/[f]lips.jsonl'"
 while ! lit_for lost 360 && kill -0 $lost 2>/dev/null; do sleep 0.1; done
 camera_down
 await grep -q 'open loop from turn' lost.err  # before there is a camera again
