@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
                  {76, "off: device protocol error."}},
                 false,
                 true,
-                {{"devices", device_texts()}}});
+                {cli::ManualList{"devices", device_texts()}}});
   app.option("--port", "PATH", options.ports, "Serial port to list in addition to those of the system.");
   app.flag("--probe", options.probe, "Query the serial ports for stage controllers.");
   cli::add_report(app, options.report);

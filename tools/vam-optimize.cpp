@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
                 {{130, "SIGINT; with --checkpoint the run can be resumed."}, {143, "SIGTERM; likewise."}},
                 false,
                 true,
-                {{"methods", method_texts()}}});
+                {cli::ManualList{"methods", method_texts()}}});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] {

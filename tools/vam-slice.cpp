@@ -199,7 +199,7 @@ int main(int argc, char** argv) {
                 {},
                 false,
                 true,
-                {{"shapes", solid::describe_shapes()}}});
+                {cli::ManualList{"shapes", solid::describe_shapes()}}});
   Options options;
   declare(app, options);
   return app.run(argc, argv, [&] { run(app, options); });

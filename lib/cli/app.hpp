@@ -17,6 +17,12 @@ struct ExitStatus {
   std::string meaning;
 };
 
+/// A block of a manual page that is printed from a table: paragraphs of plain text.
+struct ManualList {
+  std::string name;  // of its marks
+  std::vector<std::string> paragraphs;
+};
+
 /// What a tool declares for its manual page beside its options.
 struct Manual {
   std::string name;                       // vam-slice
@@ -25,8 +31,7 @@ struct Manual {
   std::vector<ExitStatus> statuses = {};  // beside those of all tools; device_statuses
   bool locks = false;                     // looks up who reserves devices, if it drives none
   bool reads = true;                      // files; else it never ends with 65 or 66
-  /// Further blocks, from tables: name and paragraphs of plain text.
-  std::vector<std::pair<std::string, std::vector<std::string>>> lists = {};
+  std::vector<ManualList> lists = {};
 };
 
 /// For the manuals of tools that drive devices.
