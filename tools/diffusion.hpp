@@ -15,7 +15,7 @@ inline void warn_of_diffusion(const model::Resin& resin, double seconds) {
   const double variance_mm2 = model::diffused_mm2(resin, seconds);
   if (!(variance_mm2 > 0)) return;
   [[maybe_unused]] static const bool warned = [&] {
-    warn("resin.diffusion_mm2_s: blurs the dose by what absorbed it and diffuses, " +
+    warn("resin.diffusion_mm2_s: blurs the dose as what absorbed it diffuses, " +
          format_number(std::sqrt(variance_mm2), 2) + " mm (sigma) in " + format_number(seconds, 3) +
          " s; it does not stand for oxygen, which inhibits and needs a model of a resin that reacts");
     return true;

@@ -97,7 +97,7 @@ std::vector<Sample> all_samples(const scratch::Folder& folder) {
       {"VDB of a pipe", scratch::slurp(folder / "pipe.vdb"), volumes},
       {"TOML", printer_toml(model::Printer()), [](const std::string& path) { (void)load_printer(path, {}); }},
       {"CSV", "grey,intensity\n0,0.1\n128,1.5\n255,4\n", [](const std::string& path) { (void)read_response(path, 8); }},
-      {"JSON", "{\"schema\": \"vam-resin/1\", \"level\": 0.5, \"circle_px\": {\"x\": [1, 2, {\"y\": 3}]}}",
+      {"JSON", "{\"schema\": \"vam-resin/1\", \"isovalue\": 0.5, \"circle_px\": {\"x\": [1, 2, {\"y\": 3}]}}",
        [](const std::string& path) { (void)gelation_isovalue(path); }},
   };
 }

@@ -67,12 +67,6 @@ TEST_CASE("settings that are absent keep their defaults; whole numbers serve as 
   CHECK(printer.projector.columns == 1024);
 }
 
-TEST_CASE("camera.latency_ms is read as camera.lag_ms, from a file and from --set") {
-  CHECK(parse_printer("[camera]\nlatency_ms = 7\n", "p.toml").camera.lag_ms == 7);
-  CHECK(load_printer("", {"camera.latency_ms=4"}).camera.lag_ms == 4);
-  CHECK(printer_settings(parse_printer("[camera]\nlag_ms = 7\n", "p.toml")) == "camera.lag_ms=7.0");
-}
-
 TEST_CASE("the axis is in the middle of the image as set, unless it is given") {
   const auto axis = [](const vam::model::Printer& printer) {
     return std::pair{printer.projector.axis_column, printer.projector.axis_row};
