@@ -107,7 +107,7 @@ void check_right(const Outcome& outcome) {
   if (outcome.ms) CHECK(std::abs(outcome.ms->value - outcome.truth_ms) < 1);
 }
 
-bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+bool has(const std::string& text, const char* words) { return text.find(words) != std::string::npos; }
 
 }  // namespace
 
