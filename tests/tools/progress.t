@@ -3,7 +3,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 seen() { python3 "$VAM_SOURCE/tests/tools/progress.py" "$@"; }
-work='vam-optimize --iterations 7 --angles 60 part.vdb'  # of some seconds
+work='vam-optimize --iterations 12 --angles 150 part.vdb'  # of some seconds
 vam-slice --shape gyroid --voxel 0.2 -o part.vdb
 
 ok 'on a terminal' seen 100 "$work" ; mv .log/out rows
