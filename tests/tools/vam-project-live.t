@@ -18,7 +18,6 @@ fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
 fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
 fails 64 '47 % is above the limit of 40 %' vam-project part.exr -o null: --light 'sim:?current_percent=47' --log why
 fails 64 'above the limit of 50' vam-project part.exr -o null: --light 'sim:?current_percent=60&max_current_percent=80' --set projector.max_led_current_percent=50
-# Currents in steps of the controller, by which 0 was full current on a LightCrafter 4500, are refused.
 ok 'no current is requested' vam-project --pattern grey -o null: --hold 0.05 --light 'sim:?current_percent=0&log=none' --log engine
 is 'and none is set' "$(grep '"bits":4' none | grep -o '"current_percent":[^]]*]')" '"current_percent":[0.0,0.0,0.0]'
 is 'as logged' "$(grep '"event":"light"' engine | grep -o '"led_current_percent":[^]]*]')" '"led_current_percent":[0.0,0.0,0.0]'

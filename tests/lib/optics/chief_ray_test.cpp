@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "lib/optics/view_bench.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_tracer.hpp"
 
@@ -18,15 +19,6 @@ namespace {
 
 // [RAY21]'s bench in projector pixels: one shell of n = 1.53, R = 212.37, D = 1.8 * 1024.
 View ray21() { return {1843.2, 1.0, 0.0, {{212.37, 1.53}}}; }
-
-vam::oracle::Bench bench_of(const View& view) {
-  vam::oracle::Bench bench;
-  if (view.lens_mm) bench.lens_distance = *view.lens_mm;
-  bench.bath = view.bath_index;
-  bench.window = view.window_mm;
-  for (const Shell& shell : view.shells) bench.cylinders.push_back({shell.radius_mm, shell.index});
-  return bench;
-}
 
 View random_view(std::mt19937& random) {
   const auto between = [&](double low, double high) {

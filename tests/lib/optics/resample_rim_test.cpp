@@ -13,6 +13,7 @@
 
 #include "base/image.hpp"
 #include "base/index.hpp"
+#include "lib/optics/view_bench.hpp"
 #include "optics/chief_ray.hpp"
 #include "optics/resample.hpp"
 #include "optics/writable_radius.hpp"
@@ -131,15 +132,6 @@ Image apply(const ResamplePlan& plan, const Image& in) {
   std::vector<Image> out(1);
   resample(plan, {&in, 1}, out);
   return out.front();
-}
-
-vam::oracle::Bench bench_of(const View& view) {
-  vam::oracle::Bench bench;
-  if (view.lens_mm) bench.lens_distance = *view.lens_mm;
-  bench.bath = view.bath_index;
-  bench.window = view.window_mm;
-  for (const Shell& shell : view.shells) bench.cylinders.push_back({shell.radius_mm, shell.index});
-  return bench;
 }
 
 struct Traced {
