@@ -88,7 +88,7 @@ is 'prints that begin in one second have a folder each' "$(cat print-*/summary.j
 rm -r print-*
 
 screen_up 64 48
-turntable() { stage_up --acceleration 1000 --max-speed 360 --at -13 "$@"; }
+turntable() { stage_up --acceleration 1000 --max-speed 360 --start-angle -13 "$@"; }
 print() { env LD_PRELOAD="$shim" vam-print frames.exr --display sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated --home "$@"; }
 
 # A busy machine ends a print by design (a late reply, no progress); it is then repeated, at most twice.
