@@ -13,9 +13,9 @@ namespace vam::tomo {
 
 namespace {
 
-constexpr int tile = 64;    // pixels, both ways
-constexpr int window = 97;  // bins that a tile can see: 63 * sqrt(2) + 1.42 + 1, the taps, rounding up
-constexpr int taps = 3;
+constexpr int tile_edge = 64;    // pixels, both ways
+constexpr int window_bins = 97;  // bins that a tile can see: 63 * sqrt(2) + 1.42 + 1, the taps, rounding up
+constexpr int gather_taps = 3;
 
 /// e^{-alpha (x - axis) sin} and e^{alpha (y - axis) cos} as [block of eight angles][pixel][angle].
 struct Factors {
@@ -49,11 +49,11 @@ class Adjoint {
   }
 
   void run() const {
-    const int across = (geometry_.nx + tile - 1) / tile;
-    const int down = (geometry_.ny + tile - 1) / tile;
+    const int across = (geometry_.nx + tile_edge - 1) / tile_edge;
+    const int down = (geometry_.ny + tile_edge - 1) / tile_edge;
     parallel_for(count_of(groups_) * across * down, [&](int item) {
       const SlabGroup& group = groups_[item / (across * down)];
-      work_out_tile(group, item % across * tile, item / across % down * tile);
+      work_out_tile(group, item % across * tile_edge, item / across % down * tile_edge);
     });
   }
 
@@ -90,11 +90,11 @@ class Adjoint {
 
   void work_out_tile(const SlabGroup& group, int x0, int y0) const {
     const std::ptrdiff_t pitch = group.pitch();
-    float* bins = scratch(0, kernel_rows * window * group_lanes);
-    float* pixels = scratch(1, std::size_t{tile} * tile * group_lanes);
-    std::fill_n(pixels, std::ptrdiff_t{tile} * tile * pitch, 0.0F);
-    const int x1 = std::min(x0 + tile, geometry_.nx);
-    const int y1 = std::min(y0 + tile, geometry_.ny);
+    float* bins = scratch(0, kernel_rows * window_bins * group_lanes);
+    float* pixels = scratch(1, std::size_t{tile_edge} * tile_edge * group_lanes);
+    std::fill_n(pixels, std::ptrdiff_t{tile_edge} * tile_edge * pitch, 0.0F);
+    const int x1 = std::min(x0 + tile_edge, geometry_.nx);
+    const int y1 = std::min(y0 + tile_edge, geometry_.ny);
     const int calls = (y1 - y0) * ((x1 - x0 + segment - 1) / segment);
     const auto attenuation = geometry_.alpha_per_px == 0 ? plain : by_output;
 
@@ -107,21 +107,22 @@ class Adjoint {
       Gather job;
       job.footprints = &footprints_[block];
       job.input = bins;
-      job.last = window - taps;
+      job.last = window_bins - gather_taps;
       job.output_step = pitch;
-      for (int e = 0; e < pair_entries; ++e) job.row_offset[e] = e % gather_rows * window * static_cast<int>(pitch);
+      for (int e = 0; e < pair_entries; ++e)
+        job.row_offset[e] = e % gather_rows * window_bins * static_cast<int>(pitch);
       for (int y = y0; y < y1; ++y) {
         for (int x = x0; x < x1; x += segment) {
           place(job, block, now, x, y);
           job.outputs = std::min(segment, x1 - x);
-          float* to = pixels + (std::ptrdiff_t{y - y0} * tile + x - x0) * pitch;
+          float* to = pixels + (std::ptrdiff_t{y - y0} * tile_edge + x - x0) * pitch;
           for (std::size_t s = 0; s < group.slabs; ++s) job.output[s] = to + s * lanes;
-          kernels_.gather[group.log2()][taps - 3][attenuation](job);
+          kernels_.gather[group.log2()][gather_taps - 3][attenuation](job);
           ahead.fetch_share();
         }
       }
     }
-    for (int y = y0; y < y1; ++y) put(group, pixels + std::ptrdiff_t{y - y0} * tile * pitch, x0, x1, y);
+    for (int y = y0; y < y1; ++y) put(group, pixels + std::ptrdiff_t{y - y0} * tile_edge * pitch, x0, x1, y);
   }
 
   /// Where the bins of a block's angles lie that the tile sees, opposite angles to be added when the plan is folded.
@@ -135,12 +136,12 @@ class Adjoint {
       const std::size_t a = block * kernel_rows + r;
       if (a >= plan_.rays.size()) continue;
       const Ray& ray = plan_.rays[a];
-      const double left = std::min(0.0, ray.cosine * (tile - 1)) + std::min(0.0, ray.sine * (tile - 1));
+      const double left = std::min(0.0, ray.cosine * (tile_edge - 1)) + std::min(0.0, ray.sine * (tile_edge - 1));
       const int origin = floor_int(x0 * ray.cosine + y0 * ray.sine + ray.offset + left) - 2;
-      const int first = std::clamp(-origin, 0, window);
+      const int first = std::clamp(-origin, 0, window_bins);
       stretch.origin[r] = origin;
       stretch.skip[r] = first;
-      job.count = std::clamp(geometry_.columns - origin, first, window) - first;
+      job.count = std::clamp(geometry_.columns - origin, first, window_bins) - first;
       if (job.count == 0) continue;
       const int angle = static_cast<int>(a);
       for (std::size_t s = 0; s < group.slabs; ++s) {
@@ -159,10 +160,10 @@ class Adjoint {
       const std::ptrdiff_t first = stretch.skip[r];
       const std::ptrdiff_t last = first + job.count;
       std::fill_n(bins, first * pitch, 0.0F);
-      std::fill_n(bins + last * pitch, (window - last) * pitch, 0.0F);
+      std::fill_n(bins + last * pitch, (window_bins - last) * pitch, 0.0F);
       job.to = bins + first * pitch;
       if (job.count > 0) kernels_.interleave(job);
-      bins += window * pitch;
+      bins += window_bins * pitch;
     }
   }
 

@@ -14,7 +14,7 @@ namespace vam::verdict {
 
 namespace {
 
-constexpr std::uint8_t print = printed::part | printed::cured;
+constexpr std::uint8_t in_print = printed::part | printed::cured;
 
 constexpr int around = 27;  // a voxel and its neighbours, in three rows of three slices
 
@@ -50,9 +50,9 @@ class Voxels {
   Voxels(Torn what, int width, int height, const std::uint8_t* const* slices) {
     const bool gap = what == Torn::gap;
     const auto is_lost = [gap](std::uint8_t voxel) {
-      return gap ? (voxel & (printed::edge | printed::cured)) == printed::cured : (voxel & print) == printed::part;
+      return gap ? (voxel & (printed::edge | printed::cured)) == printed::cured : (voxel & in_print) == printed::part;
     };
-    const auto is_left = [gap](std::uint8_t voxel) { return (voxel & print) == (gap ? 0 : print); };
+    const auto is_left = [gap](std::uint8_t voxel) { return (voxel & in_print) == (gap ? 0 : in_print); };
     for (int k = 0; k < 3; ++k) {
       const std::uint8_t* slice = slices[k];
       if (slice == nullptr) {

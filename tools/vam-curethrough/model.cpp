@@ -24,7 +24,7 @@ namespace vam::curethrough {
 
 namespace {
 
-constexpr int block = resin::StackDose::block_slices;
+constexpr int slices_a_block = resin::StackDose::block_slices;
 
 bool is_volume(const std::string& path) { return path == "-" || io::file_type(path) == io::FileType::volume; }
 
@@ -182,8 +182,8 @@ void read_twice(const Inputs& in, Judge& judge) {
     dose.add(slice);
   }
   dose.turn();
-  for (int n = 0; n < in.slices.count; n += block) {
-    std::vector<Image> light(static_cast<std::size_t>(std::min(block, in.slices.count - n)));
+  for (int n = 0; n < in.slices.count; n += slices_a_block) {
+    std::vector<Image> light(static_cast<std::size_t>(std::min(slices_a_block, in.slices.count - n)));
     for (std::size_t i = 0; i < light.size(); ++i, progress.tick()) {
       in.slices.read(n + static_cast<int>(i), light[i]);
     }

@@ -13,10 +13,10 @@ namespace vam::status_tool {
 
 namespace {
 
-constexpr int most = 300;    // columns, slices and stage angles that are kept
+constexpr int kept = 300;    // columns, slices and stage angles that are kept
 constexpr int across = 160;  // voxels of the dose over the resin
 
-int stride(int count) { return (count + most - 1) / most; }
+int stride(int count) { return (count + kept - 1) / kept; }
 
 }  // namespace
 
@@ -69,12 +69,12 @@ Image LightView::projection(double angle_deg) const {
   const int row = row_of(angle_deg) / every_row_;
   const auto slices = count_of(thinned_);
   const double half_mm = printer_.vial.radius_mm;
-  const double pixel_mm = 2 * half_mm / most;
-  Image image(most, std::max(1, round_int((high_mm() - low_mm()) / pixel_mm)));
+  const double pixel_mm = 2 * half_mm / kept;
+  Image image(kept, std::max(1, round_int((high_mm() - low_mm()) / pixel_mm)));
   for (int y = 0; y < image.height; ++y) {
     const int slice = std::min(slices - 1, (image.height - 1 - y) * slices / image.height);
     const Image& rows = thinned_[slice];
-    for (int x = 0; x < most; ++x) {
+    for (int x = 0; x < kept; ++x) {
       const double from_axis_mm = (x + 0.5) * pixel_mm - half_mm;
       const auto column = floor_int((from_axis_mm / info_.pixel_mm + 0.5 * info_.width) / every_column_);
       if (column >= 0 && column < rows.width && peak_ > 0) image(x, y) = rows(column, row) / peak_;

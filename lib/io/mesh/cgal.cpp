@@ -81,9 +81,9 @@ bool check_ply_header(const std::string& bytes) {
 void require_ply_end(std::istream& stream, bool text, std::size_t faces, std::size_t size) {
   stream.exceptions(std::ios::goodbit);
   const std::string rest(std::istreambuf_iterator<char>(stream), {});
-  constexpr std::size_t triangle_bytes = 13;  // of bytes: the smallest face
+  constexpr std::size_t face_bytes = 13;  // of bytes: the smallest face
   if (!text) {
-    require_all_read(faces, faces + rest.size() / triangle_bytes);
+    require_all_read(faces, faces + rest.size() / face_bytes);
     if (rest.size() <= 2 && rest.find_first_not_of("\r\n") == rest.npos) return;  // the end of a line
     throw MeshProblem{"trailing data after the last face, from byte " + std::to_string(size - rest.size()) +
                       " on; save it again"};

@@ -15,7 +15,7 @@ namespace vam::light {
 
 namespace {
 
-constexpr int directions = 360;
+constexpr int fitted_directions = 360;
 constexpr double rows_per_reach = 24;
 
 using NodeValues = std::array<float, DisplacedVial::floats>;
@@ -38,11 +38,11 @@ DisplacedVial::DisplacedVial(const RayTable::Scope& scope, const RayTable& table
   const double inside = table.inner.pitch_mm * (table.inner.rows - 1);
   rows_ = std::max(2, ceil_int(inside / table.reach_mm * rows_per_reach) + 1);
   pitch_mm_ = inside / (rows_ - 1);
-  points_.resize(static_cast<std::size_t>(rows_) * (directions + 1));
+  points_.resize(static_cast<std::size_t>(rows_) * (fitted_directions + 1));
   parallel_for(rows_, [&](int row) {
-    Change* to = points_.data() + std::ptrdiff_t{row} * (directions + 1);
-    for (int i = 0; i < directions; ++i) to[i] = fit(scope, table, row, i);
-    to[directions] = to[0];
+    Change* to = points_.data() + std::ptrdiff_t{row} * (fitted_directions + 1);
+    for (int i = 0; i < fitted_directions; ++i) to[i] = fit(scope, table, row, i);
+    to[fitted_directions] = to[0];
   });
 }
 
@@ -53,7 +53,7 @@ DisplacedVial::Change DisplacedVial::fit(const RayTable::Scope& scope, const Ray
   constexpr int places = 5;
   const ChiefRayDose light{scope, table.edge_mm, table.reach_mm};
   const double r = row * pitch_mm_;
-  const double turn = static_cast<double>(direction) / directions;
+  const double turn = static_cast<double>(direction) / fitted_directions;
   const double x = r * std::cos(scope.sense * turn * turn_rad);
   const double y = r * std::sin(scope.sense * turn * turn_rad);
   const FoundRay begin = begin_at(table, r, turn);
@@ -99,11 +99,11 @@ void DisplacedVial::add(float r_mm, float turn, const Powers& powers, std::array
   const float place = std::min(r_mm / static_cast<float>(pitch_mm_), static_cast<float>(rows_ - 1));
   const int row = std::min(static_cast<int>(place), rows_ - 2);
   const float across = place - static_cast<float>(row);
-  const float along = turn * directions;
-  const int direction = std::min(static_cast<int>(along), directions - 1);
+  const float along = turn * fitted_directions;
+  const int direction = std::min(static_cast<int>(along), fitted_directions - 1);
   const float part = along - static_cast<float>(direction);
-  const Change* low = points_.data() + std::ptrdiff_t{row} * (directions + 1) + direction;
-  const Change* high = low + directions + 1;
+  const Change* low = points_.data() + std::ptrdiff_t{row} * (fitted_directions + 1) + direction;
+  const Change* high = low + fitted_directions + 1;
   for (std::size_t p = 0; p < powers.size(); ++p) {
     const float a = powers[p] * (1 - across) * (1 - part);
     const float b = powers[p] * (1 - across) * part;

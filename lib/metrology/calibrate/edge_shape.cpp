@@ -12,12 +12,12 @@ namespace vam::metrology {
 namespace {
 
 constexpr std::size_t cells = 900;
-constexpr double low = 1 - 2 * edge_window;
+constexpr double lowest_edge = 1 - 2 * edge_window;
 
 // Denser towards the edge.
 double node(std::size_t i) {
   const double r = 1 - static_cast<double>(i) / static_cast<double>(cells);
-  return 1 - r * r * (1 - low);
+  return 1 - r * r * (1 - lowest_edge);
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ EdgeShape::EdgeShape(const model::Printer& printer, const SightLines& side, doub
 
 EdgeTerms EdgeShape::integral(double q) const {
   if (q >= 1) return integral_.back();
-  const double place = q <= low ? 0 : (1 - std::sqrt((1 - q) / (1 - low))) * static_cast<double>(cells);
+  const double place = q <= lowest_edge ? 0 : (1 - std::sqrt((1 - q) / (1 - lowest_edge))) * static_cast<double>(cells);
   const auto cell = std::min(static_cast<std::size_t>(place), cells - 1);
   const double part = (q - node(cell)) / (node(cell + 1) - node(cell));  // linear in q between the nodes
   EdgeTerms out{};

@@ -29,7 +29,7 @@ constexpr double bluntest_edge_cosine = -0.17;  // of less than 80 degrees
 constexpr double least_gap = 1 / 64.0;          // voxels: shells that are nearer touch
 constexpr double least_solid = 16;              // voxels: smaller ones may not count in a print
 constexpr double least_area = 2;                // faces of a voxel: less is a tip
-constexpr double own = 1e-6;                    // of the reach: nearer is the face that the ray leaves from
+constexpr double own_face = 1e-6;               // of the reach: nearer is the face that the ray leaves from
 
 /// The way from a face straight to the one on the other side.
 struct Crossing {
@@ -263,7 +263,7 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   const SeparateSolids solids(surface, repaired, all.samples, touching, least_solid * face * voxel_mm);
   const double lost = model::lost_voxels * voxel_mm;
   const double reach = model::free_voxels * voxel_mm;
-  look_across(surface, solids, all.samples, -1, own * lost, lost, all.inwards);
+  look_across(surface, solids, all.samples, -1, own_face * lost, lost, all.inwards);
   look_across(surface, solids, all.samples, 1, touching, reach, all.outwards);
   leave_outer(all, surface, voxel_mm);
   const Ways gaps = without_lone(all.outwards, all, voxel_mm);

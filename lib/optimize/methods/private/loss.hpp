@@ -10,7 +10,7 @@
 namespace vam::optimize {
 
 /// The fraction of its band that a grey voxel is constrained to: a penalty leaves most misses just outside its bounds.
-inline constexpr float aim = 0.8F;
+inline constexpr float aimed_share = 0.8F;
 
 /// The doses that a voxel may have: void at most window.low, part at least window.high, a grey voxel those whose
 /// response is well within its tolerance of the target.
@@ -19,7 +19,7 @@ inline DoseRange bounds(const Problem& problem, const DoseWindow& window, std::s
   const Label label = problem.labels[s][i];
   if (!is_constrained(label)) return {-without_limit, without_limit};
   if (problem.demands.grey) {
-    return problem.demands.curve.doses(problem.target[s].values[i], aim * problem.tolerance_at(s, i));
+    return problem.demands.curve.doses(problem.target[s].values[i], aimed_share * problem.tolerance_at(s, i));
   }
   if (label == Label::void_) return {-without_limit, static_cast<float>(window.low)};
   return {static_cast<float>(window.high), without_limit};
