@@ -3,6 +3,7 @@
 // of vam-dose's DOSE; RAYS x RAYS rays a pixel. Prints as JSON how far DOSE is from it: rms, the root mean square
 // difference over the root mean square dose within 0.95 of the radius that all angles light, and mean, relative; and
 // the share of the power that was absorbed. For tests/bench/climbing.py.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "oracle/skew_dose.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>

@@ -10,6 +10,8 @@
 // `order`: 0 for light, 1 for motion; lower first.
 #pragma once
 
+#include <string>
+
 #include "base/json_fwd.hpp"
 
 namespace vam::device {

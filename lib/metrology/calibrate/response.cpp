@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/calibrate/response.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/target/schedule.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <map>

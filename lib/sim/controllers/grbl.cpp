@@ -3,6 +3,7 @@
 // 1.1's wiki (github.com/gnea/grbl/wiki), "limits.c" is its own source.
 #include "sim/controllers/grbl.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <utility>

@@ -4,6 +4,7 @@
 // (github.com/pololu/pololu-tic-software, include/tic_protocol.h).
 #include "sim/controllers/tic.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "device/camera/v4l2_driver.hpp"
+#include "device/os/clock.hpp"
 
 struct V4l2Script {
   std::vector<std::uint32_t> formats{V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_GREY};

@@ -2,6 +2,7 @@
 // The stated uncertainty of a reconstruction against repeated noisy views of an independent renderer.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>

@@ -8,6 +8,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "lib/meshes.hpp"
