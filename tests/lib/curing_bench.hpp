@@ -4,7 +4,7 @@
 
 #include "model/printer.hpp"
 
-namespace test {
+namespace vam::test {
 
 /// Rows, intensity, absorption and critical dose are the test's own.
 inline vam::model::Printer curing_printer() {
@@ -20,4 +20,4 @@ inline vam::model::Printer curing_printer() {
   return printer;
 }
 
-}  // namespace test
+}  // namespace vam::test

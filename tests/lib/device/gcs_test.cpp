@@ -8,7 +8,7 @@
 #include "device/stage/round_trips.hpp"
 #include "device/stage/spin.hpp"
 #include "fault_of.hpp"
-#include "virtual_stage.hpp"
+#include "lib/device/virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -11,7 +11,7 @@
 #include "device/projector/player.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
-#include "virtual_stage.hpp"
+#include "lib/device/virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -9,7 +9,7 @@
 
 #include "device/open/display.hpp"
 #include "device/projector/player.hpp"
-#include "steady_angle.hpp"
+#include "lib/device/steady_angle.hpp"
 
 using namespace vam;
 using namespace vam::device;

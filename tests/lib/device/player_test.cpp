@@ -13,8 +13,8 @@
 #include "device/open/display.hpp"
 #include "device/projector/light_engine.hpp"
 #include "fault_of.hpp"
+#include "lib/device/steady_angle.hpp"
 #include "sim/controllers/dlp.hpp"
-#include "steady_angle.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -12,8 +12,8 @@
 #include "base/json.hpp"
 #include "device/projector/relayed_lamp.hpp"
 #include "fault_of.hpp"
+#include "lib/device/virtual_stage.hpp"
 #include "sim/controllers/relay.hpp"
-#include "virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;

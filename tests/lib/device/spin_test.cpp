@@ -11,7 +11,7 @@
 #include "base/json.hpp"
 #include "device/stage/angle_fit.hpp"
 #include "fault_of.hpp"
-#include "virtual_stage.hpp"
+#include "lib/device/virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;

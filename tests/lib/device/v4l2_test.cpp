@@ -16,8 +16,8 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "device/camera/camera_backends.hpp"
-#include "fake_v4l2.hpp"
 #include "fault_of.hpp"
+#include "lib/device/fake_v4l2.hpp"
 #include "lib/io/scratch.hpp"
 
 using namespace vam;

@@ -11,7 +11,7 @@
 #include "device/stage/spin.hpp"
 #include "device/stage/zaber_stage.hpp"
 #include "fault_of.hpp"
-#include "virtual_stage.hpp"
+#include "lib/device/virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -13,7 +13,7 @@
 #include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
-#include "scratch.hpp"
+#include "lib/io/scratch.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fault_of.hpp"
-#include "scratch.hpp"
+#include "lib/io/scratch.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -11,7 +11,7 @@
 #include "fault_of.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/pose_file.hpp"
-#include "scratch.hpp"
+#include "lib/io/scratch.hpp"
 
 using namespace vam;
 using namespace vam::io;

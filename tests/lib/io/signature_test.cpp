@@ -5,12 +5,11 @@
 
 #include <string>
 
-namespace vam {
-
-namespace {
-
+using namespace vam;
 using io::foreign_format;
 using io::foreign_remedy;
+
+namespace {
 
 bool names(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -48,5 +47,3 @@ TEST_CASE("vam-convert is the remedy for what it reads") {
     CHECK(names(foreign_remedy(head), "array, which vam-convert reads"));
   }
 }
-
-}  // namespace vam

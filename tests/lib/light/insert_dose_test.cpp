@@ -110,7 +110,7 @@ vam::oracle::WalkedDose walk(const model::Printer& bench, const std::vector<floa
 
 TEST_CASE("around an insert, convex or concave, parallel light agrees with voxel-by-voxel ray traversal") {
   for (const Form& form : {convex, concave}) {
-    const std::vector<float> insert = ::oracle::draw(size, form);
+    const std::vector<float> insert = vam::oracle::draw(size, form);
     const model::Printer bench = printer(0.05);
     const model::StackInfo info = stack(model::Space::virtual_, 120, voxel);
     vam::oracle::WalkedDose slow = walk(printer(0.05), insert);
@@ -126,7 +126,7 @@ TEST_CASE("around an insert, convex or concave, parallel light agrees with voxel
 
 TEST_CASE("around an insert, convex or concave, the dose of chief rays agrees with voxel-by-voxel ray traversal") {
   for (const Form& form : {convex, concave}) {
-    const std::vector<float> insert = ::oracle::draw(size, form);
+    const std::vector<float> insert = vam::oracle::draw(size, form);
     const model::Printer bench = printer(0.05);
     const model::StackInfo info = stack(model::Space::projector, 400, 0.065);
     vam::oracle::WalkedDose slow = walk(bench, insert);
@@ -152,7 +152,7 @@ TEST_CASE("around an insert, convex or concave, the dose of chief rays agrees wi
 }
 
 TEST_CASE("a closed ring leaves its inside dark, an empty insert casts no shadow") {
-  const std::vector<float> closed = ::oracle::draw(size, ring);
+  const std::vector<float> closed = vam::oracle::draw(size, ring);
   for (const model::Space space : {model::Space::virtual_, model::Space::projector}) {
     const bool parallel = space == model::Space::virtual_;
     const model::StackInfo info = stack(space, parallel ? 120 : 400, parallel ? voxel : 0.065);
@@ -178,7 +178,7 @@ TEST_CASE("every slice has the shadow of its own insert, an insert of other voxe
   const Simulation simulation(printer(0), {}, info, grid, Climb::flat);
   std::vector<Image> inserts;
   for (int s = 0; s < 20; ++s) {  // more than are followed together, some alike
-    inserts.push_back(image_of(::oracle::draw(size, [s](double x, double y) {
+    inserts.push_back(image_of(vam::oracle::draw(size, [s](double x, double y) {
       return std::hypot(x - s / 2, y) < 5;  // whole pixels
     })));
   }

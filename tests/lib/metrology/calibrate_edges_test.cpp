@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "coverage.hpp"
 #include "fault_of.hpp"
+#include "lib/metrology/coverage.hpp"
 #include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/private/edges.hpp"
 #include "metrology/calibrate/vial_place.hpp"

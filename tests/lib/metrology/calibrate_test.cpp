@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "coverage.hpp"
 #include "fault_of.hpp"
+#include "lib/metrology/coverage.hpp"
 #include "metrology/calibrate/axis.hpp"
 #include "metrology/calibrate/beam.hpp"
 #include "metrology/calibrate/flat.hpp"

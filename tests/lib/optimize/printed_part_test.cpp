@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "printed_part.hpp"
+#include "lib/optimize/printed_part.hpp"
 
 #include <doctest/doctest.h>
 
