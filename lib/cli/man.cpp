@@ -281,7 +281,7 @@ std::string mark(const std::string& name) { return ".\\\" <" + name + ">\n"; }
 
 }  // namespace
 
-std::string manual_page(const Declaration& tool) {
+std::string printed_manual(const Declaration& tool) {
   std::string page = tool.manual.page;
   for (const auto& [name, lines] : blocks_of(tool)) {
     const std::string begin = mark(name);

@@ -212,7 +212,7 @@ bool App::print_about(int argc, char** argv) const {
     } else if (word == "--version") {
       std::printf("%s %s\n", state_->tool.manual.name.c_str(), VAM_VERSION);
     } else if (word == "--man") {
-      std::fputs(manual_page(whole()).c_str(), stdout);
+      std::fputs(printed_manual(whole()).c_str(), stdout);
     } else if (word == "--completion") {
       std::fputs(completion(whole(), i + 1 < argc ? argv[i + 1] : "").c_str(), stdout);
     } else {

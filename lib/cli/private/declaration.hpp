@@ -86,7 +86,7 @@ struct Declaration {
 [[nodiscard]] std::string help_text(const Declaration& tool, bool all);
 /// mdoc(7): the tool's page, with what it declares between the marks `.\" <NAME>` and `.\" </NAME>`: name, synopsis,
 /// options, environment, files, status, and its own lists.
-[[nodiscard]] std::string manual_page(const Declaration& tool);
+[[nodiscard]] std::string printed_manual(const Declaration& tool);
 [[nodiscard]] std::string completion(const Declaration& tool, const std::string& shell);
 
 /// The exit statuses that the tool's manual lists: those of all tools, 1 with --require, and the tool's own.

@@ -232,18 +232,18 @@ TEST_CASE("an operand without a default, and any before it, is shown as required
 TEST_CASE("the manual lists the variables and statuses of what the tool has") {
   Declaration tool;
   tool.manual = {"vam-demo", "shows"};
-  const std::string bare = manual_page(tool);
+  const std::string bare = printed_manual(tool);
   CHECK(bare.find("VAM_PRINTER") == std::string::npos);
   CHECK(bare.find(".It 1\n") == std::string::npos);
   CHECK(bare.find(".It 76\n") == std::string::npos);
   CHECK(bare.find("VAM_LOCK_DIR") == std::string::npos);
   tool.manual.locks = true;
-  CHECK(manual_page(tool).find("VAM_LOCK_DIR") != std::string::npos);
+  CHECK(printed_manual(tool).find("VAM_LOCK_DIR") != std::string::npos);
   tool.manual.locks = false;
   tool.manual.statuses = device_statuses;
   tool.groups = {
       {"Options", {{"--printer", "FILE", "Settings.", "", "", {}}, {"--require", "C", "Limits.", "", "", {}}}}};
-  const std::string page = manual_page(tool);
+  const std::string page = printed_manual(tool);
   CHECK(page.find("VAM_PRINTER") != std::string::npos);
   CHECK(page.find("VAM_LOCK_DIR") != std::string::npos);
   CHECK(page.find(".It 1\n") != std::string::npos);
@@ -341,7 +341,7 @@ TEST_CASE("a page keeps its text, and has between its marks what the tool declar
   tool.manual.page =
       ".\\\" <name>\nof before\n.\\\" </name>\n.Sh DESCRIPTION\nShows.\n.\\\" <kinds>\n.\\\" </kinds>\nMore.\n";
   tool.manual.lists = {{"kinds", {"One.", "Two."}}};
-  CHECK(manual_page(tool) ==
+  CHECK(printed_manual(tool) ==
         ".\\\" <name>\n.Dt VAM-DEMO 1\n.Os\n.Sh NAME\n.Nm vam-demo\n.Nd shows\n.\\\" </name>\n.Sh DESCRIPTION\nShows.\n"
         ".\\\" <kinds>\nOne.\n.Pp\nTwo.\n.\\\" </kinds>\nMore.\n");
 }
@@ -350,7 +350,7 @@ TEST_CASE("the manual page escapes the control characters of roff") {
   Declaration tool;
   tool.manual = {"vam-demo", "shows"};
   tool.manual.lists = {{"kinds", {".starts with a dot and a \\ and 5 µm. Next sentence."}}};
-  const std::string page = manual_page(tool);
+  const std::string page = printed_manual(tool);
   CHECK(page.find("\\&.starts") != std::string::npos);
   CHECK(page.find("\\e") != std::string::npos);
   CHECK(page.find("\\[u00B5]m.\nNext sentence.") != std::string::npos);
