@@ -48,15 +48,15 @@ std::string place(const std::optional<std::array<double, 3>>& at_mm) {
 }
 
 std::vector<std::string> of_pieces(const PrintPieces& pieces) {
-  const std::string in_print = "the print is in " + in_pieces(pieces.print);
+  const std::string pieces_found = "the print is in " + in_pieces(pieces.print);
   if (pieces.is_in_other_pieces())
-    return {in_print + ", the part in " + std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part)};
+    return {pieces_found + ", the part in " + std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part)};
   if (!pieces.knows_pieces()) {
-    return {in_print + ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) +
+    return {pieces_found + ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) +
             " or " + std::to_string(pieces.part_at_half)};
   }
   if (!pieces.may_be_in_other_pieces()) return {};
-  return {in_print + ", but with up to 2 % less or more dose in " + std::to_string(pieces.print_least()) + " to " +
+  return {pieces_found + ", but with up to 2 % less or more dose in " + std::to_string(pieces.print_least()) + " to " +
           std::to_string(pieces.print_most())};
 }
 
