@@ -18,7 +18,7 @@
 #include "io/settings/resin_record.hpp"
 #include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
-#include "metrology/ost/sensitivity.hpp"
+#include "metrology/cure/sensitivity.hpp"
 
 namespace {
 

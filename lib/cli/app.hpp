@@ -25,9 +25,9 @@ struct ManualList {
 
 /// What a tool declares for its manual page beside its options.
 struct Manual {
-  std::string name;                       // vam-slice
-  std::string summary;                    // one line, lower case, no full stop
-  std::string page = {};                  // man/vam-slice.1, whose blocks App prints [printed_manual]; empty: only these
+  std::string name;       // vam-slice
+  std::string summary;    // one line, lower case, no full stop
+  std::string page = {};  // man/vam-slice.1, whose blocks App prints [printed_manual]; empty: only these
   std::vector<ExitStatus> statuses = {};  // beside those of all tools; device_statuses
   bool locks = false;                     // looks up who reserves devices, if it drives none
   bool reads = true;                      // files; else it never ends with 65 or 66

@@ -10,7 +10,7 @@ namespace vam::plot {
 
 namespace {
 
-constexpr double margin = 14;
+constexpr double figure_margin = 14;
 constexpr double title_room = 34;
 constexpr double caption_room = 24;
 constexpr double gap = 16;  // panel to panel, panel to colour bar
@@ -138,14 +138,15 @@ struct Layout {
 Layout layout_of(const ImageFigure& figure) {
   Layout layout{sheet_of(figure)};
   const Sheet& sheet = layout.sheet;
-  layout.left = std::ceil(margin + y_axis_room({0, 0, sheet.width, sheet.height, figure.x, figure.y}));
-  layout.top = margin + (figure.title.empty() ? 0 : title_room);
+  layout.left = std::ceil(figure_margin + y_axis_room({0, 0, sheet.width, sheet.height, figure.x, figure.y}));
+  layout.top = figure_margin + (figure.title.empty() ? 0 : title_room);
   const auto [bar_top, bar_bottom] = layout.bar();
   const double images = layout.left + sheet.cells_width() + bar_room(figure.scale, bar_bottom.y - bar_top.y);
-  layout.width = std::max({images + margin, Canvas::text_width(figure.title, title_size) + 2 * margin,
-                           layout.left + std::ceil(legend_width(legend_of(figure))) + margin});
+  layout.width = std::max({images + figure_margin, Canvas::text_width(figure.title, title_size) + 2 * figure_margin,
+                           layout.left + std::ceil(legend_width(legend_of(figure))) + figure_margin});
   layout.legend = layout.top + sheet.cells_height() + x_axis_room + 8;
-  layout.height = layout.legend + legend_height(legend_of(figure), layout.width - layout.left - margin) + 0.5 * margin;
+  layout.height = layout.legend + legend_height(legend_of(figure), layout.width - layout.left - figure_margin) +
+                  0.5 * figure_margin;
   return layout;
 }
 
@@ -251,8 +252,8 @@ Canvas draw(const ImageFigure& figure) {
   for (int n = 0; n < count_of(figure.panels); ++n) draw_panel(canvas, figure, layout, n);
   const auto [bar, bar_end] = layout.bar();
   draw_colour_bar(canvas, figure.scale, bar, bar_end.y - bar.y);
-  canvas.text({0.5 * layout.width, margin + 10}, figure.title, title_size, paint::black, Align::middle);
-  draw_legend(canvas, legend_of(figure), {layout.left, layout.legend}, layout.width - layout.left - margin);
+  canvas.text({0.5 * layout.width, figure_margin + 10}, figure.title, title_size, paint::black, Align::middle);
+  draw_legend(canvas, legend_of(figure), {layout.left, layout.legend}, layout.width - layout.left - figure_margin);
   return canvas;
 }
 

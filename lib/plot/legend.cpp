@@ -10,11 +10,11 @@ namespace vam::plot {
 namespace {
 
 constexpr double mark_width = 28;
-constexpr double gap = 8;     // mark to words
-constexpr double space = 24;  // entry to entry
+constexpr double word_gap = 8;  // mark to words
+constexpr double space = 24;    // entry to entry
 
 double width_of(const LegendEntry& entry) {
-  return (entry.mark == Mark::none ? 0 : mark_width + gap) + Canvas::text_width(entry.words, label_size);
+  return (entry.mark == Mark::none ? 0 : mark_width + word_gap) + Canvas::text_width(entry.words, label_size);
 }
 
 /// The upper left corner of each entry, from (0, 0).
@@ -76,7 +76,7 @@ void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries, Spot c
   for (std::size_t n = 0; n < entries.size(); ++n) {
     Spot at{corner.x + places[n].x, corner.y + places[n].y + 0.5 * legend_row};
     draw_mark(canvas, entries[n], at);
-    if (entries[n].mark != Mark::none) at.x += mark_width + gap;
+    if (entries[n].mark != Mark::none) at.x += mark_width + word_gap;
     canvas.text(at, entries[n].words, label_size);
   }
 }

@@ -115,13 +115,13 @@ void draw_markers(Canvas& canvas, const PlotFrame& frame, const std::vector<Mark
 
 constexpr double right_margin = 28;
 constexpr double top_margin = 24;
-constexpr double title_room = 24;
+constexpr double plot_title_room = 24;
 
 }  // namespace
 
 PlotFrame frame_of(const Plot& plot) {
   PlotFrame frame{0,
-                  top_margin + (plot.title.empty() ? 0 : title_room),
+                  top_margin + (plot.title.empty() ? 0 : plot_title_room),
                   plot.width - right_margin,
                   plot.height - x_axis_room - 12,
                   fitted(plot.x, plot.series, &Series::x),

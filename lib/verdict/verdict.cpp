@@ -52,8 +52,8 @@ std::vector<std::string> of_pieces(const PrintPieces& pieces) {
   if (pieces.is_in_other_pieces())
     return {pieces_found + ", the part in " + std::to_string(pieces.solids > 0 ? pieces.solids : pieces.part)};
   if (!pieces.knows_pieces()) {
-    return {pieces_found + ", and the voxels are too coarse to tell whether the part is in " + std::to_string(pieces.part) +
-            " or " + std::to_string(pieces.part_at_half)};
+    return {pieces_found + ", and the voxels are too coarse to tell whether the part is in " +
+            std::to_string(pieces.part) + " or " + std::to_string(pieces.part_at_half)};
   }
   if (!pieces.may_be_in_other_pieces()) return {};
   return {pieces_found + ", but with up to 2 % less or more dose in " + std::to_string(pieces.print_least()) + " to " +

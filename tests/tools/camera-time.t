@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # Cameras as their makers document them: as delivered, seen by a client that shares nothing with ours; and the times of
 # their frames, by vam-capture, whether they stamp the start, the middle or the end of a long exposure.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

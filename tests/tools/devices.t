@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK camera COST 110
 # Every device [devices guarantees 4 and 6]: one user at a time, reported with its pid within a second, free again after kill -9;
 # and under cron a silent standard output, with every event a JSON line with UTC and monotonic time.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

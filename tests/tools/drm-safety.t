@@ -1,5 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock RUN_SERIAL ON COST 150
+# trials: 100
 # Page flips [devices guarantee 1]: black within 100 ms of any end, by the log of a simulated graphics card. VAM_TRIALS a
 # cause (2; 100 under the label "long").
 # In memory: a disk that is busy with others would hold up the log.

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# trials: 100
 # Every fault of the disk x every tool that writes: each output is the old file or the new one, whole; the new ones if
 # and only if the status is 0; nothing else is left but after SIGKILL, and the failure is reported in one line. A tenth of the
 # table by default; VAM_TRIALS=100 (ctest --preset long) is the whole of it.

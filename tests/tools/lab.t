@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # scripts/lab: every command of vam-lab(7), in order, on the simulated bench; and what Control-C leaves.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"

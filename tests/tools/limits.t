@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # Limits of the system: threads refused, processes, two standard inputs, a volume in place of a mesh.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS long RESOURCE_LOCK camera COST 110
 # A print with the records of its own instrument, judged by the simulators' logs: the stage's speed ripples by 3 % each 30
 # degrees and its replies are up to 20 ms late, the camera's time stamps are 40 ms late, the light comes 30 ms after its
 # flip. All delays must be measured, and every frame shown at its angle [devices guarantee 3].

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # Poses: vials that wobble, parts that sink, helices; from table and record to light, dose and frames, and every wrong
 # input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,5 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock COST 200
+# trials: 100
 # A print of which a tool and its guardian are killed, or vam-print with one of them [devices §7]: image and LEDs are off, the relay
 # is open and the stage stands within 2 s, and a line says so. A fifth of VAM_TRIALS a cause (5; 100: "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.

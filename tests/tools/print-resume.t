@@ -1,5 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK devices COST 100
+# trials: 100
 # A print of a turn of which the script or a tool is killed at a random moment, and its resumption: together they show
 # every frame as long as a whole print does, to one vertical blank. A fifth of VAM_TRIALS kills (10; 100: "long").
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

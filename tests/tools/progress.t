@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # Where long work stands: one line that fits the terminal, shared by the tools of a pipe; --quiet, -v, --progress.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

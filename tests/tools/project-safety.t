@@ -1,5 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock RUN_SERIAL ON COST 150
+# trials: 100
 # vam-project alone [devices guarantee 1]: a black screen within 100 ms of any end. VAM_TRIALS a cause (2; 100: "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS ci
 # vam-batch --slurm on a real Slurm of one node: a piece is killed in the middle, another one's job is put back into the
 # queue; the projections are complete and the same bytes.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

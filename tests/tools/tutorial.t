@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # Every command of vam-tutorial(7), vam(7) and the tour of README.md, in order, in one shell and an empty folder each. They
 # write .mkv, by vam-project.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

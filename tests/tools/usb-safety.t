@@ -1,5 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock RUN_SERIAL ON COST 150
+# trials: 100
 # USB devices through libusb [devices guarantee 1]: the DLPC350 and DLPC900 light engines, by turns, are dark, and the
 # Tic stage receives the stop command, within 100 ms of any end of the tool. VAM_TRIALS a cause (2; 100 under the label "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.

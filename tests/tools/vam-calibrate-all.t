@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS long RESOURCE_LOCK camera COST 110
 # Calibration on misaligned simulators: stage, screen and a GigE Vision camera beside a glowing vial,
 # all taken live; the records are held against what the simulators were set to.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK devices COST 100
 # vam-capture: series, resumed folders, marks of lost frames, and bad input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sim='sim:?pace=virtual&lit=0.1&speed=90&noise=0.004'

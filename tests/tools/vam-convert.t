@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # vam-convert: arrays, images and videos of other programs in, arrays out; anybody's projections judged.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK camera COST 110
 # vam-devices: every kind of device is found with its device string and with the reason why it cannot be used, in 3 s.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS ci COST 120
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 vam-slice --shape disc-grid --voxel 0.1 -o part.vdb || exit 1

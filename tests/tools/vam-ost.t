@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # vam-ost: views to volume, threshold, live turns and the stop event; every wrong input. The views are a projector's
 # frames read as a camera's (rays run both ways); tests/lib/metrology judges accuracy with traced rays.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

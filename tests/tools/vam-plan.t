@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # vam-plan end to end: parts that fit and that do not, the estimate, and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

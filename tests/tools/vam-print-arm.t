@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock COST 200
 # What vam-print checks before any motion or light, and reports after an incomplete print: on a simulated stage and camera,
 # without a screen.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # vam-print --correct: a print in real time on simulated devices, whose resin absorbs more and whose lamp is weaker than
 # planned, gets new light once it begins to scatter, and ends by it; without a record that fits it goes on until --until.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK devices COST 100
 # vam-project by page flips: the real libdrm on a simulated graphics card, whose log is the judge.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 mkdir -p card/dri

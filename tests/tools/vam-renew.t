@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # vam-renew and vam-correct in a simulated print without a clock: the resin is less sensitive at its upper end, absorbs
 # more and the axis is 0.2 mm beside its place, of which the plan knows nothing.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

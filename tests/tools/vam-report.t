@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # One page from the files of a print: what is on it, that nothing from outside becomes an element, and what a browser
 # makes of it.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

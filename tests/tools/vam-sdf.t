@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: COST 50
 # vam-sdf: meshes and volumes against each other, verdicts, and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 

@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK camera COST 110
 # vam-sim-camera --cure: the frames that a log says were shown, at the angles that another says, cure the resin; the
 # views that vam-capture takes of it show vam-ost what is true.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK camera COST 110
 # vam-sim-camera and vam-capture's aravis: camera, over GigE Vision on loopback; its log is the reference.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 take="vam-capture --device aravis:127.0.0.1 --binning 6 --fps 20"

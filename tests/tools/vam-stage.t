@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK devices COST 100
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 shim=$(vam-sim-stage --shim)
 

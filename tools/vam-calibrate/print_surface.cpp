@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/error.hpp"
 #include "io/stream/input_name.hpp"
-#include "metrology/ost/bodies.hpp"
+#include "metrology/cure/bodies.hpp"
 #include "surface.hpp"
 #include "vam-calibrate/scan.hpp"
 

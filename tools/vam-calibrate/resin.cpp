@@ -5,7 +5,7 @@
 #include "io/image/view_source.hpp"
 #include "io/settings/report.hpp"
 #include "io/vdb/vdb.hpp"
-#include "metrology/ost/threshold.hpp"
+#include "metrology/cure/threshold.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {

@@ -12,7 +12,7 @@
 #include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/vdb/vdb.hpp"
-#include "metrology/ost/curing_curve.hpp"
+#include "metrology/cure/curing_curve.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {

@@ -10,7 +10,7 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/resin_record.hpp"
 #include "io/vdb/vdb.hpp"
-#include "metrology/ost/projection_sheet.hpp"
+#include "metrology/cure/projection_sheet.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/save.hpp"
 #include "solid/voxel/isosurface.hpp"

@@ -6,8 +6,8 @@
 
 #include "base/json.hpp"
 #include "cli/app.hpp"
-#include "metrology/ost/bodies.hpp"
-#include "metrology/ost/cured.hpp"
+#include "metrology/cure/bodies.hpp"
+#include "metrology/cure/cured.hpp"
 #include "metrology/ost/surface_uncertainty.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/app.hpp"
-#include "metrology/ost/bodies.hpp"
+#include "metrology/cure/bodies.hpp"
 #include "model/mesh.hpp"
 
 namespace vam::sdf_tool {

@@ -13,7 +13,7 @@ constexpr int first_readings = 12;                // some of them are held up, a
 constexpr double wanted_s = 0.0002, first_s = 1;  // accuracy aimed at, and how long to try for it
 constexpr int later_readings = 3;
 constexpr double period_s = 1;
-constexpr double patience_s = 0.05;  // until the latched value is there
+constexpr double latch_patience_s = 0.05;  // until the latched value is there
 }  // namespace
 
 AravisClock::AravisClock(_ArvCamera* camera, const std::string& name, Clock& clock)
@@ -62,9 +62,9 @@ std::optional<double> AravisClock::host_s(double device_s, double arrived_s, dou
 void AravisClock::read(int times) {
   read_s_ = clock_.now_s();
   for (int i = 0; i < times; ++i) {
-    const double limit_s = clock_.now_s() + patience_s;
+    const double limit_s = clock_.now_s() + latch_patience_s;
     const auto found = reading(limit_s);
-    if (!found && clock_.now_s() > limit_s + patience_s) return;  // the camera does not answer
+    if (!found && clock_.now_s() > limit_s + latch_patience_s) return;  // the camera does not answer
     if (found) camera_clock_.add(*found);
   }
 }

@@ -23,12 +23,12 @@ struct Known {
   int bits;
 };
 // In the order of preference: a depth that is known shows saturation.
-constexpr std::array formats{Known{V4L2_PIX_FMT_GREY, "GREY", PixelLayout::bytes, 8},
-                             Known{V4L2_PIX_FMT_Y12, "Y12", PixelLayout::words, 12},
-                             Known{V4L2_PIX_FMT_Y10, "Y10", PixelLayout::words, 10},
-                             Known{V4L2_PIX_FMT_Y16, "Y16", PixelLayout::words, 16},
-                             Known{V4L2_PIX_FMT_YUYV, "YUYV", PixelLayout::even_bytes, 8},
-                             Known{V4L2_PIX_FMT_UYVY, "UYVY", PixelLayout::odd_bytes, 8}};
+constexpr std::array pixel_formats{Known{V4L2_PIX_FMT_GREY, "GREY", PixelLayout::bytes, 8},
+                                   Known{V4L2_PIX_FMT_Y12, "Y12", PixelLayout::words, 12},
+                                   Known{V4L2_PIX_FMT_Y10, "Y10", PixelLayout::words, 10},
+                                   Known{V4L2_PIX_FMT_Y16, "Y16", PixelLayout::words, 16},
+                                   Known{V4L2_PIX_FMT_YUYV, "YUYV", PixelLayout::even_bytes, 8},
+                                   Known{V4L2_PIX_FMT_UYVY, "UYVY", PixelLayout::odd_bytes, 8}};
 
 bool is_luma(const Known& format) {
   return format.layout == PixelLayout::even_bytes || format.layout == PixelLayout::odd_bytes;
@@ -64,7 +64,7 @@ Error no_format(const V4l2Node& node, const std::string& wanted, const std::vect
   std::vector<std::string> has;
   std::vector<std::string> known;
   for (const std::uint32_t code : offered) has.push_back(name_of(code));
-  for (const Known& format : formats) known.emplace_back(format.name);
+  for (const Known& format : pixel_formats) known.emplace_back(format.name);
   return {Fault::usage, node.path + ": no pixel format " + (wanted.empty() ? "for grey" : wanted) + "; it has " +
                             (has.empty() ? "none" : join(has, ", ")) + ", supported are " + join(known, ", ") +
                             (wanted.empty() ? "; use another camera" : "")};
@@ -72,10 +72,10 @@ Error no_format(const V4l2Node& node, const std::string& wanted, const std::vect
 
 const Known& chosen_format(const V4l2Node& node, const std::string& wanted) {
   const auto offered = offered_formats(node);
-  const auto* chosen = std::find_if(formats.begin(), formats.end(), [&](const Known& f) {
+  const auto* chosen = std::find_if(pixel_formats.begin(), pixel_formats.end(), [&](const Known& f) {
     return (wanted.empty() || f.name == wanted) && std::find(offered.begin(), offered.end(), f.code) != offered.end();
   });
-  if (chosen == formats.end()) throw no_format(node, wanted, offered);
+  if (chosen == pixel_formats.end()) throw no_format(node, wanted, offered);
   return *chosen;
 }
 

@@ -19,7 +19,7 @@ namespace vam::device {
 
 namespace {
 
-constexpr double timeout_s = 0.2;
+constexpr double grbl_timeout_s = 0.2;
 constexpr double wake_s = 2.0;  // opening the port resets most boards; their greeting takes a second
 constexpr const char* alarm = "alarm state; its position is lost; run `vam-stage home`";
 const std::string jog_cancel = "\x85";
@@ -83,7 +83,7 @@ class GrblStage final : public Stage {
     stop_order_.beat();
     const std::string line = link_.poll_line(0.05);
     if (line.empty()) {
-      if (idle_since_s_ && clock_.now_s() > *idle_since_s_ + timeout_s) {
+      if (idle_since_s_ && clock_.now_s() > *idle_since_s_ + grbl_timeout_s) {
         throw Error{Fault::busy, port_.name() + ": no answer to '$H' although the board is idle"};
       }
       port_.write("?");
@@ -189,7 +189,7 @@ class GrblStage final : public Stage {
     link_.drain();
     send("$I");
     for (;;) {
-      const std::string line = link_.need_line(timeout_s);
+      const std::string line = link_.need_line(grbl_timeout_s);
       if (line == "ok") break;
       if (line.rfind("[VER:", 0) == 0) read_version(line);
       if (line.rfind('[', 0) != 0) {
@@ -209,7 +209,7 @@ class GrblStage final : public Stage {
   void read_settings() {
     send("$$");
     for (;;) {
-      const std::string line = link_.need_line(timeout_s);
+      const std::string line = link_.need_line(grbl_timeout_s);
       if (line == "ok") break;
       const std::size_t equals = line.find('=');
       const auto value =
@@ -243,8 +243,8 @@ class GrblStage final : public Stage {
 
   void order(const std::string& line) {
     send(line);
-    std::string answer = link_.need_line(timeout_s);
-    while (answer.front() == '[') answer = link_.need_line(timeout_s);  // "[MSG:Caution: Unlocked]"
+    std::string answer = link_.need_line(grbl_timeout_s);
+    while (answer.front() == '[') answer = link_.need_line(grbl_timeout_s);  // "[MSG:Caution: Unlocked]"
     require_ok(line, answer);
     stop_order_.beat();
   }
@@ -254,8 +254,8 @@ class GrblStage final : public Stage {
   // "<Jog|MPos:12.000,0.000,0.000|FS:600,0>"
   std::string status() {
     port_.write("?");
-    std::string line = link_.need_line(timeout_s);
-    while (line == "ok") line = link_.need_line(timeout_s);
+    std::string line = link_.need_line(grbl_timeout_s);
+    while (line == "ok") line = link_.need_line(grbl_timeout_s);
     if (line.front() != '<' || line.back() != '>') throw link_.malformed("?", line);
     stop_order_.beat();
     return line;

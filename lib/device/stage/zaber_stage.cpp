@@ -19,7 +19,7 @@ namespace vam::device {
 
 namespace {
 
-constexpr double timeout_s = 0.2;
+constexpr double zaber_timeout_s = 0.2;
 constexpr double speed_units = 1.6384;                    // of maxspeed in a microstep per second
 constexpr double acceleration_units = speed_units / 1e4;  // of accel in a microstep per second squared
 constexpr double speed_with_motion = 7.25;                // firmware
@@ -186,7 +186,7 @@ class ZaberStage final : public Stage {
     link_.drain();
     link_.port().write(command_line(command, id.data()));
     for (;;) {
-      const std::string line = link_.need_line(timeout_s);
+      const std::string line = link_.need_line(zaber_timeout_s);
       if (line.front() == '!' || line.front() == '#') continue;       // an alert, or more about an answer
       const auto words = split(line.substr(0, line.find(':')), ' ');  // a checksum may follow
       if (line.front() != '@' || words.size() < 7) throw link_.malformed(command, line);

@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little, "STL and PLY are writt
 namespace {
 
 constexpr std::size_t header_bytes = 84;
-constexpr std::size_t triangle_bytes = 50;  // normal, three corners, 16 bits of attributes
+constexpr std::size_t facet_bytes = 50;  // normal, three corners, 16 bits of attributes
 
 std::uint64_t triangles_promised(const std::string& bytes) {
   std::uint32_t count = 0;
@@ -30,8 +30,8 @@ std::uint64_t triangles_promised(const std::string& bytes) {
 
 // What fills a block of a disk, or a line end of a program that saw text. Nothing else of a mesh looks so.
 bool is_padding(std::string_view bytes) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 16;
-  return bytes.size() <= most_bytes && bytes.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == bytes.npos;
+  constexpr std::size_t blank_bytes = std::size_t{1} << 16;
+  return bytes.size() <= blank_bytes && bytes.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == bytes.npos;
 }
 
 std::array<float, 3> normal_of(const std::array<double, 3>& a, const std::array<double, 3>& b,
@@ -54,7 +54,7 @@ std::string lower_case(std::string text) {
 }
 
 std::uint64_t binary_stl_bytes(const std::string& bytes) {
-  return bytes.size() < header_bytes ? 0 : header_bytes + triangle_bytes * triangles_promised(bytes);
+  return bytes.size() < header_bytes ? 0 : header_bytes + facet_bytes * triangles_promised(bytes);
 }
 
 bool has_binary_stl_size(const std::string& bytes) {
@@ -83,7 +83,7 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
   soup.faces.reserve(count);
   for (std::size_t t = 0; t < count; ++t) {
     float corner[9];
-    std::memcpy(corner, bytes.data() + header_bytes + triangle_bytes * t + 12, sizeof corner);
+    std::memcpy(corner, bytes.data() + header_bytes + facet_bytes * t + 12, sizeof corner);
     const int first = count_of(soup.points);
     for (int c = 0; c < 9; c += 3) soup.points.push_back({corner[c], corner[c + 1], corner[c + 2]});
     soup.faces.push_back({first, first + 1, first + 2});

@@ -14,10 +14,10 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::int64_t most = 100000000;  // frames, and blanks of 100 Hz in 11 days
-constexpr double rounding_s = 1e-5;       // of times that vam-print logs
-constexpr double most_back_deg = 45;      // what a predicted angle takes back of a stage that stops
-constexpr double most_lit_s = 10;         // vam-print ends a print whose images stand still within 3 s
+constexpr std::int64_t most_flips = 100000000;  // frames, and blanks of 100 Hz in 11 days
+constexpr double rounding_s = 1e-5;             // of times that vam-print logs
+constexpr double most_back_deg = 45;            // what a predicted angle takes back of a stage that stops
+constexpr double most_lit_s = 10;               // vam-print ends a print whose images stand still within 3 s
 
 constexpr const char* remedy = "; the log was changed; restore it";
 
@@ -29,9 +29,10 @@ std::int64_t whole(const Json& event, const char* key, std::int64_t least, const
   const Json& value = event.at(key);
   const bool fits =
       value.is_number_integer() && (!value.is_number_unsigned() || value.get<std::uint64_t>() <= INT64_MAX);
-  if (fits && value.get<std::int64_t>() >= least && value.get<std::int64_t>() <= most) return value.get<std::int64_t>();
+  if (fits && value.get<std::int64_t>() >= least && value.get<std::int64_t>() <= most_flips)
+    return value.get<std::int64_t>();
   refuse(place, std::string(key) + " " + briefly(value.dump()) + " is not a whole number from " +
-                    std::to_string(least) + " to " + std::to_string(most));
+                    std::to_string(least) + " to " + std::to_string(most_flips));
 }
 
 }  // namespace

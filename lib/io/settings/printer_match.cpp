@@ -79,9 +79,8 @@ std::vector<std::string> settings_in(const std::string& text) {
 
 bool known(const std::string& setting) {
   const std::string name = setting.substr(0, setting.find('='));
-  const auto fields = printer_fields();
-  return std::any_of(fields.begin(), fields.end(),
-                     [&](const PrinterField& field) { return dotted_name(field) == name; });
+  const auto all = printer_fields();
+  return std::any_of(all.begin(), all.end(), [&](const PrinterField& field) { return dotted_name(field) == name; });
 }
 
 }  // namespace

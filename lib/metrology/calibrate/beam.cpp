@@ -125,7 +125,7 @@ BeamWidths side_widths(const Image& image, const SideView& view, const model::Pr
 namespace {
 
 /// The largest growth of the width per distance from the narrowest plane.
-double steepest(const BeamWidths& widths, double focus_mm, double narrowest_mm) {
+double steepest_growth(const BeamWidths& widths, double focus_mm, double narrowest_mm) {
   double growth = 0;
   for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
     const double away = std::abs(widths.plane_mm[i] - focus_mm);
@@ -157,7 +157,7 @@ MeasuredBeam measure_beam(const BeamWidths& widths) {
     return out;
   };
   const double focus_mm = widths.plane_mm[narrowest - widths.fwhm_mm.begin()];
-  const double growth_start = steepest(widths, focus_mm, narrowest->value);
+  const double growth_start = steepest_growth(widths, focus_mm, narrowest->value);
   const double scale = narrowest->value;
   const auto fit =
       stats::fit_curve(residuals, {scale, focus_mm, std::max(growth_start, 1e-4)}, {1e-4 * scale, 1e-3, 1e-6},

@@ -15,7 +15,7 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr std::size_t unknowns = 3;  // mean, a, b
+constexpr std::size_t terms = 3;  // mean, a, b
 
 void require_round(std::vector<double> angle_deg, const std::string& subject) {
   for (double& angle : angle_deg) angle -= 360 * std::floor(angle / 360);
@@ -52,14 +52,14 @@ Wobble find_wobble(const std::vector<double>& angle_deg, const std::vector<stats
     const double theta = angle * rad_per_deg;
     rows.insert(rows.end(), {1, std::cos(theta), std::sin(theta)});
   }
-  // The fit is linear: what a reading of 1 at one angle gives is its weight in each of the unknowns.
-  std::array<double, unknowns> fitted{};
-  std::array<double, unknowns> variance{};
+  // The fit is linear: what a reading of 1 at one angle gives is its weight in each of the terms.
+  std::array<double, terms> fitted{};
+  std::array<double, terms> variance{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::vector<double> one(values.size());
     one[i] = 1;
-    const auto weight = stats::linear_fit(rows, unknowns, one);
-    for (std::size_t k = 0; k < unknowns; ++k) {
+    const auto weight = stats::linear_fit(rows, terms, one);
+    for (std::size_t k = 0; k < terms; ++k) {
       fitted[k] += weight[k] * values[i].value;
       variance[k] += std::pow(weight[k] * values[i].sigma, 2);
     }
@@ -67,10 +67,10 @@ Wobble find_wobble(const std::vector<double>& angle_deg, const std::vector<stats
   double chi_square = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     double rest = values[i].value;
-    for (std::size_t k = 0; k < unknowns; ++k) rest -= fitted[k] * rows[i * unknowns + k];
+    for (std::size_t k = 0; k < terms; ++k) rest -= fitted[k] * rows[i * terms + k];
     chi_square += std::pow(rest / std::max(values[i].sigma, 1e-12), 2);
   }
-  const auto freedom = static_cast<double>(values.size() - unknowns);
+  const auto freedom = static_cast<double>(values.size() - terms);
   const double wider = freedom > 0 ? std::sqrt(std::max(chi_square / freedom, 1.0)) : 1;
   const auto n = count_of(values);
   const auto measured = [&](std::size_t k) { return stats::Measured{fitted[k], wider * std::sqrt(variance[k]), n}; };

@@ -20,18 +20,18 @@ namespace {
 
 // White noise between pixels has less variance than on them, so that its energy would draw the axis to where it is
 // least; blurred by this, it is nearly the same everywhere.
-constexpr double blur_px = 2;
+constexpr double axis_blur_px = 2;
 
 Image blurred(const Image& image) {
   Image out = image;
   cv::Mat pixels(out.height, out.width, CV_32F, out.values.data());
-  cv::GaussianBlur(pixels, pixels, {}, blur_px, blur_px, cv::BORDER_REPLICATE);
+  cv::GaussianBlur(pixels, pixels, {}, axis_blur_px, axis_blur_px, cv::BORDER_REPLICATE);
   return out;
 }
 
 // Variance that white noise of variance 1 leaves in the difference of two central differences, once blurred.
 double blurred_slope_variance() {
-  return (1 - std::exp(-1 / (blur_px * blur_px))) / (4 * std::numbers::pi * blur_px * blur_px);
+  return (1 - std::exp(-1 / (axis_blur_px * axis_blur_px))) / (4 * std::numbers::pi * axis_blur_px * axis_blur_px);
 }
 
 // Standard deviation of the noise of a pixel, from second differences along the rows: smooth contents leave little.
@@ -112,7 +112,7 @@ struct Normal {
 
 Normal normal_of(const Image& image, double column, const Bound& bound) {
   Normal normal;
-  const double reach = std::min(column, image.width - 1 - column) - 3 * blur_px;
+  const double reach = std::min(column, image.width - 1 - column) - 3 * axis_blur_px;
   const double middle = 0.5 * (image.height - 1);
   for (int y = 1; y + 1 < image.height; ++y) {
     const float* rows[3] = {image.row(y - 1), image.row(y), image.row(y + 1)};
@@ -240,7 +240,7 @@ std::optional<AxisEstimate> axis_of(const Image& view) {
     const double cc = n.cc - noise2 * n.noise_cc;
     const double tt = std::max(n.tt - noise2 * n.noise_tt, 1e-6 * n.tt);
     const double left = std::max(cc * tt - n.ct * n.ct, 1e-6 * cc * tt);
-    const double variance = 4 * std::numbers::pi * blur_px * blur_px * n.rr / static_cast<double>(n.count);
+    const double variance = 4 * std::numbers::pi * axis_blur_px * axis_blur_px * n.rr / static_cast<double>(n.count);
     const Pull ranges_say = disagreement(n, cc, tt, left);
     estimate.column_sigma =
         std::sqrt(std::max(variance * tt / left, std::pow(softness(n.stiff_cc, n.cc), 2) * ranges_say[0]));

@@ -21,9 +21,9 @@ constexpr int nominal_steps = 8;
 constexpr float third = 1.0F / 3.0F;
 constexpr float most_momentum = 0.95F;
 
-constexpr double close_enough = 0.017;  // of the half width of the window, RMS over the voxels constrained
-constexpr float wider = 1.1F;
-constexpr float widest = 0.3F;  // half width, in doses
+constexpr double window_share = 0.017;  // of the half width of the window, RMS over the voxels constrained
+constexpr float wider_factor = 1.1F;
+constexpr float widest_half_width = 0.3F;  // half width, in doses
 
 double constrained_voxels(const Problem& problem) {
   double count = 0;
@@ -159,8 +159,8 @@ class Robust final : public Method {
   /// The window grows about the threshold while nearly all doses of all lights are outside it, as in apg.
   void widen(const Problem& problem) {
     const double half = half_width_;
-    const double close = 0.5 * close_enough * close_enough * half * half * constrained_voxels(problem);
-    if (loss_ <= close && half_width_ * wider <= widest) half_width_ *= wider;
+    const double close = 0.5 * window_share * window_share * half * half * constrained_voxels(problem);
+    if (loss_ <= close && half_width_ * wider_factor <= widest_half_width) half_width_ *= wider_factor;
   }
 
   [[nodiscard]] DoseWindow window(const Problem& problem) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/bodies.hpp"
+#include "metrology/cure/bodies.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/cured.hpp"
+#include "metrology/cure/cured.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "metrology/ost/threshold.hpp"
+#include "metrology/cure/threshold.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The working curve of scattering, on the simulated resin, whose kinetics are other equations than those of the fit.
-#include "metrology/ost/curing_curve.hpp"
+#include "metrology/cure/curing_curve.hpp"
 
 #include <doctest/doctest.h>
 

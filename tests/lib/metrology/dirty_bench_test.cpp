@@ -11,7 +11,7 @@
 
 #include "base/stats/median.hpp"
 #include "lib/metrology/bench_printer.hpp"
-#include "metrology/ost/bodies.hpp"
+#include "metrology/cure/bodies.hpp"
 #include "metrology/ost/dirt.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/private/specks.hpp"

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "lib/metrology/bench_printer.hpp"
-#include "metrology/ost/bodies.hpp"
+#include "metrology/cure/bodies.hpp"
 #include "metrology/ost/ost.hpp"
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/surface_samples.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sensitivity of a print, on densities that follow from a known one.
-#include "metrology/ost/sensitivity.hpp"
+#include "metrology/cure/sensitivity.hpp"
 
 #include <doctest/doctest.h>
 

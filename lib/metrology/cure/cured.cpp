@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/cured.hpp"
+#include "metrology/cure/cured.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/threshold.hpp"
+#include "metrology/cure/threshold.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "metrology/ost/cured.hpp"
+#include "metrology/cure/cured.hpp"
 
 namespace vam::metrology {
 

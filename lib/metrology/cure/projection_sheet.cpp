@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/projection_sheet.hpp"
+#include "metrology/cure/projection_sheet.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/json_fwd.hpp"
-#include "metrology/ost/scatter_curve.hpp"
+#include "metrology/cure/scatter_curve.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "metrology/ost/sensitivity.hpp"
+#include "metrology/cure/sensitivity.hpp"
 #include "model/value_at.hpp"
 
 namespace vam::metrology {
@@ -20,9 +20,9 @@ constexpr int numbers = SensitivityField::numbers;
 using Vector = Eigen::Matrix<double, numbers, 1>;
 using Matrix = Eigen::Matrix<double, numbers, numbers>;
 
-constexpr double least_dose = 0.3;    // of the critical one: with less nothing is in question
-constexpr double together = 27;       // voxels whose noise is one, over which rays are interpolated and filtered
-constexpr double least_sigma = 0.03;  // of the saturation: what the noise does not contain, as streaks and kinetics
+constexpr double least_dose = 0.3;        // of the critical one: with less nothing is in question
+constexpr double correlated_voxels = 27;  // voxels whose noise is one, over which rays are interpolated and filtered
+constexpr double least_noise = 0.03;      // of the saturation: what the noise does not contain, as streaks and kinetics
 // Of the saturation: densities beyond tell no more than that they are, as the tails of the curve are not the resin's.
 constexpr double hardly = 0.1;
 constexpr double nearly = 0.9;
@@ -104,7 +104,7 @@ Sight sight_of(const model::Volume& scatter, const model::Volume* sigma, const A
         const std::size_t from = flat_index(at[1], g.nx, at[0]);
         sight.density[v] = one_over * scatter.slice(at[2])[from];
         const double noise = sigma != nullptr ? static_cast<double>(one_over * sigma->slice(at[2])[from]) : 0;
-        sight.weight[v] = static_cast<float>(1 / (together * (noise * noise + least_sigma * least_sigma)));
+        sight.weight[v] = static_cast<float>(1 / (correlated_voxels * (noise * noise + least_noise * least_noise)));
         for (std::size_t d = 0; d < sight.dose.size(); ++d) {
           sight.dose[d][v] = dose_at(dose.dose.at[d], at[0], at[1], at[2]);
         }
@@ -295,7 +295,7 @@ SensitivityFit fit_sensitivity(const model::Volume& scatter, const model::Volume
   SensitivityFit fit;
   put(best->value, field);
   const Normal& normal = best->normal;
-  fit.rms = normal.voxels > 0 ? std::sqrt(normal.cost * together / static_cast<double>(normal.voxels)) : 0;
+  fit.rms = normal.voxels > 0 ? std::sqrt(normal.cost * correlated_voxels / static_cast<double>(normal.voxels)) : 0;
   // Residuals that are larger than their sigmas are of a model that is wrong by as much.
   const Matrix covariance = (normal.matrix / std::max(1.0, fit.rms * fit.rms) + precision).inverse();
   put_covariance(covariance, field);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/sensitivity.hpp"
+#include "metrology/cure/sensitivity.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

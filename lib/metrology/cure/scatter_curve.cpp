@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/scatter_curve.hpp"
+#include "metrology/cure/scatter_curve.hpp"
 
 #include <algorithm>
 #include <cmath>
