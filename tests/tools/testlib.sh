@@ -109,6 +109,7 @@ camera_up() {  # camera_up OPTIONS...: vam-sim-camera at its address; $camera
     vam-sim-camera --die-with-parent "$@" >camera 2>camera.err 9>&- & camera=$!
     await answered
     if [ -s camera ] || [ $turns -ge 60 ]; then camera_since=$(date +%s); return; fi
+    kill -0 $camera 2>/dev/null || { wait $camera; [ $? -ne 64 ] || { sed 's/^/# /' camera.err; return; }; }
     turns=$((turns + 1)); sleep 2
   done
 }

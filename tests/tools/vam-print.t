@@ -103,7 +103,7 @@ too_busy() {  # too_busy RUN: after a print that ended with $printed
 # The print of the guarantees: 1 % too fast, answers up to 5 ms late, at 25 deg/s, with a camera beside it.
 for attempt in 1 2 3; do
   turntable --speed-error 0.01 --jitter 5
-  camera_up --address $address --follow truth --flips run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 $plain
+  camera_up --address $address --follow truth --flips run/flips.jsonl --projected frames.mkv --columns 128 --rows 96 $plain
   $screen watch 45 1 >seen &
   watcher=$!
   print --run-up 0.2 --frames-per-turn 3600 --max-missed 0.2 --view-step 10 --run run 2>errors
