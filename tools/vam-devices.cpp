@@ -140,7 +140,6 @@ int main(int argc, char** argv) {
                  {75, "off: a device is in use, or timed out; try again."},
                  {76, "off: device protocol error."}},
                 false,
-                true,
                 {cli::ManualList{"devices", device_texts()}}});
   app.option("--port", "PATH", options.ports, "Serial port to list in addition to those of the system.");
   app.flag("--probe", options.probe, "Query the serial ports for stage controllers.");

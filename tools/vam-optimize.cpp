@@ -133,7 +133,6 @@ int main(int argc, char** argv) {
                 manual_page,
                 {{130, "SIGINT; with --checkpoint the run can be resumed."}, {143, "SIGTERM; likewise."}},
                 false,
-                true,
                 {cli::ManualList{"methods", method_texts()}}});
   Options options;
   declare(app, options);

@@ -198,7 +198,6 @@ int main(int argc, char** argv) {
                 manual_page,
                 {},
                 false,
-                true,
                 {cli::ManualList{"shapes", solid::describe_shapes()}}});
   Options options;
   declare(app, options);

@@ -30,7 +30,6 @@ struct Manual {
   std::string page = {};  // man/vam-slice.1, whose blocks App prints [printed_manual]; empty: only these
   std::vector<ExitStatus> statuses = {};  // beside those of all tools; device_statuses
   bool locks = false;                     // looks up who reserves devices, if it drives none
-  bool reads = true;                      // files; else it never ends with 65 or 66
   std::vector<ManualList> lists = {};
 };
 

@@ -178,7 +178,6 @@ std::vector<ExitStatus> exit_statuses(const Declaration& tool) {
       {73, "An output cannot be created."},
       {74, "A read or write failed, the final flush included."},
   };
-  if (!tool.manual.reads) std::erase_if(statuses, [](const auto& s) { return s.code == 65 || s.code == 66; });
   if (find_option(tool, "--require") != nullptr) statuses.push_back({1, "A condition of --require does not hold."});
   statuses.insert(statuses.end(), tool.manual.statuses.begin(), tool.manual.statuses.end());
   std::sort(statuses.begin(), statuses.end(), [](const auto& a, const auto& b) { return a.code < b.code; });

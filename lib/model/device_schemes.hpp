@@ -44,7 +44,7 @@ inline constexpr DeviceOption zaber_options[] = {
     {"address", "N", "device of the chain, 1 to 99; default: 1"},
     {"axis", "N", "axis of the device, 1 to 9; default: 1"},
     {"steps_per_deg", "N", "microsteps per degree; default: as stored in the device"}};
-inline constexpr DeviceOption sim_stage_options[] = {  // those of vam-sim-stage(1)
+inline constexpr DeviceOption sim_stage_options[] = {  // those of vam-sim(1)
     {"acceleration", "DEG/S2", "acceleration of ramps and smooth stops; default: 60"},
     {"speed_error", "FRACTION", "relative; default: 0"},
     {"ripple", "FRACTION", "amplitude of a speed ripple of 30 degrees; default: 0"},
@@ -65,10 +65,10 @@ inline constexpr DeviceOption v4l2_options[] = {
     {"buffers", "N", "frames that can wait in memory, 2 to 64; default: 10"}};
 inline constexpr DeviceOption replay_options[] = {
     {"pace", "real|virtual", "wait for the recorded times, or do not; default: virtual"}};
-inline constexpr DeviceOption sim_camera_options[] = {  // those of vam-sim-camera(1), and some of the sensor
+inline constexpr DeviceOption sim_camera_options[] = {  // those of vam-sim(1), and some of the sensor
     {"part", "BODIES", "shape of the print"},
     {"lit", "S", "exposed time that completes the print"},
-    {"follow", "FILE", "stage angle, from this log of vam-sim-stage"},
+    {"follow", "FILE", "stage angle, from this log of vam-sim stage"},
     {"speed", "DEG/S", "stage speed without follow"},
     {"flips", "FILE", "log of vam-project"},
     {"axis_offset", "PX", "rotation axis from the middle of the sensor"},

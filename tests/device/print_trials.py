@@ -65,7 +65,7 @@ class Bench:
 
     def __init__(self, several):
         self.several = several
-        shim = subprocess.run(["vam-sim-stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
+        shim = subprocess.run(["vam-sim", "stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
         self.simulators = [self.simulate("stage", "truth", "--acceleration", "9000", "--max-speed", "360"),
                            self.simulate("relay", "opened", "--protocol", "relay")]
         self.environment = dict(os.environ, LD_PRELOAD=shim)
@@ -77,7 +77,7 @@ class Bench:
             self.environment = dict(os.environ, SHIM=shim)
 
     def simulate(self, link, log, *options):
-        process = subprocess.Popen(["vam-sim-stage", "--link", link, "--log", log, "--die-with-parent", *options],
+        process = subprocess.Popen(["vam-sim", "stage", "--link", link, "--log", log, "--die-with-parent", *options],
                                    stdout=subprocess.PIPE, text=True)
         process.stdout.readline()
         return process

@@ -59,11 +59,11 @@ def table(count, log, command, environment, what, limit_s):
 
 
 def main():
-    shim = subprocess.run(["vam-sim-stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
+    shim = subprocess.run(["vam-sim", "stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
     with tempfile.TemporaryDirectory() as folder:
         truth = os.path.join(folder, "truth")
         open(truth, "w").close()
-        relay = subprocess.Popen(["vam-sim-stage", "--protocol", "relay", "--log", truth, "--die-with-parent"],
+        relay = subprocess.Popen(["vam-sim", "stage", "--protocol", "relay", "--log", truth, "--die-with-parent"],
                                  stdout=subprocess.PIPE, text=True)
         command = [*COMMAND, f"projector.relay=relay:{relay.stdout.readline().strip()}"]
         environment = dict(os.environ, LD_PRELOAD=shim, VAM_LOCK_DIR=folder)

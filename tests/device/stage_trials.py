@@ -34,7 +34,7 @@ def standing(event):
 def simulator(folder, *options):
     log = os.path.join(folder, "truth")
     open(log, "w").close()
-    process = subprocess.Popen(["vam-sim-stage", "--protocol", SCHEME, "--acceleration", "2000", *TRAVEL, "--log", log,
+    process = subprocess.Popen(["vam-sim", "stage", "--protocol", SCHEME, "--acceleration", "2000", *TRAVEL, "--log", log,
                                 "--die-with-parent", *options],
                                stdout=subprocess.PIPE, text=True)
     return process, process.stdout.readline().strip(), Log(log)
@@ -110,7 +110,7 @@ def trials(cause, count, shim):
 
 def main():
     count = int(sys.argv[1])
-    shim = subprocess.run(["vam-sim-stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
+    shim = subprocess.run(["vam-sim", "stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
     causes = SIGNALS + ["closed stdout", "hang", "device error"]
     with concurrent.futures.ThreadPoolExecutor(LANES) as pool:
         results = pool.map(lambda cause: trials(cause, count, shim), causes)

@@ -9,7 +9,7 @@ mkdir -p card/dri screen
 touch card/dri/card0
 FAKE_DRM=$PWD/card; export FAKE_DRM
 printf '[projector]\ncolumns = 64\nrows = 48\npixel_mm = 0.26\naxis_column = 31.5\naxis_row = 23.5\n' >printer.toml
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 on() { device=$1; log=$2; shift 2; exec umockdev-wrapper "$VAM_BUILD/usb_host" "$device" "$log" sh -c 'exec "$@"' sh "$@"; }
 
 Xvfb -displayfd 4 -screen 0 64x48x24 -nolisten tcp -noreset 4>number >/dev/null 2>&1 & server=$!
@@ -21,7 +21,7 @@ for stage in $stages; do
   case $stage in
     *:PATH)
       serial="$serial $scheme"
-      vam-sim-stage --link "$scheme" --protocol "$scheme" --die-with-parent >"path.$scheme" & servers="$servers $!"
+      vam-sim stage --link "$scheme" --protocol "$scheme" --die-with-parent >"path.$scheme" & servers="$servers $!"
       await test -s "path.$scheme" ;;
     *) others="$others $scheme" ;;
   esac
@@ -77,7 +77,7 @@ done
 # A camera: an address has one user, too. Its own hold on a client that was killed ends with the heartbeat, in 3 s.
 exec 9>"${XDG_RUNTIME_DIR:-/tmp}/vam-gige-test.lock"; flock -w 120 9  # the port is the machine's
 for try in 1 2 3 4 5 6 7 8; do  # another program may have the port for a while
-  vam-sim-camera --die-with-parent >address 2>busy 9>&- & camera=$!
+  vam-sim camera --die-with-parent >address 2>busy 9>&- & camera=$!
   await sh -c "[ -s address ] || ! kill -0 $camera 2>/dev/null"
   [ -s address ] && break
   sleep 2

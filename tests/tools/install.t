@@ -23,8 +23,8 @@ for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch vam-renew vam-print vam-calib
 done
 is 'no manual is without a tool' "$(ls all/share/man/man1 | wc -l)" "$(ls all/bin | wc -l)"
 is 'what needs devices is apart' "$(ls devices/bin | tr '\n' ' ')" \
-  'vam-calibrate-all vam-capture vam-devices vam-print vam-sim-camera vam-sim-stage vam-stage '
-ok 'the library for its stage is beside the simulator' test -f "$(devices/bin/vam-sim-stage --shim)"
+  'vam-calibrate-all vam-capture vam-devices vam-print vam-sim vam-stage '
+ok 'the library for its stage is beside the simulator' test -f "$(devices/bin/vam-sim stage --shim)"
 aravis=$(for tool in tools/bin/*; do ldd "$tool" | grep -c libaravis; done | sort -u)
 is 'no other tool loads the library of cameras' "$aravis" 0
 

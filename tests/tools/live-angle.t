@@ -7,7 +7,7 @@
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 mkdir keep
 camera_bench "gcs:$PWD/stage" 25
 lag=40 latency=30

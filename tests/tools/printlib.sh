@@ -3,7 +3,7 @@
 # testlib.sh; screen_up 64 48 comes before launch.
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 tiny_print frames.exr
 printf '[stage]\ndevice = "gcs:%s/stage"\nspeed_deg_s = 180\n' "$PWD" >>printer.toml
 

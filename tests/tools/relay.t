@@ -5,7 +5,7 @@
 # The dead-man relay on the lamp [devices §7]: closed during a print only, and no light without it.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 hold=0.4
 grey() { vam-project --pattern grey -o null: --hold $hold --light "sim:?log=$PWD/light" "$@"; }
 

@@ -49,17 +49,17 @@ done <schemes >undocumented
 is 'every option is in the manual' "$(cat undocumented)" ''
 {
   for option in $(accepted vam-stage identify --device 'sim:?none=1'); do
-    vam-sim-stage --help=all | grep -q -- "--$(echo "$option" | tr _ -) " || echo "vam-sim-stage $option"
+    vam-sim stage --help=all | grep -q -- "--$(echo "$option" | tr _ -) " || echo "vam-sim stage $option"
   done
   for option in $(accepted vam-capture identify --device 'sim:?none=1'); do
     case $option in bits | pace) continue ;; esac  # of what is no program
-    vam-sim-camera --help=all | grep -Eq -- "--$(echo "$option" | tr _ -)( |$)" || echo "vam-sim-camera $option"
+    vam-sim camera --help=all | grep -Eq -- "--$(echo "$option" | tr _ -)( |$)" || echo "vam-sim camera $option"
   done
 } >unlike
 is 'the simulators have the same names' "$(cat unlike)" ''
 
 # A stage on a serial port: free, probed, in use, without permission, and no stage at all.
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 stage_up
 list --port "$PWD/stage"
 is 'a port that the system does not list' "$(row "gcs:$PWD/stage")" ''
@@ -120,7 +120,7 @@ kill -STOP $user
 ok 'one that does not answer is killed' off
 wait $user 2>/dev/null
 is 'by that' $? 137
-vam-sim-stage --protocol relay --link relay --log opened --die-with-parent >/dev/null & relay=$!
+vam-sim stage --protocol relay --link relay --log opened --die-with-parent >/dev/null & relay=$!
 await test -e relay
 is 'an unplugged stage does not keep the relay closed' \
   "$(LD_PRELOAD=$shim vam-devices off --light none --set stage.device=gcs:/dev/ttyUSB99 --set "projector.relay=relay:$PWD/relay" 2>err; echo $?)" \

@@ -8,7 +8,7 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 judge="python3 $VAM_SOURCE/tests/device/print_judge.py"
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 address=127.0.0.1
 
 cat >printer.toml <<TOML

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 
 stage() { command=$1; shift; LD_PRELOAD=$shim vam-stage "$command" --device "gcs:$PWD/stage" "$@"; }
 turning() { tail -n 1 truth | grep -q '"speed_deg_s":1\.0'; }
@@ -104,7 +104,7 @@ anybody() { if [ "$(id -u)" -eq 0 ]; then setpriv --reuid=65534 --regid=65534 --
 mkdir plain; chmod 777 plain; chmod 755 .
 cat >twice.sh <<'SH'
 cd plain; VAM_LOCK_DIR=$PWD; export VAM_LOCK_DIR
-vam-sim-stage --link line --die-with-parent >path &
+vam-sim stage --link line --die-with-parent >path &
 for try in 1 2 3 4 5 6 7 8 9; do [ -s path ] || sleep 1; done
 for user in first second; do LD_PRELOAD=$1 vam-stage status --device "gcs:$PWD/line" >$user || exit; done
 kill $!

@@ -18,7 +18,7 @@ namespace vam::sim {
 
 struct SimSources {
   double speed_deg_s = 0;         // of the stage when there is no log of its angles; 0 deg at the start
-  std::string angles;             // log of vam-sim-stage (or of sim: of vam-stage): the true angle
+  std::string angles;             // log of vam-sim stage (or of sim: of vam-stage): the true angle
   std::string shown;              // log of vam-project: which frame was shown when; default: the first one throughout
   double latency_s = 0;           // of the projector, from a flip to its light
   std::vector<GreyImage> images;  // that glow in the resin, by frame index; none: the print alone is seen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What simulated cameras have in common, in this process (sim:) or behind a network (vam-sim-camera).
+// What simulated cameras have in common, in this process (sim:) or behind a network (vam-sim camera).
 #pragma once
 
 #include <functional>

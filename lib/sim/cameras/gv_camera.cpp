@@ -63,7 +63,7 @@ class DescriptionFile {
  public:
   explicit DescriptionFile(const SimCameraSettings& settings) {
     const char* folder = std::getenv("TMPDIR");
-    path_ = std::string(folder != nullptr && *folder != '\0' ? folder : "/tmp") + "/vam-sim-camera-XXXXXX";
+    path_ = std::string(folder != nullptr && *folder != '\0' ? folder : "/tmp") + "/vam-sim-XXXXXX";
     const int file = mkstemp(path_.data());
     const std::string xml = description(settings);
     const bool good = file >= 0 && write(file, xml.data(), xml.size()) == static_cast<ssize_t>(xml.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated device at the far end of a serial line, on whatever clock its host has: a process with a pseudo-terminal
-// (vam-sim-stage) or the tool itself (sim:, and tests in virtual time).
+// (vam-sim stage) or the tool itself (sim:, and tests in virtual time).
 #pragma once
 
 #include <functional>

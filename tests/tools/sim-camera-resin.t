@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK camera COST 110
-# vam-sim-camera --cure: each option of the resin does what it says to the true state, by closed forms of the conversion
+# vam-sim camera --cure: each option of the resin does what it says to the true state, by closed forms of the conversion
 # p / p_c = (1 - 0.7^x) / 0.3, x = (D / D_c - h) / (1 - h), h being the inhibitor's share.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 cat >printer.toml <<'TOML'

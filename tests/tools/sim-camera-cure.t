@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK camera COST 110
-# vam-sim-camera --cure: the frames that a log says were shown, at the angles that another says, cure the resin; the
+# vam-sim camera --cure: the frames that a log says were shown, at the angles that another says, cure the resin; the
 # views that vam-capture takes of it show vam-ost what is true.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 cat >printer.toml <<'TOML'
@@ -26,9 +26,9 @@ pixel_mm = 0.2
 index_resin = 1.5
 # end of the settings
 TOML
-fails 64 'cure-voxel: requires --cure' vam-sim-camera --cure-voxel 0.3
-fails 64 'resin.absorption_per_mm and resin.critical_dose_mj_cm3; set both' vam-sim-camera --cure --set resin.absorption_per_mm=0
-fails 64 "'x.png' must end in .vdb" vam-sim-camera --cure --cured x.png
+fails 64 'cure-voxel: requires --cure' vam-sim camera --cure-voxel 0.3
+fails 64 'resin.absorption_per_mm and resin.critical_dose_mj_cm3; set both' vam-sim camera --cure --set resin.absorption_per_mm=0
+fails 64 "'x.png' must end in .vdb" vam-sim camera --cure --cured x.png
 
 vam-slice --shape cylinder:diameter=5,height=4 --voxel 0.2 -o part.vdb
 vam-optimize part.vdb --angles 60 --iterations 30 -o sino.exr --report light.json

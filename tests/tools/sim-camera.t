@@ -1,22 +1,22 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK camera COST 110
-# vam-sim-camera and vam-capture's aravis: camera, over GigE Vision on loopback; its log is the reference.
+# vam-sim camera and vam-capture's aravis: camera, over GigE Vision on loopback; its log is the reference.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 take="vam-capture --device aravis:127.0.0.1 --binning 6 --fps 20"
 
-fails 64 'not an IPv4 address' vam-sim-camera --address here
-fails 64 'cannot serve a camera' vam-sim-camera --address 192.0.2.1
-fails 64 'not a frame number' vam-sim-camera --drop x
-fails 64 'expected a form like sphere' vam-sim-camera --part cube
-fails 64 'conflicts with --pattern' vam-sim-camera --pattern grid --projected x.exr
-fails 66 'missing' vam-sim-camera --projected missing
-fails 73 'cannot be written' vam-sim-camera --log missing/log
+fails 64 'not an IPv4 address' vam-sim camera --address here
+fails 64 'cannot serve a camera' vam-sim camera --address 192.0.2.1
+fails 64 'not a frame number' vam-sim camera --drop x
+fails 64 'expected a form like sphere' vam-sim camera --part cube
+fails 64 'conflicts with --pattern' vam-sim camera --pattern grid --projected x.exr
+fails 66 'missing' vam-sim camera --projected missing
+fails 73 'cannot be written' vam-sim camera --log missing/log
 
 camera_up --drop 5 --incomplete 8,11 --speed 45 --lit 0.5 --shrink 60 --log truth
 vam-capture identify --device aravis:127.0.0.1 >who
 is 'the identity' "$? $(json who camera.serial) $(json who camera.transport)" '0 VAM1 GigE Vision'
-fails 75 'UDP port 3956 is in use' vam-sim-camera
+fails 75 'UDP port 3956 is in use' vam-sim camera
 fails 64 'no trigger Line9; the camera has Line0, Software' $take --trigger Line9 --frames 1 -o no.exr
 fails 64 'no pixel format Mono12' $take --format Mono12 --frames 1 -o no.exr
 $take --frames 40 -o views/ --log log 2>said & tool=$!

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// vam-sim-camera: a GigE Vision camera that views a simulated vial, on a network address of this machine.
+// vam-sim camera: a GigE Vision camera that views a simulated vial, on a network address of this machine.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,19 +15,19 @@
 #include "device/port/lines.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/vdb/vdb.hpp"
-#include "manual_page.hpp"
 #include "optics/patterns.hpp"
 #include "printer.hpp"
 #include "sim/cameras/gv_camera.hpp"
 #include "sim/cameras/makers.hpp"
 #include "sim/controllers/options.hpp"
 #include "sinogram_frames.hpp"
+#include "vam-sim/commands.hpp"
+
+namespace vam::sim_tool {
 
 namespace {
 
-using namespace vam;
-
-struct Options {
+struct CameraOptions {
   sim::SimCameraSettings camera;
   std::string address = "127.0.0.1";
   std::string serial = "VAM1";
@@ -46,20 +48,20 @@ struct Options {
   bool with_parent = false;
 };
 
-void declare_scene(cli::App& app, Options& o) {
+void declare_scene(cli::App& app, CameraOptions& o) {
   app.group("Scene");
   app.option("--part", "BODIES", o.part,
              "Shape of the print, e.g. 'sphere:x=2,diameter=4;cylinder:diameter=6,height=3'.");
   app.option("--lit", "S", o.camera.bench.lit_s, cli::non_negative,
              "Exposed time that completes the print, whose volume grows in proportion; 0: complete from the start.");
-  app.option("--follow", "FILE", o.camera.sources.angles, "Read the stage angle from this log of vam-sim-stage.");
+  app.option("--follow", "FILE", o.camera.sources.angles, "Read the stage angle from this log of vam-sim stage.");
   app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Without --follow: stage speed.");
   app.option("--flips", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.");
   app.option("--projected", "FILE", o.frames,
              "Frames shown by vam-project: an EXR frame stack, video or folder of images.");
 }
 
-void declare_resin(cli::App& app, Options& o) {
+void declare_resin(cli::App& app, CameraOptions& o) {
   app.group("Resin");
   app.flag("--cure", o.cure, "The print is what the light has cured, instead of --part.");
   app.option("--cure-voxel", "MM", o.resin.voxel_mm, {0.02, 2}, "Edge of a voxel of the resin.").needs({"--cure"});
@@ -83,7 +85,7 @@ void declare_resin(cli::App& app, Options& o) {
       .needs({"--cure"});
 }
 
-void declare_pattern(cli::App& app, Options& o) {
+void declare_pattern(cli::App& app, CameraOptions& o) {
   app.group("Test pattern");
   app.option("--pattern", "NAME", o.pattern.name, "Test pattern shown by vam-project.");
   app.option("--pitch", "PX", o.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.")
@@ -107,7 +109,7 @@ void declare_misalignment(cli::App& app, sim::SimBench& bench) {
              "Stage angle at which the vial is displaced towards higher projector columns.");
 }
 
-void declare_projector(cli::App& app, Options& o) {
+void declare_projector(cli::App& app, CameraOptions& o) {
   auto& bench = o.camera.bench;
   app.group("Projector");
   app.option("--beam", "MM", bench.beam_mm, {0, 10}, "Width of a pixel's beam in focus, full width at half maximum.");
@@ -125,7 +127,7 @@ void declare_projector(cli::App& app, Options& o) {
   app.flag("--card", bench.card, "Uniform card in place of the vial, lit by the mean of the image.");
 }
 
-void declare_camera(cli::App& app, Options& o) {
+void declare_sensor(cli::App& app, CameraOptions& o) {
   auto& bench = o.camera.bench;
   app.group("Camera");
   app.choice("--maker", o.camera.maker, sim::sim_maker_names(), "Maker whose identity and time stamps are simulated.");
@@ -143,7 +145,7 @@ void declare_camera(cli::App& app, Options& o) {
   app.option("--specks", "N", bench.specks, {0, 10000}, "Bright and dark specks that stay where they are.");
 }
 
-void declare_faults(cli::App& app, Options& o) {
+void declare_faults(cli::App& app, CameraOptions& o) {
   app.group("Faults");
   app.option("--drop", "FRAMES", o.drop, "Frames that are dropped, e.g. 3,7.");
   app.option("--incomplete", "FRAMES", o.incomplete, "Frames that arrive incomplete, e.g. 3,7.");
@@ -151,13 +153,13 @@ void declare_faults(cli::App& app, Options& o) {
   app.option("--shrink", "N", o.shrink, {1, 1e9}, "From this frame on, send images of half the agreed height.");
 }
 
-void declare(cli::App& app, Options& o) {
+void declare(cli::App& app, CameraOptions& o) {
   declare_scene(app, o);
   declare_resin(app, o);
   declare_pattern(app, o);
   declare_misalignment(app, o.camera.bench);
   declare_projector(app, o);
-  declare_camera(app, o);
+  declare_sensor(app, o);
   declare_faults(app, o);
   app.group("Program");
   app.option("--seed", "N", o.camera.bench.seed, {0, 1e9}, "Seed of the random numbers.");
@@ -201,7 +203,7 @@ optics::PatternPlan pattern_of(const Json& event) {
   return plan;
 }
 
-std::vector<GreyImage> images(const Options& o, const model::Projector& projector) {
+std::vector<GreyImage> images(const CameraOptions& o, const model::Projector& projector) {
   if (!o.frames.empty() && !o.pattern.name.empty()) {
     throw Error{Fault::usage, "--projected: conflicts with --pattern; give one of them"};
   }
@@ -219,23 +221,23 @@ std::vector<GreyImage> images(const Options& o, const model::Projector& projecto
 }
 
 // The light cures the resin; the true state is written for whoever judges.
-void cure(const cli::App& app, Options& o) {
+void cure(const cli::App& root, const cli::App& app, CameraOptions& o) {
   auto& camera = o.camera;
   camera.bench.resin = o.resin;
   if (!app.given("--glow")) camera.bench.glow = 0;
   (void)sim::SimPrint(camera.bench);  // a printer that does not do ends the program before it serves a camera
   if (o.cured.empty()) return;
-  camera.cured = [&app, &o](const sim::SimPrint& print) {
+  camera.cured = [&root, &o](const sim::SimPrint& print) {
     const model::Volume volume = print.resin().conversion();
     io::SparseVolume written("conversion", volume.grid);
-    written.history = {app.history()};
+    written.history = {root.history()};
     written.units = "conversion of the gel point";
     written.write_slices(0, volume.grid.nz, volume.values.data());
     io::write_volume(o.cured, written);
   };
 }
 
-void run(const cli::App& app, Options& o) {
+void run(const cli::App& root, const cli::App& app, CameraOptions& o) {
   if (tool::print_printer(o.printer)) return;
   optics::set_lines(o.pattern, o.pitch_px, o.width_px);
   if (o.with_parent) device::end_with_parent();
@@ -251,7 +253,7 @@ void run(const cli::App& app, Options& o) {
                                  event.value("full_scale", 0.0))
         .frames;
   };
-  if (o.cure) cure(app, o);
+  if (o.cure) cure(root, app, o);
   camera.lag_s = 1e-3 * o.lag_ms;
   camera.sources.latency_s = 1e-3 * o.latency_ms;
   camera.latch = !o.no_latch;
@@ -267,17 +269,13 @@ void run(const cli::App& app, Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Options options;
-  options.pattern.name.clear();
-  cli::App app({"vam-sim-camera",
-                "simulate a GigE Vision camera beside the vial",
-                manual_page,
-                {{75, "The address is in use by another camera, or cannot serve one."},
-                 {129, "SIGHUP."},
-                 {130, "SIGINT."},
-                 {143, "SIGTERM."}}});
-  declare(app, options);
+std::function<void()> declare_camera(cli::App& app, std::string& chosen) {
+  const auto options = std::make_shared<CameraOptions>();
+  options->pattern.name.clear();
+  cli::App& command = app.subcommand("camera", "simulate a GigE Vision camera beside the vial", chosen);
+  declare(command, *options);
   // A signal ends it at once: nothing needs a safe state, and waiting for the threads of Aravis may never end.
-  return app.run(argc, argv, [&] { run(app, options); });
+  return [&app, &command, options] { run(app, command, *options); };
 }
+
+}  // namespace vam::sim_tool

@@ -3,16 +3,16 @@
 # ctest: RESOURCE_LOCK devices COST 100
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
-shim=$(vam-sim-stage --shim)
+shim=$(vam-sim stage --shim)
 is 'the library to preload exists' "$(test -f "$shim" && echo yes)" yes
 
-fails 64 'kinds: ' vam-sim-stage --fault broken
-fails 64 'unknown option' vam-sim-stage --speed-eror 1
-fails 64 'out of range' vam-sim-stage --jitter -1
-fails 73 'cannot be written' vam-sim-stage --log missing/log
-fails 73 'cannot create the link' vam-sim-stage --link missing/link
+fails 64 'kinds: ' vam-sim stage --fault broken
+fails 64 'unknown option' vam-sim stage --speed-eror 1
+fails 64 'out of range' vam-sim stage --jitter -1
+fails 73 'cannot be written' vam-sim stage --log missing/log
+fails 73 'cannot create the link' vam-sim stage --link missing/link
 
-vam-sim-stage --link stage --log truth --baud 19200 --start-angle 33 --die-with-parent >path &
+vam-sim stage --link stage --log truth --baud 19200 --start-angle 33 --die-with-parent >path &
 simulator=$!
 await test -s path
 is 'the link leads to the pseudo-terminal' "$(readlink stage)" "$(cat path)"

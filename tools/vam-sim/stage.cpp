@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// vam-sim-stage: a PI controller with a rotation stage on a pseudo-terminal.
+// vam-sim stage: a controller with a rotation stage, or the relay of a lamp, on a pseudo-terminal.
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,16 +14,16 @@
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"
 #include "device/port/lines.hpp"
-#include "manual_page.hpp"
 #include "sim/controllers/grbl.hpp"
 #include "sim/controllers/options.hpp"
 #include "sim/controllers/pty_host.hpp"
 #include "sim/controllers/relay.hpp"
 #include "sim/controllers/zaber.hpp"
+#include "vam-sim/commands.hpp"
+
+namespace vam::sim_tool {
 
 namespace {
-
-using namespace vam;
 
 struct Protocol {
   const char* name;
@@ -38,7 +40,7 @@ std::vector<std::string> protocol_names() {
   return names;
 }
 
-struct Options {
+struct StageOptions {
   sim::SimGcsSettings stage;
   double reply_delay_ms = 0.5;
   double jitter_ms = 0;
@@ -52,7 +54,7 @@ struct Options {
   bool with_parent = false;
 };
 
-void declare(cli::App& app, Options& options) {
+void declare(cli::App& app, StageOptions& options) {
   auto& motor = options.stage.motor;
   app.group("Stage");
   app.option("--acceleration", "DEG/S2", motor.acceleration_deg_s2, {1, 10000},
@@ -123,7 +125,7 @@ class Link {
   std::string path_;
 };
 
-void run(Options& options) {
+void run(StageOptions& options) {
   if (options.shim) return device::print_line(shim_path());
   if (options.with_parent) device::end_with_parent();
   options.stage.latency_s = 1e-3 * options.reply_delay_ms;
@@ -142,17 +144,10 @@ void run(Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Options options;
-  cli::App app({"vam-sim-stage",
-                "simulate a rotation stage on a pseudo-terminal",
-                manual_page,
-                {{69, "No pseudo-terminal is available, or the library of --shim is missing."},
-                 {129, "SIGHUP."},
-                 {130, "SIGINT."},
-                 {143, "SIGTERM."}},
-                false,
-                false});
-  declare(app, options);
-  return app.run(argc, argv, [&] { device::interruptible([&] { run(options); }); });
+std::function<void()> declare_stage(cli::App& app, std::string& chosen) {
+  const auto options = std::make_shared<StageOptions>();
+  declare(app.subcommand("stage", "simulate a rotation stage on a pseudo-terminal", chosen), *options);
+  return [options] { device::interruptible([&] { run(*options); }); };
 }
+
+}  // namespace vam::sim_tool

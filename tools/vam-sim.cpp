@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// vam-sim: simulated devices, for the tools that drive them.
+#include <string>
+
+#include "cli/app.hpp"
+#include "manual_page.hpp"
+#include "vam-sim/commands.hpp"
+
+using namespace vam;
+
+int main(int argc, char** argv) {
+  cli::App app({"vam-sim",
+                "simulate a rotation stage, or a camera beside the vial",
+                manual_page,
+                {{69, "No pseudo-terminal is available, or the library of --shim is missing."},
+                 {75, "The address is in use by another camera, or cannot serve one."},
+                 {129, "SIGHUP."},
+                 {130, "SIGINT."},
+                 {143, "SIGTERM."}}});
+  std::string chosen;
+  const auto stage = sim_tool::declare_stage(app, chosen);
+  const auto camera = sim_tool::declare_camera(app, chosen);
+  return app.run(argc, argv, [&] { chosen == "stage" ? stage() : camera(); });
+}
