@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// vam-convert: data of other programs, and from these tools to others.
+// vam-convert: data of other programs, and from these tools to others; pieces of stacks.
+#include <string>
+
 #include "io/stream/file_type.hpp"
 #include "manual_page.hpp"
 #include "printer.hpp"
 #include "vam-convert/export.hpp"
 #include "vam-convert/options.hpp"
+#include "vam-convert/pieces.hpp"
 #include "vam-convert/projections.hpp"
 #include "vam-convert/volume.hpp"
 
@@ -31,8 +34,11 @@ void run(const cli::App& app, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::App app({"vam-convert", "exchange volumes and projections with other programs", manual_page});
+  cli::App app({"vam-convert", "exchange files with other programs; cut and join stacks", manual_page});
   Options options;
+  convert_tool::PieceOptions pieces;
+  std::string command;
   declare(app, options);
-  return app.run(argc, argv, [&] { run(app, options); });
+  declare_pieces(app, pieces, command);
+  return app.run(argc, argv, [&] { command.empty() ? run(app, options) : copy_pieces(pieces); });
 }

@@ -49,7 +49,7 @@ def formulas(voxel):
 
 
 # kB a slice that the manuals say; of volumes those of a rod of 16 x 16 voxels, which are a block of 8 slices wide.
-PER_SLICE = {"vam-slice": 1.5, "vam-sinogram": 2, "vam-optimize": 2, "vam-resample": 1.5, "vam-stack": 0.5,
+PER_SLICE = {"vam-slice": 1.5, "vam-sinogram": 2, "vam-optimize": 2, "vam-resample": 1.5, "vam-convert": 0.5,
              "vam-check": 0.5, "vam-view": 1.5}
 
 
@@ -67,7 +67,7 @@ def rod(slices):
                             "light.exr"),
         "vam-sinogram": run("vam-sinogram", "rod.vdb", "--angles", "12", "-o", "rod.exr"),
         "vam-resample": run("vam-resample", *printer, "rod.exr", "-o", "frames.exr"),
-        "vam-stack": run("vam-stack", "light.exr", "-o", "copy.exr"),
+        "vam-convert": run("vam-convert", "join", "light.exr", "-o", "copy.exr"),
         "vam-check": run("vam-check", "light.exr"),
         "vam-view": run("vam-view", "rod.vdb", "-o", "rod.png"),
     }

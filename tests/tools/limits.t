@@ -23,9 +23,9 @@ else
   quiet 'also for sinograms' refused vam-sinogram part.vdb --angles 8 -o alone.exr
   quiet 'and stacks' refused vam-resample alone.exr -o resampled.exr
   # Tools without volumes need no thread but their own.
-  quiet 'a tool without volumes starts with one thread' refused_from 1 vam-stack alone.exr --slices 1/2 -o half.exr
-  fails 71 '^vam-stack: needs more threads than the system gives; raise its limit \(ulimit -u\), or use --threads 1$' \
-    refused_from 2 vam-stack alone.exr --slices 1/2 --threads 2 -o half.exr
+  quiet 'a tool without volumes starts with one thread' refused_from 1 vam-convert cut alone.exr --slices 1/2 -o half.exr
+  fails 71 '^vam-convert: needs more threads than the system gives; raise its limit \(ulimit -u\), or use --threads 1$' \
+    refused_from 2 vam-convert cut alone.exr --slices 1/2 --threads 2 -o half.exr
   fails 71 'figure: needs one thread more than the system gives; raise its limit' refused vam-view part.vdb -o x.png
 fi
 nobody() { setpriv --reuid=54321 --regid=54321 --clear-groups "$@"; }  # who has no other process
@@ -135,7 +135,7 @@ vam-convert few.mkv --geometry parallel --pixel 1 -o few-new.exr
 vam-project few.exr --printer printer.toml -o few-frames/
 vam-check part.vdb few-sino.exr printer.toml few.mkv
 vam-sdf box.off part.vdb --isovalue 0.5 --samples 2000 -o few.ply
-vam-stack few-sino.exr -o few-new.exr
+vam-convert join few-sino.exr -o few-new.exr
 vam-plan box.off
 vam-report part.vdb few-sino.exr -o few.html
 vam-capture --printer printer.toml --set camera.device=sim: --frames 2 -o few-captured

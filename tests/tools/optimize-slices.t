@@ -6,10 +6,10 @@ vam-slice --shape gyroid:diameter=1.6,height=9 --voxel 0.1 -o part.vdb || exit 1
 n=94
 optimised() {  # optimised NAME PIECES OPTIONS...: in pieces and as a whole
   name=$1 pieces=$2; shift 2
-  vam-optimize part.vdb "$@" | vam-stack -o "$name.exr"
+  vam-optimize part.vdb "$@" | vam-convert join -o "$name.exr"
   for i in $(seq "$pieces"); do vam-optimize part.vdb "$@" --slices "$i/$pieces" -o "$name.$i.exr" || echo '# failed'; done
   # shellcheck disable=SC2046
-  vam-stack $(seq "$pieces" | sed "s/.*/$name.&.exr/") -o "$name.joined.exr"
+  vam-convert join $(seq "$pieces" | sed "s/.*/$name.&.exr/") -o "$name.joined.exr"
   same "$name: $pieces pieces are the undivided stack" "$name.exr" "$name.joined.exr"
 }
 optimised parallel 2 --geometry parallel --angles 24

@@ -70,7 +70,7 @@ is 'no state is left of either' "$(ls batch/*.state 2>/dev/null | wc -l)" 0
 is 'each job has its log' "$(cd batch/log && ls | sed 's/[0-9][0-9]*/N/g' | tr '\n' ' ')" 'end-N.log part.gather-N.log part.piece-N_N.log part.piece-N_N.log part.slice-N.log '
 is 'no job is left' "$(squeue -h | wc -l)" 0
 # shellcheck disable=SC2086
-vam-optimize batch/part.vdb $optimize --printer level.toml | vam-stack -o whole.exr
+vam-optimize batch/part.vdb $optimize --printer level.toml | vam-convert join -o whole.exr
 same 'the projections are those of one undivided run' batch/part.exr whole.exr
 is 'the part has its figures' "$(cut -f 1 batch/summary.tsv | tr '\n' ' ')" 'name part '
 is 'all is made' "$(vam-batch --plan parts.tsv | grep -c vam-)" 0

@@ -17,13 +17,13 @@ is '--plan prints the commands' "$(grep -c '^vam-' plan)" 8
 quiet 'a queue is made' vam-batch --jobs 2 parts.tsv
 is 'a line for each part' "$(cut -f 1 batch/summary.tsv | tr '\n' ' ')" 'name one two '
 is 'with its figures' "$(awk -F '\t' 'NR > 1 && $2 >= 0 && $4 > 0.5' batch/summary.tsv | wc -l)" 2
-vam-optimize batch/two.vdb --method dose-norm --angles 12 --printer level.toml | vam-stack -o whole.exr
+vam-optimize batch/two.vdb --method dose-norm --angles 12 --printer level.toml | vam-convert join -o whole.exr
 same 'joined pieces are the undivided stack' batch/two.exr whole.exr
 is 'a second run does nothing' "$(vam-batch --plan parts.tsv | grep -c '^vam-')" 0
 is 'the beginning of each result is kept' "$(cut -f 1 batch/begun.tsv | grep '^batch/two' | sort | tr '\n' ' ')" \
   'batch/two.1.exr batch/two.2.exr batch/two.exr batch/two.json batch/two.vdb '
 rm batch/two.2.exr
-is 'a lost piece is made again' "$(vam-batch --plan parts.tsv | grep '^vam-' | cut -d ' ' -f 1 | tr '\n' ' ')" 'vam-optimize vam-stack vam-dose '
+is 'a lost piece is made again' "$(vam-batch --plan parts.tsv | grep '^vam-' | cut -d ' ' -f 1 | tr '\n' ' ')" 'vam-optimize vam-convert vam-dose '
 quiet 'and joined' vam-batch parts.tsv
 same 'in the same bytes' batch/two.exr whole.exr
 sed -i '3s/--angles 12/--angles 10/' parts.tsv

@@ -78,7 +78,7 @@ volume|1|vam-sdf new.dose.vdb part.vdb --isovalue 1
 volume|1|vam-convert new.part.vdb -o no.npy
 stack|1|vam-check new.light.exr
 stack|1|vam-check --fast new.light.exr
-stack|1|vam-stack new.light.exr --slices 0:2 -o no.exr
+stack|1|vam-convert cut new.light.exr --slices 0:2 -o no.exr
 stack|1|vam-dose new.light.exr $printer -o no.vdb
 stack|1|vam-project new.light.exr $printer -o no.mkv
 stack|1|vam-resample new.sino.exr -o no.exr
@@ -132,7 +132,7 @@ for file in part.vdb light.exr print.mkv; do
 done
 
 # It goes along
-vam-stack light.exr --slices 1/2 -o a.exr; vam-stack light.exr --slices 2/2 -o b.exr; vam-stack b.exr a.exr -o whole.exr
+vam-convert cut light.exr --slices 1/2 -o a.exr; vam-convert cut light.exr --slices 2/2 -o b.exr; vam-convert join b.exr a.exr -o whole.exr
 is 'a piece states it' "$($exr attr a.exr vam:version)" 1
 same 'pieces are joined to the same bytes' whole.exr light.exr
 vam-convert part.vdb -o part.npy && vam-convert part.npy --voxel 0.25 --stretch-z 1 -o again.vdb && ok 'one that was converted states it' grep -aq vam:version again.vdb

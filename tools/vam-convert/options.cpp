@@ -24,6 +24,7 @@ void declare_volume(cli::App& app, Options& options) {
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{model::least_stretch, model::most_stretch},
              "Interpolate the array along z to this multiple of its height, recorded as vam:stretch_z: for a target "
              "1/M_vp of the printer, as vam-slice has it.");
+  app.brief("Stretch the array along z, a target by 1/M_vp of the printer. Default: 1.");
   app.default_is("1, with a warning if the print of a target will have another height than the array");
 }
 
@@ -40,7 +41,8 @@ void declare_projections(cli::App& app, Options& options) {
   app.option("--like", "FILE", options.like,
              "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer; with "
              "--geometry vial also those above and below that climbing rays light. vam-dose --like FILE needs them.")
-      .reads();
+      .reads()
+      .brief("Volume (VDB) whose slices the stack gets. Default: those of the array or images.");
   app.default_is("the slices of the array, the rows of the images");
   app.option("--view-step", "DEG", options.view_step_deg, {-180, 180},
              "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections "

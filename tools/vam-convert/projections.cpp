@@ -23,7 +23,7 @@
 #include "optics/writable_radius.hpp"
 #include "vam-convert/images.hpp"
 #include "vam-convert/resliced.hpp"
-#include "vam-convert/slices.hpp"
+#include "vam-convert/sinograms.hpp"
 #include "vam-convert/stage_angles.hpp"
 
 namespace vam::convert_tool {

@@ -7,7 +7,7 @@
 
 #include "base/image.hpp"
 #include "model/grid.hpp"
-#include "vam-convert/slices.hpp"
+#include "vam-convert/sinograms.hpp"
 
 namespace vam::convert_tool {
 

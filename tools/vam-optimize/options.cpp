@@ -300,8 +300,8 @@ void declare(cli::App& app, Options& options) {
   app.option(
       "--slices", "SLICES", options.slices,
       "Compute these slices only, counted from 0 at the bottom: FROM to TO - 1 as FROM:TO, or the I-th of N "
-      "similar shares as I/N, which begin at multiples of 64. vam-stack joins such pieces to the stack of the whole "
-      "part, with the same images and attributes. "
+      "similar shares as I/N, which begin at multiples of 64. vam-convert join makes of such pieces the stack "
+      "of the whole part, with the same images and attributes. "
       "For level rays (projector.telecentric, --geometry parallel): rays that climb couple all slices (IMPLEMENTATION "
       "NOTES). The report describes these slices. Does not apply to options that need the whole part: --preview, "
       "--budget, "

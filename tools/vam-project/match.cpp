@@ -44,7 +44,7 @@ void require_whole(const std::string& input, const model::StackInfo& info) {
   if (info.piece.whole()) return;
   throw Error{Fault::data, io::input_name(input) + ": holds " + std::to_string(info.count) + " of " +
                                std::to_string(info.piece.of) + " slices (vam:piece " + model::piece_text(info.piece) +
-                               "); join the pieces by vam-stack"};
+                               "); join the pieces by vam-convert join"};
 }
 
 void write_frozen(const std::string& path, model::Printer printer) {

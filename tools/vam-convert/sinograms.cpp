@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-convert/slices.hpp"
+#include "vam-convert/sinograms.hpp"
 
 #include <algorithm>
 #include <cmath>
