@@ -19,6 +19,7 @@
 #include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
 #include "metrology/cure/sensitivity.hpp"
+#include "vam-correct/renew.hpp"
 
 namespace {
 
@@ -208,8 +209,12 @@ int main(int argc, char** argv) {
   cli::App app({"vam-correct",
                 "measure where a print cures ahead of its dose or behind it, once a turn",
                 manual_page,
-                {{1, "There is doubt: no new light should be computed from this turn."}}});
+                {{1, "There is doubt: no new light should be computed from this turn."},
+                 {130, "renew: SIGINT."},
+                 {143, "renew: SIGTERM or SIGHUP."}}});
   Options options;
   declare(app, options);
-  return app.run(argc, argv, [&] { run(app, options); });
+  std::string command;
+  const auto renew = correct_tool::declare_renew(app, command);
+  return app.run(argc, argv, [&] { command.empty() ? run(app, options) : renew(); });
 }

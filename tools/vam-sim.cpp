@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   cli::App app({"vam-sim",
                 "simulate a rotation stage, or a camera beside the vial",
                 manual_page,
-                {{69, "No pseudo-terminal is available, or the library of --shim is missing."},
+                {{69, "No pseudo-terminal is available."},
                  {75, "The address is in use by another camera, or cannot serve one."},
                  {129, "SIGHUP."},
                  {130, "SIGINT."},

@@ -164,7 +164,7 @@ def broken(path, fault, first):
 
 
 def closed_loop(plan, folder, truth, fault="", fault_turn=0):
-    """Deviations by turns; vam-renew takes the volume of each. Without new light the print ends as planned."""
+    """Deviations by turns; vam-correct renew takes the volume of each. Without new light the print ends as planned."""
     one = Print(plan, folder, truth)
     light, end, found, axis, first = "sinogram.exr", LAST_TURN, {}, "1", ""
     if fault:
@@ -195,7 +195,7 @@ def closed_loop(plan, folder, truth, fault="", fault_turn=0):
         first = first or folder + "/ost/scatter-0000.vdb"
         with open(folder + "/ost.jsonl", "a") as log:
             print(json.dumps({"turns": turn + 1, "time_s": 18 * turn + 18}), file=log)
-        run("vam-renew", ".", "--target", plan.folder + "/part.vdb", "--curve", plan.curve, "--turns",
+        run("vam-correct", "renew", ".", "--target", plan.folder + "/part.vdb", "--curve", plan.curve, "--turns",
             plan.turns, "--axis-sigma", axis, "--once", number, *(["--lead", "1.5"] if failing == "late" else []),
             folder=folder, good=(0, 1))
     one.end()

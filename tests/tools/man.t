@@ -32,10 +32,9 @@ fi
 undue=$(awk '/^\./ { body = "" } /^Default: none/ && body !~ /One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { body = body " " $0 }' "$VAM_SOURCE"/man/*.1)
 is 'no page says "Default: none" of an option without a value none' "$undue" ""
 
-for script in vam-batch vam-renew vam-print vam-calibrate-all; do
+for script in vam-batch vam-print vam-calibrate-all; do
   options='display light set home' value=display:DEVICE switch=home repeatable=1
   [ $script != vam-batch ] || options='folder jobs slurm plan forecast' value=folder:DIR switch=plan repeatable=0
-  [ $script != vam-renew ] || options='target curve turns once' value=target:PART switch= repeatable=0
   page=$VAM_SOURCE/man/$script.1
   is "$script: mandoc -Tlint is silent" "$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')" ""
   ok "$script: --help" "$VAM_SOURCE/scripts/$script" --help
@@ -52,7 +51,7 @@ for script in vam-batch vam-renew vam-print vam-calibrate-all; do
   done
   ok "$script: bash accepts its completion" bash -n "$script.bash"
   is "$script: a value, a switch, and what may be repeated" \
-    "$(grep -c "^  '--${value%:*}\[.*\]:${value#*:}:_files'" "$script.zsh") $(grep -c "^  '--$switch\[.*\.\]' " "$script.zsh") $(grep -c "^  '\*--set" "$script.zsh")" "1 $([ -n "$switch" ] && echo 1 || echo 0) $repeatable"
+    "$(grep -c "^  '--${value%:*}\[.*\]:${value#*:}:_files'" "$script.zsh") $(grep -c "^  '--$switch\[.*\.\]' " "$script.zsh") $(grep -c "^  '\*--set" "$script.zsh")" "1 1 $repeatable"
 
   mkdir -p installed/bin installed/share/man/man1  # as packages have it
   cp "$VAM_SOURCE/scripts/$script" installed/bin

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # vam-correct: volumes and a record to the dose that the light for the rest starts from, and what it refuses;
-# tests/lib/metrology judges the fit, vam-renew.t what a print makes of it.
+# tests/lib/metrology judges the fit, vam-correct-renew.t what a print makes of it.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 python3 - <<'PY'
 import math, struct

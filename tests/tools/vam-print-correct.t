@@ -84,7 +84,7 @@ ok 'its state names the turn at which it ended, and the sensitivity' awk '{ for 
 wait $open
 is 'with the record of another resin it goes on as planned' "$? $(json open/summary.json outcome)" '0 stopped by vam-ost'
 ok 'and says so' grep -q 'not corrected: vam-dose: flips.jsonl: no light .*; see .*renewed.jsonl' open.err
-is 'why, without names of scratch files' "$(grep -c '"event":"hold".*vam-renew[.]' open/renewed.jsonl)" 0
+is 'why, without names of scratch files' "$(grep -c '"event":"hold".*vam-correct[.]' open/renewed.jsonl)" 0
 wait $lost; status=$?
 sed 's/^/# /' lost.err
 is 'without its camera it is completed in open loop' "$status $(json lost/summary.json outcome)" '1 complete, in open loop'

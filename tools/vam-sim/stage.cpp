@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
+#include "cli/companion.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"
 #include "device/port/lines.hpp"
@@ -95,16 +96,6 @@ void declare(cli::App& app, StageOptions& options) {
   app.usual({"--max-speed", "--start-angle", "--protocol", "--address", "--fault", "--seed", "--log", "--link"});
 }
 
-// Beside the program in a build tree (bin/../lib), or where it is installed.
-std::string shim_path() {
-  const auto prefix = std::filesystem::canonical("/proc/self/exe").parent_path().parent_path();
-  for (const char* folder : {"lib/vam", VAM_LIBDIR "/vam"}) {
-    const auto candidate = prefix / folder / "vam-pty-shim.so";
-    if (std::filesystem::exists(candidate)) return candidate;
-  }
-  throw Error{Fault::absent, "vam-pty-shim.so: not found beside this program; reinstall the tools"};
-}
-
 class Link {
  public:
   Link(const std::string& path, const std::string& target) : path_(path) {
@@ -126,7 +117,7 @@ class Link {
 };
 
 void run(StageOptions& options) {
-  if (options.shim) return device::print_line(shim_path());
+  if (options.shim) return device::print_line(cli::companion("vam-pty-shim.so"));
   if (options.with_parent) device::end_with_parent();
   options.stage.latency_s = 1e-3 * options.reply_delay_ms;
   options.stage.jitter_s = 1e-3 * options.jitter_ms;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a print that corrects itself has found of resin and axis, and what it does about it (vam-renew).
+// What a print that corrects itself has found of resin and axis, and what it does about it (vam-correct renew).
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: COST 50
-# vam-renew and vam-correct in a simulated print without a clock: the resin is less sensitive at its upper end, absorbs
+# vam-correct renew in a simulated print without a clock: the resin is less sensitive at its upper end, absorbs
 # more and the axis is 0.2 mm beside its place, of which the plan knows nothing.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 export PATH="$VAM_SOURCE/scripts:$VAM_BUILD:$PATH"
@@ -67,7 +67,7 @@ for turn in $(seq 0 29); do
   number=$(find closed/ost -name '*.vdb' | wc -l)
   mv of_turn/scatter-0000.vdb closed/ost/scatter-$(printf %04d $number).vdb
   echo "{\"turns\":$((turn + 1)),\"time_s\":$((18 * turn + 18))}" >>closed/ost.jsonl
-  vam-renew closed --target part.vdb --curve curve.json --turns "$planned" --axis-sigma 1 --once $number || held=$((held + 1))
+  vam-correct renew closed --target part.vdb --curve curve.json --turns "$planned" --axis-sigma 1 --once $number || held=$((held + 1))
 done
 closed=$(deviation closed)
 exec 3>&- 4<&-
@@ -82,7 +82,7 @@ of_the_past=$(find closed/ost -name '*.vdb' | sort | tail -n 1)
 number=$(find closed/ost -name '*.vdb' | wc -l)
 cp "$of_the_past" closed/ost/scatter-$(printf %04d $number).vdb
 echo "{\"turns\":30,\"time_s\":540}" >>closed/ost.jsonl
-vam-renew closed --target part.vdb --curve curve.json --turns "$planned" --axis-sigma 1 --once $number
+vam-correct renew closed --target part.vdb --curve curve.json --turns "$planned" --axis-sigma 1 --once $number
 is 'from a volume that comes again there is no new light' $? 1
 is 'for the reason that is told' "$(grep -c "\"event\":\"hold\".*is the volume ${of_the_past##*/} again" closed/renewed.jsonl)" 1
 echo "# open at its best $best mm, closed $closed mm"

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files of a tool that are no commands: in lib/vam, beside the bin/ of a build or of what is installed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vam::cli {
+
+/// The path of the file of that name. Throws Fault::no_input where it is not there.
+[[nodiscard]] std::string companion(const std::string& name);
+
+/// Goes on as that script, in this process. It finds the tools beside this one before others. Throws Fault::no_input.
+[[noreturn]] void become_companion(const std::string& name, std::vector<std::string> arguments);
+
+}  // namespace vam::cli
