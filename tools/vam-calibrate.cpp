@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "cli/app.hpp"
 #include "manual_page.hpp"
+#include "vam-calibrate/readings.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace {
@@ -244,5 +245,12 @@ int main(int argc, char** argv) {
                 {{1, "A result does not meet its requirements and is not put in force."}}});
   AllOptions all_options;
   declare(app, all_options);
-  return app.run(argc, argv, [&] { run(app, all_options); });
+  std::string& command = all_options.scan.command;
+  const auto photodiode = calibrate_tool::declare_photodiode(app, command);
+  const auto cure_depth = calibrate_tool::declare_cure_depth(app, command);
+  return app.run(argc, argv, [&] {
+    if (command == "photodiode") return photodiode();
+    if (command == "cure-depth") return cure_depth();
+    run(app, all_options);
+  });
 }

@@ -14,24 +14,16 @@ int main(int argc, char** argv) {
   std::string chosen;
   curethrough::ModelOptions model;
   curethrough::CorrectOptions correct;
-  curethrough::WorkingCurveOptions working_curve;
-  curethrough::GreyResponseOptions response;
   curethrough::SweepOptions sweep;
   cli::App& for_model = app.subcommand("model", "compute dose and cure map of slices", chosen);
   cli::App& for_correct = app.subcommand("correct", "compute slices without cure-through", chosen);
-  cli::App& for_curve = app.subcommand("working-curve", "fit absorbance height and gelation threshold", chosen);
-  cli::App& for_response = app.subcommand("response", "fit the grey response to photodiode readings", chosen);
   cli::App& for_sweep = app.subcommand("sweep", "study parameters on a ladder", chosen);
   curethrough::declare(for_model, model);
   curethrough::declare(for_correct, correct);
-  curethrough::declare(for_curve, working_curve);
-  curethrough::declare(for_response, response);
   curethrough::declare(for_sweep, sweep);
   return app.run(argc, argv, [&] {
     if (chosen == "model" && !tool::print_printer(model.print.printer)) run(app, for_model, model);
     if (chosen == "correct" && !tool::print_printer(correct.print.printer)) run(app, for_correct, correct);
-    if (chosen == "working-curve") run(app, for_curve, working_curve);
-    if (chosen == "response") run(app, for_response, response);
     if (chosen == "sweep" && !tool::print_printer(sweep.print.printer)) run(app, for_sweep, sweep);
   });
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/stats/student.hpp"
 #include "base/text.hpp"
 #include "plot/canvas.hpp"
 #include "plot/plot.hpp"
@@ -23,12 +22,6 @@ constexpr Rgb shade{235, 235, 235};
 
 // Empty, correctly cured, cure-through (red), undercured (blue), as in [CURE19 fig 2c].
 constexpr std::array<Rgb, 4> cure_colours{paint::white, cured, red, paint::blue};
-
-std::vector<double> sequence(double from, double to, int count) {
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) values.push_back(from + (to - from) * i / (count - 1));
-  return values;
-}
 
 RgbImage slices_image(const PlaneFigure& plane, const resin::Response& response) {
   RgbImage image(plane.light.width, plane.light.height);
@@ -80,30 +73,6 @@ void draw_column(plot::Canvas& canvas, plot::PlotFrame frame, const PlaneFigure&
   canvas.text({frame.right, frame.top - 14}, "grey 0..1", plot::label_size, paint::blue, plot::Align::end);
 }
 
-/// The line and its confidence interval.
-struct LineBand {
-  std::vector<double> at, line, low, high;
-};
-
-LineBand band_of(const std::vector<resin::CuredSample>& samples, const resin::WorkingCurve& curve, double most) {
-  double mean = 0;
-  for (const auto& sample : samples) mean += std::log10(sample.exposure_mj_cm2) / static_cast<double>(samples.size());
-  double spread = 0;
-  for (const auto& sample : samples) spread += std::pow(std::log10(sample.exposure_mj_cm2) - mean, 2);
-  const double count = curve.samples;
-  const double t = stats::student_quantile(1 - curve.confidence, count - 2);
-  LineBand band;
-  for (const double power : sequence(std::log10(0.8 * curve.critical_exposure_mj_cm2), std::log10(1.3 * most), 200)) {
-    const double value = curve.absorbance_height_um * (power - std::log10(curve.critical_exposure_mj_cm2));
-    const double error = t * curve.residual_sd_um * std::sqrt(1 / count + std::pow(power - mean, 2) / spread);
-    band.at.push_back(std::pow(10, power));
-    band.line.push_back(value);
-    band.low.push_back(value - error);
-    band.high.push_back(value + error);
-  }
-  return band;
-}
-
 }  // namespace
 
 void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSettings& print) {
@@ -131,49 +100,6 @@ void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSe
     at += plot::Canvas::text_width(words, plot::label_size) + 20;
   }
   plot::save(path, canvas);
-}
-
-void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,
-                        const resin::WorkingCurve& curve) {
-  std::array<std::vector<double>, 2> x;  // kept, flagged
-  std::array<std::vector<double>, 2> y;
-  double most = 0;
-  double highest = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    x[curve.outlier[i]].push_back(samples[i].exposure_mj_cm2);
-    y[curve.outlier[i]].push_back(samples[i].thickness_um);
-    most = std::max(most, samples[i].exposure_mj_cm2);
-    highest = std::max(highest, samples[i].thickness_um);
-  }
-  const LineBand band = band_of(samples, curve, most);
-  plot::Plot plot;
-  plot.title = "h_a = " + format_number(curve.absorbance_height_um, 4) +
-               " µm per decade (log10), D_c = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm³";
-  plot.x = {"exposure E (mJ/cm²)", band.at.front(), band.at.back(), true};
-  plot.y = {"cured thickness (µm)", 0, 1.12 * highest};
-  plot.series = {{"least squares", band.at, band.line, paint::blue, plot::SeriesStyle::line},
-                 {format_number(100 * curve.confidence) + " % of the line", band.at, band.low, paint::grey,
-                  plot::SeriesStyle::line},
-                 {"", band.at, band.high, paint::grey, plot::SeriesStyle::line},
-                 {"samples", x[0], y[0], paint::black, plot::SeriesStyle::points}};
-  if (!x[1].empty()) plot.series.push_back({"outliers, kept in the fit", x[1], y[1], red, plot::SeriesStyle::points});
-  plot::save(path, plot::draw(plot));
-}
-
-void draw_response(const std::string& path, const model::ResponseTable& table) {
-  const resin::Response response(table);
-  const double full = table.grey.back();
-  const double light = table.intensity.back();
-  const std::vector<double> at = sequence(0, full, 300);
-  std::vector<double> curve;
-  for (const double g : at) curve.push_back(response.intensity(g / full) * light);
-  plot::Plot plot;
-  plot.title = "grey response";
-  plot.x = {"grey", 0, full};
-  plot.y = {"intensity", 0, 1.05 * light};
-  plot.series = {{"monotone cubic", at, curve, paint::blue, plot::SeriesStyle::line},
-                 {"mean readings", table.grey, table.intensity, paint::black, plot::SeriesStyle::points}};
-  plot::save(path, plot::draw(plot));
 }
 
 void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& points, double slice_um) {

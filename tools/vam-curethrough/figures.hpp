@@ -8,7 +8,6 @@
 #include "base/image.hpp"
 #include "resin/curethrough/cure_map.hpp"
 #include "resin/curethrough/sweep.hpp"
-#include "resin/working_curve.hpp"
 #include "vam-curethrough/print.hpp"
 
 namespace vam::curethrough {
@@ -28,9 +27,6 @@ struct PlaneFigure {
 
 /// As [CURE19 fig 2b-d and 4a-c]: the slices, the cure map, grey and dose along the column.
 void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSettings& print);
-void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,
-                        const resin::WorkingCurve& curve);
-void draw_response(const std::string& path, const model::ResponseTable& table);
 /// As [CURE19 fig 5c]: the ratio of height errors against the assumed full-cure dose.
 void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& points, double slice_um);
 

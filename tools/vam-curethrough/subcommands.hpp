@@ -47,26 +47,6 @@ struct ModelOptions {
 void declare(cli::App& app, ModelOptions& options);
 void run(const cli::App& root, const cli::App& app, const ModelOptions& options);
 
-struct WorkingCurveOptions {
-  std::string input = "-";
-  double confidence = 0.95;
-  std::string plot;
-  std::string report;
-};
-void declare(cli::App& app, WorkingCurveOptions& options);
-void run(const cli::App& root, const cli::App& app, const WorkingCurveOptions& options);
-
-struct GreyResponseOptions {
-  std::string input = "-";
-  std::string output = "-";
-  double dark = 0;
-  double scale = 1;
-  std::string plot;
-  std::string report;
-};
-void declare(cli::App& app, GreyResponseOptions& options);
-void run(const cli::App& root, const cli::App& app, const GreyResponseOptions& options);
-
 struct SweepOptions {
   PrintOptions print;
   std::string ranges = "df_over_dc=1..8,omega_max=1..5";

@@ -1,19 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The projector's grey response from photodiode readings.
+// vam-calibrate photodiode: the projector's grey response from readings of a photodiode.
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "cli/common.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
+#include "plot/plot.hpp"
+#include "plot/save.hpp"
+#include "resin/response.hpp"
 #include "resin/response_fit.hpp"
-#include "vam-curethrough/figures.hpp"
-#include "vam-curethrough/subcommands.hpp"
+#include "vam-calibrate/readings.hpp"
 
-namespace vam::curethrough {
+namespace vam::calibrate_tool {
 
-void declare(cli::App& app, GreyResponseOptions& options) {
+namespace {
+
+struct PhotodiodeOptions {
+  std::string input = "-";
+  std::string output = "-";
+  double dark = 0;
+  double scale = 1;
+  std::string plot;
+  std::string report;
+};
+
+void declare(cli::App& app, PhotodiodeOptions& options) {
   app.positional("DATA", options.input, "CSV with the columns grey,reading; one line per measurement.").reads();
   cli::add_output(app, options.output);
   app.option("--dark-reading", "READING", options.dark, cli::any,
@@ -24,7 +40,26 @@ void declare(cli::App& app, GreyResponseOptions& options) {
   cli::add_report(app, options.report);
 }
 
-void run(const cli::App& root, const cli::App&, const GreyResponseOptions& options) {
+void draw(const std::string& path, const model::ResponseTable& table) {
+  const resin::Response response(table);
+  const double full = table.grey.back();
+  const double light = table.intensity.back();
+  constexpr int steps = 300;
+  std::vector<double> at, curve;
+  for (int i = 0; i <= steps; ++i) {
+    at.push_back(full * i / steps);
+    curve.push_back(response.intensity(static_cast<double>(i) / steps) * light);
+  }
+  plot::Plot plot;
+  plot.title = "grey response";
+  plot.x = {"grey", 0, full};
+  plot.y = {"intensity", 0, 1.05 * light};
+  plot.series = {{"monotone cubic", at, curve, plot::paint::blue, plot::SeriesStyle::line},
+                 {"mean readings", table.grey, table.intensity, plot::paint::black, plot::SeriesStyle::points}};
+  plot::save(path, plot::draw(plot));
+}
+
+void measure(const cli::App& root, const PhotodiodeOptions& options) {
   const io::CsvTable csv = io::read_csv(options.input, {"grey", "reading"});
   std::vector<resin::PhotodiodeReading> readings;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) readings.push_back({csv.number(row, 0), csv.number(row, 1)});
@@ -35,7 +70,7 @@ void run(const cli::App& root, const cli::App&, const GreyResponseOptions& optio
     text += format_number(fit.table.grey[i], 9) + "," + format_number(fit.table.intensity[i], 9) + "\n";
   }
   io::write_text(options.output, text);
-  if (!options.plot.empty()) draw_response(options.plot, fit.table);
+  if (!options.plot.empty()) draw(options.plot, fit.table);
   Json report{{"levels", fit.table.grey.size()},
               {"readings", readings.size()},
               {"contrast", nullptr},
@@ -45,7 +80,15 @@ void run(const cli::App& root, const cli::App&, const GreyResponseOptions& optio
               {"min_intensity", fit.table.intensity.front()},
               {"max_intensity", fit.table.intensity.back()}};
   if (std::isfinite(fit.contrast)) report["contrast"] = fit.contrast;
-  io::write_report(options.report, "vam-curethrough-response", report);
+  io::write_report(options.report, "vam-photodiode", report);
 }
 
-}  // namespace vam::curethrough
+}  // namespace
+
+std::function<void()> declare_photodiode(cli::App& app, std::string& command) {
+  const auto options = std::make_shared<PhotodiodeOptions>();
+  declare(app.subcommand("photodiode", "intensity by grey level, from readings of a photodiode", command), *options);
+  return [&app, options] { measure(app, *options); };
+}
+
+}  // namespace vam::calibrate_tool
