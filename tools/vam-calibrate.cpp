@@ -18,12 +18,16 @@ namespace {
 using namespace vam;
 using calibrate_tool::CriticalDoseOptions;
 using calibrate_tool::ResinOptions;
+using calibrate_tool::Scan;
 using calibrate_tool::ScanOptions;
 using calibrate_tool::WorkingCurveOptions;
 
 enum class Flips { none, optional, required };
 
-void add_input(cli::App& scan, ScanOptions& o, Flips flips) {
+/// A scan of captured frames.
+cli::App& add_scan(cli::App& app, ScanOptions& o, const std::string& name, const std::string& summary, Scan work,
+                   Flips flips) {
+  auto& scan = app.subcommand(name, summary, [&app, &o, name, work] { run_scan(app, name, work, o); });
   scan.positional("FRAMES", o.from, "EXR stack or folder of vam-capture, or a folder of images.").reads();
   if (flips != Flips::none) {
     scan.option("--flips", "FILE", o.flips, "Log of vam-project: which pattern frame was on and when.").reads();
@@ -34,6 +38,7 @@ void add_input(cli::App& scan, ScanOptions& o, Flips flips) {
       "Identities of the devices in use, for the record: a JSON object like {\"camera\": ...} of the outputs of "
       "identify.");
   cli::add_printer(scan, o.printer);
+  return scan;
 }
 
 void add_dark(cli::App& scan, ScanOptions& o) {
@@ -46,8 +51,8 @@ void add_heights(cli::App& scan, ScanOptions& o) {
 }
 
 void add_edges(cli::App& app, ScanOptions& o) {
-  auto& scan = app.subcommand("edges", "axis, wobble, radius and tilt of the vial, from sweeps of a line", o.command);
-  add_input(scan, o, Flips::optional);
+  auto& scan = add_scan(app, o, "edges", "axis, wobble, radius and tilt of the vial, from sweeps of a line",
+                        calibrate_tool::scan_edges, Flips::optional);
   scan.option("--pitch", "PX", o.pitch_px, {1, 1000}, "Step of the sweep.");
   scan.option("--width", "PX", o.width_px, {1, 1000}, "Width of the swept line.");
   add_heights(scan, o);
@@ -55,22 +60,22 @@ void add_edges(cli::App& app, ScanOptions& o) {
 }
 
 void add_response(cli::App& app, ScanOptions& o) {
-  auto& scan = app.subcommand("response", "intensity by grey level, from a ramp of uniform levels", o.command);
-  add_input(scan, o, Flips::optional);
+  auto& scan = add_scan(app, o, "response", "intensity by grey level, from a ramp of uniform levels",
+                        calibrate_tool::scan_response, Flips::optional);
   scan.option("--steps", "N", o.steps, {2, 65536}, "Levels of the ramp.");
   add_dark(scan, o);
 }
 
 void add_flat(cli::App& app, ScanOptions& o) {
-  auto& scan = app.subcommand("flat", "flat field of the camera, from frames of a uniform scene", o.command);
-  add_input(scan, o, Flips::optional);
+  auto& scan = add_scan(app, o, "flat", "flat field of the camera, from frames of a uniform scene",
+                        calibrate_tool::scan_flat, Flips::optional);
   add_dark(scan, o);
 }
 
 void add_beam(cli::App& app, ScanOptions& o) {
-  auto& scan = app.subcommand(
-      "beam", "width and divergence of the beam, on a sensor moved along it or from the side in resin", o.command);
-  add_input(scan, o, Flips::optional);
+  auto& scan =
+      add_scan(app, o, "beam", "width and divergence of the beam, on a sensor moved along it or from the side in resin",
+               calibrate_tool::scan_beam, Flips::optional);
   scan.flag("--side", o.side,
             "The frames show a lit row in fluorescent resin from the side (vam-project --pattern row).")
       .form();
@@ -85,16 +90,15 @@ void add_beam(cli::App& app, ScanOptions& o) {
 }
 
 void add_axis(cli::App& app, ScanOptions& o) {
-  auto& scan = app.subcommand("axis", "rotation axis and wobble in the camera's frames of a turn", o.command);
-  add_input(scan, o, Flips::none);
+  auto& scan = add_scan(app, o, "axis", "rotation axis and wobble in the camera's frames of a turn",
+                        calibrate_tool::scan_axis, Flips::none);
   scan.option("--view-step", "DEG", o.step_deg, cli::any, "Angle between frames without recorded angles, not 0.");
   add_heights(scan, o);
 }
 
 void add_delays(cli::App& app, ScanOptions& o) {
-  auto& lag =
-      app.subcommand("lag", "delay of the camera's time stamps, from a bead turned in both directions", o.command);
-  add_input(lag, o, Flips::none);
+  auto& lag = add_scan(app, o, "lag", "delay of the camera's time stamps, from a bead turned in both directions",
+                       calibrate_tool::scan_lag, Flips::none);
   lag.positional("REVERSE", o.reverse, "Frames of a turn in the opposite direction (vam-stage spin --direction -1).")
       .reads();
   lag.option(
@@ -104,14 +108,13 @@ void add_delays(cli::App& app, ScanOptions& o) {
       .reads()
       .default_is("the angles of the frames");
   add_heights(lag, o);
-  add_input(
-      app.subcommand("latency", "delay of the projector from a flip to its light, from a blinking screen", o.command),
-      o, Flips::required);
+  add_scan(app, o, "latency", "delay of the projector from a flip to its light, from a blinking screen",
+           calibrate_tool::scan_latency, Flips::required);
 }
 
 void add_registration(cli::App& app, ScanOptions& o) {
-  auto& scan =
-      app.subcommand("registration", "height, angle and scale of the camera in the projector's frame", o.command);
+  auto& scan = app.subcommand("registration", "height, angle and scale of the camera in the projector's frame",
+                              [&app, &o] { run_scan(app, "registration", calibrate_tool::scan_registration, o); });
   scan.positional("PRINT", o.from,
                   "Scattering volume of a print (vam-ost), as it stands in the vial, with --isovalue; or its mesh.")
       .reads();
@@ -126,15 +129,17 @@ void add_registration(cli::App& app, ScanOptions& o) {
 }
 
 void add_check(cli::App& app, ScanOptions& o) {
-  auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);
+  auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid",
+                               [&o] { check_records(o); });
   check.option("--need", "SCANS", o.needed, "Scans whose records are required, separated by commas.");
   check.option("--devices", "FILE", o.devices,
                "Identities of the devices in use: records of devices with other serial numbers are refused.");
   cli::add_printer(check, o.printer);
 }
 
-void add_resin(cli::App& app, std::string& command, ResinOptions& o) {
-  auto& resin = app.subcommand("resin", "gelation threshold, from a printed standard cylinder", command);
+void add_resin(cli::App& app, ResinOptions& o) {
+  auto& resin =
+      app.subcommand("resin", "gelation threshold, from a printed standard cylinder", [&o] { measure_resin(o); });
   resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).").reads();
   resin.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
   resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.")
@@ -147,9 +152,9 @@ void add_resin(cli::App& app, std::string& command, ResinOptions& o) {
   resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.");
 }
 
-void add_working_curve(cli::App& app, std::string& command, WorkingCurveOptions& o) {
-  auto& curve =
-      app.subcommand("working-curve", "scattering against dose and its delay, from a staircase of doses", command);
+void add_working_curve(cli::App& app, WorkingCurveOptions& o) {
+  auto& curve = app.subcommand("working-curve", "scattering against dose and its delay, from a staircase of doses",
+                               [&o] { measure_working_curve(o); });
   curve.positional("SCATTER", o.scatter, "Folder of volumes of vam-ost --live, or one volume (VDB).").reads();
   curve.option("--dose", "FILE.vdb", o.dose, "Dose of the staircase in mJ/cm3 (vam-dose).").reads().required();
   curve.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
@@ -161,8 +166,9 @@ void add_working_curve(cli::App& app, std::string& command, WorkingCurveOptions&
   curve.option("--classes", "N", o.classes, {4, 256}, "Classes of dose.");
 }
 
-void add_critical_dose(cli::App& app, std::string& command, CriticalDoseOptions& o) {
-  auto& critical = app.subcommand("critical-dose", "dose with which the resin gels at the surface of a print", command);
+void add_critical_dose(cli::App& app, CriticalDoseOptions& o) {
+  auto& critical = app.subcommand("critical-dose", "dose with which the resin gels at the surface of a print",
+                                  [&o] { measure_critical_dose(o); });
   critical
       .positional(
           "PRINT", o.print,
@@ -205,22 +211,11 @@ void declare(cli::App& app, AllOptions& all) {
   add_delays(app, o);
   add_registration(app, o);
   add_check(app, o);
-  add_resin(app, o.command, all.resin);
-  add_working_curve(app, o.command, all.curve);
-  add_critical_dose(app, o.command, all.critical);
-}
-
-void run(const cli::App& app, const AllOptions& all) {
-  const std::string& command = all.scan.command;
-  if (command == "resin") {
-    calibrate_tool::measure_resin(all.resin);
-  } else if (command == "working-curve") {
-    calibrate_tool::measure_working_curve(all.curve);
-  } else if (command == "critical-dose") {
-    calibrate_tool::measure_critical_dose(all.critical);
-  } else {
-    calibrate_tool::run_scan(app, all.scan);
-  }
+  add_resin(app, all.resin);
+  add_working_curve(app, all.curve);
+  add_critical_dose(app, all.critical);
+  calibrate_tool::add_photodiode(app);
+  calibrate_tool::add_cure_depth(app);
 }
 
 /// Runs the script beside this program, or on PATH, with the arguments that follow the command. Returns the exit status
@@ -245,12 +240,5 @@ int main(int argc, char** argv) {
                 {{1, "A result does not meet its requirements and is not put in force."}}});
   AllOptions all_options;
   declare(app, all_options);
-  std::string& command = all_options.scan.command;
-  const auto photodiode = calibrate_tool::declare_photodiode(app, command);
-  const auto cure_depth = calibrate_tool::declare_cure_depth(app, command);
-  return app.run(argc, argv, [&] {
-    if (command == "photodiode") return photodiode();
-    if (command == "cure-depth") return cure_depth();
-    run(app, all_options);
-  });
+  return app.run(argc, argv);
 }

@@ -71,7 +71,9 @@ void declare(cli::App& app, Options& o) {
              "Append one JSON line per event, with UTC and monotonic time; - is standard error.");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_report(app, o.report);
-  cli::App& who = app.subcommand("identify", "print the camera, its settings and its firmware as JSON", o.command);
+  cli::App& who = app.subcommand("identify", "print the camera, its settings and its firmware as JSON", [&o] {
+    if (!tool::print_printer(o.printer)) device::interruptible([&] { capture_tool::identify(o); });
+  });
   add_camera(who, o);
   cli::add_printer(who, o.printer);
   app.usual({"--output", "--log", "--device", "--exposure", "--fps", "--gain", "--trigger", "--frames", "--view-step",
@@ -82,7 +84,6 @@ void run(const cli::App& app, const Options& options) {
   if (tool::print_printer(options.printer)) return;
   device::interruptible([&] {
     if (options.with_parent) device::end_with_parent();
-    if (options.command == "identify") return capture_tool::identify(options);
     device::logged(options.log, [&] { capture_tool::take(app, options); });
   });
 }

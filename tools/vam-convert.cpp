@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-convert: data of other programs, and from these tools to others; pieces of stacks.
-#include <string>
-
 #include "io/stream/file_type.hpp"
 #include "manual_page.hpp"
 #include "printer.hpp"
@@ -36,9 +34,7 @@ void run(const cli::App& app, const Options& options) {
 int main(int argc, char** argv) {
   cli::App app({"vam-convert", "exchange files with other programs; cut and join stacks", manual_page});
   Options options;
-  convert_tool::PieceOptions pieces;
-  std::string command;
   declare(app, options);
-  declare_pieces(app, pieces, command);
-  return app.run(argc, argv, [&] { command.empty() ? run(app, options) : copy_pieces(pieces); });
+  convert_tool::add_pieces(app);
+  return app.run(argc, argv, [&] { run(app, options); });
 }

@@ -214,7 +214,6 @@ int main(int argc, char** argv) {
                  {143, "renew: SIGTERM or SIGHUP."}}});
   Options options;
   declare(app, options);
-  std::string command;
-  const auto renew = correct_tool::declare_renew(app, command);
-  return app.run(argc, argv, [&] { command.empty() ? run(app, options) : renew(); });
+  correct_tool::add_renew(app);
+  return app.run(argc, argv, [&] { run(app, options); });
 }

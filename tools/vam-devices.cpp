@@ -144,10 +144,10 @@ int main(int argc, char** argv) {
   app.option("--port", "PATH", options.ports, "Serial port to list in addition to those of the system.");
   app.flag("--probe", options.probe, "Query the serial ports for stage controllers.");
   cli::add_report(app, options.report);
-  std::string command;
-  auto& off = app.subcommand("off", "switch everything off: light, relay, displays, stage", command);
+  auto& off =
+      app.subcommand("off", "switch everything off: light, relay, displays, stage", [&] { switch_off(options); });
   off.option("--light", "DEVICE", options.light, "Light engine, and no display; none for no light engine.")
       .default_is("every light engine on USB, and every display in use");
   cli::add_printer(off, options.printer);
-  return app.run(argc, argv, [&] { command == "off" ? switch_off(options) : run(options); });
+  return app.run(argc, argv, [&] { run(options); });
 }

@@ -129,17 +129,13 @@ int main(int argc, char** argv) {
   cli::App app({"vam-sdf", "measure the deviation of a print from its design", manual_page});
   Options options;
   HeightOptions height;
+  TrendOptions trend;
   declare(app, options);
   declare_height(app.subcommand("height", "compare a profilometer's height image of an embossed print with its design",
-                                options.command),
+                                [&] { sdf_tool::height(height); }),
                  height);
-  TrendOptions trend;
-  declare_trend(
-      app.subcommand("trend", "compare repeated prints: mean, spread and drift of every figure", options.command),
-      trend);
-  return app.run(argc, argv, [&] {
-    if (options.command == "height") return sdf_tool::height(height);
-    if (options.command == "trend") return sdf_tool::trend(trend);
-    sdf_tool::deviation(app, options);
-  });
+  declare_trend(app.subcommand("trend", "compare repeated prints: mean, spread and drift of every figure",
+                               [&] { sdf_tool::trend(trend); }),
+                trend);
+  return app.run(argc, argv, [&] { sdf_tool::deviation(app, options); });
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sim: simulated devices, for the tools that drive them.
-#include <string>
-
 #include "cli/app.hpp"
 #include "manual_page.hpp"
 #include "vam-sim/commands.hpp"
@@ -17,8 +15,7 @@ int main(int argc, char** argv) {
                  {129, "SIGHUP."},
                  {130, "SIGINT."},
                  {143, "SIGTERM."}}});
-  std::string chosen;
-  const auto stage = sim_tool::declare_stage(app, chosen);
-  const auto camera = sim_tool::declare_camera(app, chosen);
-  return app.run(argc, argv, [&] { chosen == "stage" ? stage() : camera(); });
+  sim_tool::add_stage(app);
+  sim_tool::add_camera(app);
+  return app.run(argc, argv);
 }

@@ -45,77 +45,6 @@ struct Options {
   cli::PrinterOptions printer;
 };
 
-void add_common(cli::App& command, Options& options) {
-  command
-      .option("--device", "DEVICE", options.device,
-              "Rotation stage: " + device::stage_devices() + ", with options after a question mark.")
-      .default_is("stage.device");
-  command.option("--log", "FILE", options.log,
-                 "Append one JSON line per event, with UTC and monotonic time; - is standard error.");
-  command.flag("--die-with-parent", options.with_parent, "Stop the stage and exit when the parent process exits.");
-  cli::add_printer(command, options.printer);
-}
-
-void add_speed(cli::App& command, Options& options) {
-  command.option("--speed", "DEG/S", options.speed_deg_s, {0.001, 1000}, "Stage speed.")
-      .default_is("stage.speed_deg_s");
-}
-
-void add_rate(cli::App& command, Options& options) {
-  command.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
-}
-
-void add_home(cli::App& command, Options& options) {
-  command.flag("--home", options.home_first, "Find the reference first.");
-}
-
-void add_move(cli::App& app, Options& options, std::string& chosen) {
-  auto& move = app.subcommand("move", "turn to an angle and wait for standstill", chosen);
-  add_common(move, options);
-  move.option("--angle", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; it may exceed 360 degrees.").required();
-  move.flag("--relative", options.relative, "The angle is relative to the present one.");
-  add_home(move, options);
-  add_speed(move, options);
-  move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Maximum duration of the motion.");
-}
-
-void add_spin(cli::App& app, Options& options, std::string& chosen) {
-  auto& spin = app.subcommand("spin", "ramp, run-up turn, whole turns, stop; print one JSON line per sample", chosen);
-  add_common(spin, options);
-  spin.option("--turns", "N", options.turns, {1, 100000}, "Turns of the print, after the run-up.")
-      .default_is("stage.turns");
-  add_speed(spin, options);
-  spin.option("--run-up", "TURNS", options.plan.run_up_turns, {0, 100}, "Turns at full speed before angle 0.");
-  spin.choice(
-          "--direction", options.direction, {"1", "-1"},
-          "Direction of rotation: 1 is clockwise seen from above, -1 counterclockwise. The reported angle increases "
-          "in both cases.")
-      .default_is("stage.direction");
-  spin.option("--speed-tolerance", "FRACTION", options.plan.speed_tolerance, {1e-6, 1},
-              "Maximum relative speed error before angle 0.");
-  add_rate(spin, options);
-  add_home(spin, options);
-  spin.flag("--plan", options.only_plan, "Print travel, limits and duration of this motion, and do not move.");
-}
-
-void add_commands(cli::App& app, Options& options, std::string& chosen) {
-  add_common(app.subcommand("identify", "print the controller, its limits and its firmware as JSON", chosen), options);
-  add_common(app.subcommand("status", "print angle, motion and pending error as JSON", chosen), options);
-  app.subcommand("ports", "print the serial ports of this machine as JSON", chosen);
-  auto& home = app.subcommand("home", "find the reference, which becomes 0 degrees", chosen);
-  add_common(home, options);
-  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Maximum duration of the search.");
-  add_move(app, options, chosen);
-  add_spin(app, options, chosen);
-  auto& stop = app.subcommand("stop", "stop the stage and wait for standstill", chosen);
-  add_common(stop, options);
-  stop.flag("--abrupt", options.abrupt, "Stop as fast as the controller can, instead of its normal deceleration.");
-  auto& follow = app.subcommand("follow", "print one JSON line per sample without motion", chosen);
-  add_common(follow, options);
-  add_rate(follow, options);
-  follow.option("--duration", "S", options.duration_s, cli::positive, "Duration.").default_is("until a signal");
-}
-
 // Unset options come from the printer file; calibration records do not concern the stage.
 void settle(Options& options) {
   const model::PrinterStage stage =
@@ -137,7 +66,6 @@ std::string plan_text(device::Stage& stage, const Options& options) {
 }
 
 void drive(const std::string& command, Options& options) {
-  if (command == "ports") return device::print_line(device::list_serial_ports().dump(2));
   if (tool::print_printer(options.printer)) return;
   settle(options);
   if (options.with_parent) device::end_with_parent();
@@ -170,14 +98,84 @@ void drive(const std::string& command, Options& options) {
   log("end", {{"command", command}});
 }
 
+/// A command that works on the stage.
+cli::App& add_command(cli::App& app, Options& options, const std::string& name, const std::string& summary) {
+  auto& command = app.subcommand(name, summary, [&options, name] {
+    device::interruptible([&] { device::logged(options.log, [&] { drive(name, options); }); });
+  });
+  command
+      .option("--device", "DEVICE", options.device,
+              "Rotation stage: " + device::stage_devices() + ", with options after a question mark.")
+      .default_is("stage.device");
+  command.option("--log", "FILE", options.log,
+                 "Append one JSON line per event, with UTC and monotonic time; - is standard error.");
+  command.flag("--die-with-parent", options.with_parent, "Stop the stage and exit when the parent process exits.");
+  cli::add_printer(command, options.printer);
+  return command;
+}
+
+void add_speed(cli::App& command, Options& options) {
+  command.option("--speed", "DEG/S", options.speed_deg_s, {0.001, 1000}, "Stage speed.")
+      .default_is("stage.speed_deg_s");
+}
+
+void add_rate(cli::App& command, Options& options) {
+  command.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
+}
+
+void add_home(cli::App& command, Options& options) {
+  command.flag("--home", options.home_first, "Find the reference first.");
+}
+
+void add_move(cli::App& app, Options& options) {
+  auto& move = add_command(app, options, "move", "turn to an angle and wait for standstill");
+  move.option("--angle", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; it may exceed 360 degrees.").required();
+  move.flag("--relative", options.relative, "The angle is relative to the present one.");
+  add_home(move, options);
+  add_speed(move, options);
+  move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Maximum duration of the motion.");
+}
+
+void add_spin(cli::App& app, Options& options) {
+  auto& spin =
+      add_command(app, options, "spin", "ramp, run-up turn, whole turns, stop; print one JSON line per sample");
+  spin.option("--turns", "N", options.turns, {1, 100000}, "Turns of the print, after the run-up.")
+      .default_is("stage.turns");
+  add_speed(spin, options);
+  spin.option("--run-up", "TURNS", options.plan.run_up_turns, {0, 100}, "Turns at full speed before angle 0.");
+  spin.choice(
+          "--direction", options.direction, {"1", "-1"},
+          "Direction of rotation: 1 is clockwise seen from above, -1 counterclockwise. The reported angle increases "
+          "in both cases.")
+      .default_is("stage.direction");
+  spin.option("--speed-tolerance", "FRACTION", options.plan.speed_tolerance, {1e-6, 1},
+              "Maximum relative speed error before angle 0.");
+  add_rate(spin, options);
+  add_home(spin, options);
+  spin.flag("--plan", options.only_plan, "Print travel, limits and duration of this motion, and do not move.");
+}
+
+void add_commands(cli::App& app, Options& options) {
+  add_command(app, options, "identify", "print the controller, its limits and its firmware as JSON");
+  add_command(app, options, "status", "print angle, motion and pending error as JSON");
+  app.subcommand("ports", "print the serial ports of this machine as JSON",
+                 [] { device::print_line(device::list_serial_ports().dump(2)); });
+  auto& home = add_command(app, options, "home", "find the reference, which becomes 0 degrees");
+  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Maximum duration of the search.");
+  add_move(app, options);
+  add_spin(app, options);
+  auto& stop = add_command(app, options, "stop", "stop the stage and wait for standstill");
+  stop.flag("--abrupt", options.abrupt, "Stop as fast as the controller can, instead of its normal deceleration.");
+  auto& follow = add_command(app, options, "follow", "print one JSON line per sample without motion");
+  add_rate(follow, options);
+  follow.option("--duration", "S", options.duration_s, cli::positive, "Duration.").default_is("until a signal");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
-  std::string command;
   cli::App app({"vam-stage", "turn the rotation stage and report its angle", manual_page, cli::device_statuses});
-  add_commands(app, options, command);
-  return app.run(argc, argv, [&] {
-    device::interruptible([&] { device::logged(options.log, [&] { drive(command, options); }); });
-  });
+  add_commands(app, options);
+  return app.run(argc, argv);
 }

@@ -243,12 +243,12 @@ App& App::needs(const std::vector<std::string>& any_of) {
   return *this;
 }
 
-App& App::subcommand(const std::string& name, const std::string& summary, std::string& chosen) {
+App& App::subcommand(const std::string& name, const std::string& summary, const std::function<void()>& body) {
   auto nested = std::unique_ptr<App>(new App(Manual{name, summary}));
   nested->state_->owned.reset();
   nested->state_->parser = state_->parser->add_subcommand(name, summary);
   nested->state_->parser->set_help_flag();
-  nested->state_->parser->callback([&chosen, name] { chosen = name; });
+  nested->state_->body = body;
   state_->subcommands.push_back(std::move(nested));
   return *state_->subcommands.back();
 }

@@ -112,13 +112,21 @@ class App {
   App& form();
   /// The option declared last is refused where none of these is given. Called again: nor where none of those is.
   App& needs(const std::vector<std::string>& any_of);
-  /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
-  /// chosen is set to the name when the user names it. A tool with operands or options of its own has a plain form,
-  /// which runs without a command; else a command must be given. Options may stand before the command.
-  App& subcommand(const std::string& name, const std::string& summary, std::string& chosen);
+  /// A subcommand with options of its own (vam-curethrough model, vam-stage move), which runs `body`. Returns the
+  /// nested declaration. A tool with operands or options of its own has a plain form, which runs without a command;
+  /// else a command must be given. Options may stand before the command.
+  App& subcommand(const std::string& name, const std::string& summary, const std::function<void()>& body);
+  /// The same with options that are kept here: what declares them, and what runs with them, given this App.
+  template <class Options>
+  void subcommand(const std::string& name, const std::string& summary, void (*declared)(App&, Options&),
+                  void (*body)(const App&, Options&)) {
+    const auto options = std::make_shared<Options>();
+    declared(subcommand(name, summary, [this, options, body] { body(*this, *options); }), *options);
+  }
 
-  /// Parses, calls body, maps every exception to one line on stderr and its exit status.
-  int run(int argc, char** argv, const std::function<void()>& body);
+  /// Parses, calls the body of the command that is given, or that of the plain form, and maps every exception to one
+  /// line on stderr and its exit status.
+  int run(int argc, char** argv, const std::function<void()>& plain = nullptr);
 
   /// "vam-slice 0.1.0 part.stl --voxel 0.1": the line for vam:history; known once run() has parsed. No paths of other
   /// machines, time stamps or host names are added.
@@ -131,7 +139,7 @@ class App {
   [[nodiscard]] std::string job() const;
   /// The files that are read, in the order of their declaration.
   [[nodiscard]] std::vector<std::string> inputs() const;
-  /// Did the user give this option?
+  /// Did the user give this option, of the command if one was given?
   [[nodiscard]] bool given(const std::string& flag) const;
 
  private:
@@ -146,6 +154,7 @@ class App {
   void require_own_outputs() const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;
   [[nodiscard]] Declaration whole() const;
+  [[nodiscard]] const App& form_in_use() const;
 
   std::unique_ptr<State> state_;
 };

@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -102,9 +101,6 @@ std::vector<std::string> App::inputs() const {
 }
 
 void App::require_own_inputs() const {
-  for (const auto& nested : state_->subcommands) {
-    if (nested->state_->parser->parsed()) return nested->require_own_inputs();
-  }
   const auto paths = inputs();
   const auto streams = std::count_if(paths.begin(), paths.end(), is_standard_input);
   if (streams > 1) {
@@ -139,9 +135,6 @@ void App::require_own_outputs() const {
       }
       before.push_back(&option);
     }
-  }
-  for (const auto& nested : state_->subcommands) {
-    if (nested->state_->parser->parsed()) nested->require_own_outputs();
   }
 }
 

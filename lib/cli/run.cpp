@@ -78,7 +78,15 @@ std::string use_of_machine(double seconds) {
 
 }  // namespace
 
-bool App::given(const std::string& flag) const { return state_->parser->get_option(flag)->count() > 0; }
+// The command that was given, or the plain form.
+const App& App::form_in_use() const {
+  for (const auto& nested : state_->subcommands) {
+    if (nested->state_->parser->parsed()) return *nested;
+  }
+  return *this;
+}
+
+bool App::given(const std::string& flag) const { return form_in_use().state_->parser->get_option(flag)->count() > 0; }
 
 std::string App::history() const { return history_without({}); }
 
@@ -120,11 +128,8 @@ void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   throw Error{Fault::usage, last + ": needs a value"};
 }
 
-// Operands and options that the form in use, the plain one or a command, cannot do without.
+// Operands and options that a form, the plain one or a command, cannot do without.
 void App::require_present() const {
-  for (const auto& nested : state_->subcommands) {
-    if (nested->state_->parser->parsed()) return nested->require_present();
-  }
   const auto require = [&](const std::string& name, const std::string& unless = "") {
     if (state_->parser->get_option(name)->count() > 0 || (!unless.empty() && given(unless))) return;
     throw Error{Fault::usage, name + ": missing" + (unless.empty() ? "" : ", as is " + unless) + "; see --help"};
@@ -143,7 +148,6 @@ void App::require_present() const {
   }
 }
 
-// Of the tool and of its commands, whose options are given only if the command is.
 void App::require_needed() const {
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {
@@ -155,7 +159,6 @@ void App::require_needed() const {
       }
     }
   }
-  for (const auto& nested : state_->subcommands) nested->require_needed();
 }
 
 namespace {
@@ -194,10 +197,11 @@ void App::parse(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw Error{Fault::usage, std::string(error.what()) + " (" + tool.manual.name + " --help lists all)"};
   }
-  require_present();
-  require_needed();
-  require_own_inputs();
-  require_own_outputs();
+  const App& form = form_in_use();
+  form.require_present();
+  form.require_needed();
+  form.require_own_inputs();
+  form.require_own_outputs();
 }
 
 // --help, --version, --man and --completion print and end; they win over every other option. True when one was given.
@@ -223,7 +227,7 @@ bool App::print_about(int argc, char** argv) const {
   return false;
 }
 
-int App::run(int argc, char** argv, const std::function<void()>& body) {
+int App::run(int argc, char** argv, const std::function<void()>& plain) {
   set_program_name(state_->tool.manual.name);
   (void)std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of file sizes a write fails, and is reported
   const auto start = std::chrono::steady_clock::now();
@@ -233,7 +237,8 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
     if (!print_about(argc, argv)) {
       require_stack();
       parse(argc, argv);
-      body();
+      const App& form = form_in_use();
+      &form == this ? plain() : form.state_->body();
       if (talk().verbose)
         note(use_of_machine(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
     }

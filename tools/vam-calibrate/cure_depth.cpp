@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <string>
 #include <vector>
 
 #include "base/json.hpp"
@@ -153,7 +153,7 @@ void declare(cli::App& app, CureDepthOptions& options) {
   cli::add_report(app, options.report);
 }
 
-void measure(const CureDepthOptions& options) {
+void run(const cli::App& /*app*/, CureDepthOptions& options) {
   const io::CsvTable csv = io::read_csv(options.input, {"exposure_mj_cm2", "thickness_um"});
   std::vector<resin::CuredSample> samples;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) samples.push_back({csv.number(row, 0), csv.number(row, 1)});
@@ -165,11 +165,9 @@ void measure(const CureDepthOptions& options) {
 
 }  // namespace
 
-std::function<void()> declare_cure_depth(cli::App& app, std::string& command) {
-  const auto options = std::make_shared<CureDepthOptions>();
-  declare(app.subcommand("cure-depth", "absorbance height and gelation threshold, from cured thicknesses", command),
-          *options);
-  return [options] { measure(*options); };
+void add_cure_depth(cli::App& app) {
+  app.subcommand<CureDepthOptions>("cure-depth", "absorbance height and gelation threshold, from cured thicknesses",
+                                   declare, run);
 }
 
 }  // namespace vam::calibrate_tool

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate photodiode: the projector's grey response from readings of a photodiode.
 #include <cmath>
-#include <memory>
+#include <string>
 #include <vector>
 
 #include "base/json.hpp"
@@ -59,12 +59,12 @@ void draw(const std::string& path, const model::ResponseTable& table) {
   plot::save(path, plot::draw(plot));
 }
 
-void measure(const cli::App& root, const PhotodiodeOptions& options) {
+void run(const cli::App& app, PhotodiodeOptions& options) {
   const io::CsvTable csv = io::read_csv(options.input, {"grey", "reading"});
   std::vector<resin::PhotodiodeReading> readings;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) readings.push_back({csv.number(row, 0), csv.number(row, 1)});
   resin::ResponseFit fit = resin::fit_response(readings, options.dark, csv.source);
-  std::string text = "# " + root.history() + "\ngrey,intensity\n";
+  std::string text = "# " + app.history() + "\ngrey,intensity\n";
   for (std::size_t i = 0; i < fit.table.grey.size(); ++i) {
     fit.table.intensity[i] *= options.scale;
     text += format_number(fit.table.grey[i], 9) + "," + format_number(fit.table.intensity[i], 9) + "\n";
@@ -85,10 +85,9 @@ void measure(const cli::App& root, const PhotodiodeOptions& options) {
 
 }  // namespace
 
-std::function<void()> declare_photodiode(cli::App& app, std::string& command) {
-  const auto options = std::make_shared<PhotodiodeOptions>();
-  declare(app.subcommand("photodiode", "intensity by grey level, from readings of a photodiode", command), *options);
-  return [&app, options] { measure(app, *options); };
+void add_photodiode(cli::App& app) {
+  app.subcommand<PhotodiodeOptions>("photodiode", "intensity by grey level, from readings of a photodiode", declare,
+                                    run);
 }
 
 }  // namespace vam::calibrate_tool

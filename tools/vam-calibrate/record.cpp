@@ -13,6 +13,7 @@
 #include "io/image/capture_folder.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
@@ -154,7 +155,8 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
   for (const auto& reason : finding.warnings_) warn(scan + ": " + reason);
 }
 
-void check_records(const ScanOptions& options, model::Printer printer) {
+void check_records(const ScanOptions& options) {
+  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
   const model::Calibration calibration = printer.calibration;
   if (calibration.folder.empty())
     throw Error{Fault::usage,

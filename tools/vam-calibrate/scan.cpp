@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-calibrate/scan.hpp"
 
-#include <functional>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -15,14 +13,6 @@ namespace vam::calibrate_tool {
 
 namespace {
 
-using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
-const std::map<std::string, Scan>& scans() {
-  static const std::map<std::string, Scan> all{
-      {"edges", scan_edges}, {"response", scan_response}, {"flat", scan_flat}, {"beam", scan_beam},
-      {"axis", scan_axis},   {"latency", scan_latency},   {"lag", scan_lag},   {"registration", scan_registration}};
-  return all;
-}
-
 // For a scan of another kind: one that is to be replaced may be damaged or gone.
 std::optional<io::CalibrationRecord> usable_record(const model::Calibration& calibration, const std::string& scan,
                                                    const std::string& command) {
@@ -34,10 +24,9 @@ std::optional<io::CalibrationRecord> usable_record(const model::Calibration& cal
 
 }  // namespace
 
-void run_scan(const cli::App& app, const ScanOptions& options) {
-  const std::string& command = options.command;
+void run_scan(const cli::App& app, const std::string& command, Scan scan, ScanOptions& options) {
+  options.command = command;
   model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
-  if (command == "check") return check_records(options, printer);
   // The axis in the camera's image, as measured before.
   if (const auto axis = usable_record(printer.calibration, "axis", command)) {
     printer.camera.axis_column = axis->value("axis_column");
@@ -46,7 +35,7 @@ void run_scan(const cli::App& app, const ScanOptions& options) {
   if (const auto latency = usable_record(printer.calibration, "latency", command)) {
     printer.projector.latency_ms = latency->value("latency");
   }
-  Finding finding = scans().at(command)(options, printer);
+  Finding finding = scan(options, printer);
   finding.facts["settings"]["exposure_us"] = printer.camera.exposure_us;
   keep(app, options, printer.calibration, command, std::move(finding));
 }

@@ -71,8 +71,11 @@ struct CriticalDoseOptions {
   cli::PrinterOptions printer;
 };
 
-/// Throws as the scan does, Fault::judged when its result must not be used.
-void run_scan(const cli::App& app, const ScanOptions& options);
+class Finding;
+using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
+
+/// Keeps what the scan finds as its record. Throws as the scan does, Fault::judged when its result must not be used.
+void run_scan(const cli::App& app, const std::string& command, Scan scan, ScanOptions& options);
 
 /// Writes the gelation threshold as a resin record. Throws Error: usage, no_input, data, no_output.
 void measure_resin(const ResinOptions& options);
@@ -132,7 +135,6 @@ using ColumnsOfBands = std::vector<double> (*)(const Image& frame, int bands);
 [[nodiscard]] double mean_level(const Image& image);
 
 // ---- edges.cpp and its neighbours: one measurement each
-class Finding;
 [[nodiscard]] Finding scan_edges(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_response(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_axis(const ScanOptions& options, const model::Printer& printer);
@@ -178,6 +180,6 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
 
 /// Prints the current records and their validity as JSON. Throws Fault::data when a needed one is missing, and when one
 /// is stale, foreign or beyond what this printer can have.
-void check_records(const ScanOptions& options, model::Printer printer);
+void check_records(const ScanOptions& options);
 
 }  // namespace vam::calibrate_tool

@@ -12,7 +12,6 @@
 namespace vam::capture_tool {
 
 struct Options {
-  std::string command;
   std::string device;  // empty: camera.device
   std::string output = "-";
   std::string follow;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-convert/pieces.hpp"
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "base/error.hpp"
 #include "cli/common.hpp"
 #include "io/exr/stack_pieces.hpp"
@@ -10,6 +14,13 @@
 namespace vam::convert_tool {
 
 namespace {
+
+struct PieceOptions {
+  std::vector<std::string> inputs{"-"};
+  std::string slices;  // to cut; empty: all are joined
+  std::string output = "-";
+  io::StackOptions stack;
+};
 
 model::ImageRange chosen(const PieceOptions& options, const io::StackPieces& in, const std::string& name) {
   const model::ImageRange& there = in.images();
@@ -25,23 +36,6 @@ model::ImageRange chosen(const PieceOptions& options, const io::StackPieces& in,
   throw Error{Fault::data, held + " of " + std::to_string(in.info().count) + ", not all of --slices " + options.slices};
 }
 
-}  // namespace
-
-void declare_pieces(cli::App& app, PieceOptions& options, std::string& command) {
-  auto& cut = app.subcommand("cut", "copy some images of a stack as a piece", command);
-  auto& join = app.subcommand("join", "join all pieces of a stack", command);
-  cut.option("--slices", "SLICES", options.slices,
-             "Images of the undivided stack, counted from 0: FROM to TO - 1 as FROM:TO, or the I-th of N similar "
-             "shares as I/N.")
-      .required();
-  for (cli::App* form : {&cut, &join}) {
-    form->positional("STACK ...", options.inputs, "A stack, or pieces of one (EXR).").reads();
-    cli::add_output(*form, options.output).writes_as({".exr"});
-    cli::add_stack_output(*form, options.stack.half, options.stack.compression);
-    cli::add_threads(*form);
-  }
-}
-
 void copy_pieces(const PieceOptions& options) {
   const std::string name = io::input_name(options.inputs.front());
   if (!options.slices.empty()) (void)tool::slices_named(options.slices);  // before files are opened
@@ -50,6 +44,25 @@ void copy_pieces(const PieceOptions& options) {
   io::StackWriter out(options.output, io::cut(in.info(), range, name), options.stack);
   in.copy(range, out);
   out.commit();
+}
+
+}  // namespace
+
+void add_pieces(cli::App& app) {
+  const auto options = std::make_shared<PieceOptions>();
+  const auto copy = [options] { copy_pieces(*options); };
+  auto& cut = app.subcommand("cut", "copy some images of a stack as a piece", copy);
+  auto& join = app.subcommand("join", "join all pieces of a stack", copy);
+  cut.option("--slices", "SLICES", options->slices,
+             "Images of the undivided stack, counted from 0: FROM to TO - 1 as FROM:TO, or the I-th of N similar "
+             "shares as I/N.")
+      .required();
+  for (cli::App* form : {&cut, &join}) {
+    form->positional("STACK ...", options->inputs, "A stack, or pieces of one (EXR).").reads();
+    cli::add_output(*form, options->output).writes_as({".exr"});
+    cli::add_stack_output(*form, options->stack.half, options->stack.compression);
+    cli::add_threads(*form);
+  }
 }
 
 }  // namespace vam::convert_tool

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-correct/renew.hpp"
 
-#include <memory>
 #include <optional>
+#include <string>
 
 #include "base/text.hpp"
 #include "cli/companion.hpp"
@@ -45,7 +45,7 @@ void declare(cli::App& app, RenewOptions& o) {
   app.option("--die-with", "PID", o.guard, {1, 1e9}, "Exit when this process has exited.");
 }
 
-void become_script(const RenewOptions& o) {
+void run(const cli::App& /*app*/, RenewOptions& o) {
   const auto text = [](const std::optional<int>& number) { return number ? std::to_string(*number) : ""; };
   cli::become_companion("renew",
                         {o.run, o.target, o.curve, format_number(o.planned_turns, 9), std::to_string(o.iterations),
@@ -55,10 +55,8 @@ void become_script(const RenewOptions& o) {
 
 }  // namespace
 
-std::function<void()> declare_renew(cli::App& app, std::string& command) {
-  const auto options = std::make_shared<RenewOptions>();
-  declare(app.subcommand("renew", "compute new projections for a running print, once a turn", command), *options);
-  return [options] { become_script(*options); };
+void add_renew(cli::App& app) {
+  app.subcommand<RenewOptions>("renew", "compute new projections for a running print, once a turn", declare, run);
 }
 
 }  // namespace vam::correct_tool

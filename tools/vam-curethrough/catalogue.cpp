@@ -41,8 +41,9 @@ Json entry_of(const std::string& name, const resin::Process& process, double lim
 
 }  // namespace
 
-Json compare(const CorrectOptions& options, const PrintSettings& print, const resin::PartColumns& part) {
-  const io::CsvTable table = io::read_csv(options.catalogue, {"name", "absorbance_height_um", "full_cure_dose_mj_cm3"});
+Json compare(const std::string& path, const std::vector<double>& speeds_mm_h, double clear, const PrintSettings& print,
+             const resin::PartColumns& part) {
+  const io::CsvTable table = io::read_csv(path, {"name", "absorbance_height_um", "full_cure_dose_mj_cm3"});
   std::string text = cells(
       {"resin", "h_a um", "D_f mJ/cm3", "limit mm/h", "speed mm/h", "Phi_max", "gap um", "tight gaps", "fused gaps"});
   Json report = Json::array();
@@ -51,13 +52,13 @@ Json compare(const CorrectOptions& options, const PrintSettings& print, const re
     process.absorbance_height_um = table.number(row, 1);
     process.full_cure_dose_mj_cm3 = table.number(row, 2);
     const double limit = resin::speed_limit_mm_h(process);
-    std::vector<double> speeds = options.speeds_mm_h;
+    std::vector<double> speeds = speeds_mm_h;
     if (speeds.empty()) speeds = {0.2 * limit, 0.4 * limit, 0.6 * limit, 0.8 * limit};
     for (const double speed : speeds) {
       process.speed_mm_h = speed;
       const resin::CureLimits limits = resin::limits_of(process);
-      const int gap = resin::narrowest_gap(limits, options.clear);
-      const resin::GapReport judged = resin::judge_gaps(part, limits, options.clear);
+      const int gap = resin::narrowest_gap(limits, clear);
+      const resin::GapReport judged = resin::judge_gaps(part, limits, clear);
       const bool prints = speed < limit;
       text += cells({table.rows[row][0], format_number(process.absorbance_height_um),
                      format_number(process.full_cure_dose_mj_cm3), format_number(limit, 4), format_number(speed, 4),

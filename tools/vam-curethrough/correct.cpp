@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
@@ -12,21 +15,44 @@
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
+#include "cli/common.hpp"
+#include "io/exr/stack.hpp"
 #include "io/image/frame_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/slice_place.hpp"
+#include "printer.hpp"
 #include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/gaps.hpp"
 #include "resin/curethrough/slice_correction.hpp"
 #include "vam-curethrough/catalogue.hpp"
+#include "vam-curethrough/part.hpp"
+#include "vam-curethrough/print.hpp"
 #include "vam-curethrough/slices.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
 namespace vam::curethrough {
 
 namespace {
+
+struct CorrectOptions {
+  PartOptions part;
+  PrintOptions print;
+  std::string output = "-";
+  std::string png;
+  std::string mask;
+  std::string values = "intensity";
+  resin::DoseLimit limit;
+  double clear = 0.5;
+  bool quantise = false;
+  bool full_frame = false;
+  std::string catalogue;
+  std::vector<double> speeds_mm_h;
+  std::string report;
+  // Rows are runs of few values, on which ZIP is small and fast; RLE does not see the period of a float's four bytes.
+  io::StackOptions stack{false, "zip"};
+};
 
 struct Job {
   PrintSettings print;
@@ -144,7 +170,7 @@ void warn_of_gaps(const std::string& name, const Job& job) {
        "fuse (--mask shows the columns)");
 }
 
-Job prepare(const cli::App& root, const CorrectOptions& options, bool writes) {
+Job prepare(const cli::App& app, const CorrectOptions& options, bool writes) {
   PartFile source(options.part, exposure_of(options.print));
   const PrintSettings print = resolve(options.print, source.slice_um());
   Job job{print, std::move(source), {}, {}, {}, 0};
@@ -170,7 +196,7 @@ Job prepare(const cli::App& root, const CorrectOptions& options, bool writes) {
   job.info.units = options.values == "grey" ? "grey" : "fraction of full intensity";
   job.info.extra = attributes(print.process);
   job.info.history = part.history();
-  job.info.history.push_back(root.history());
+  job.info.history.push_back(app.history());
   return job;
 }
 
@@ -192,8 +218,6 @@ void declare_output(cli::App& app, CorrectOptions& options) {
            "projector.axis_row.");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
 }
-
-}  // namespace
 
 void declare(cli::App& app, CorrectOptions& options) {
   app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.").reads();
@@ -226,16 +250,18 @@ void declare(cli::App& app, CorrectOptions& options) {
   cli::add_threads(app);
 }
 
-void run(const cli::App& root, const cli::App& app, const CorrectOptions& options) {
+void run(const cli::App& app, CorrectOptions& options) {
+  if (tool::print_printer(options.print.printer)) return;
   const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
   const bool images = !options.png.empty();
   if (stack && !options.catalogue.empty() && options.output == "-") {
     throw Error{Fault::usage, "--catalogue: the table is printed on standard output; give a file with -o"};
   }
   if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: requires a stack; give -o"};
-  Job job = prepare(root, options, stack || images);
+  Job job = prepare(app, options, stack || images);
   Json report = figures(options, job);
-  if (!options.catalogue.empty()) report["catalogue"] = compare(options, job.print, job.part.columns());
+  if (!options.catalogue.empty())
+    report["catalogue"] = compare(options.catalogue, options.speeds_mm_h, options.clear, job.print, job.part.columns());
 
   const auto frame = options.full_frame ? optics::SlicePlace("--full-frame", job.print.printer.projector, job.info)
                                         : optics::SlicePlace(job.info);
@@ -255,6 +281,12 @@ void run(const cli::App& root, const cli::App& app, const CorrectOptions& option
   if (out) out->commit();
   if (!options.mask.empty()) write_mask(options.mask, job.gaps.mask);
   io::write_report(options.report, "vam-curethrough-correct", report);
+}
+
+}  // namespace
+
+void add_correct(cli::App& app) {
+  app.subcommand<CorrectOptions>("correct", "compute slices without cure-through", declare, run);
 }
 
 }  // namespace vam::curethrough

@@ -2,6 +2,8 @@
 // The cure by a stack of slices, or by the ordinary slices of a part.
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
@@ -14,15 +16,30 @@
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "model/dose_metrics.hpp"
+#include "printer.hpp"
 #include "resin/curethrough/cure_map.hpp"
 #include "resin/curethrough/stack_dose.hpp"
 #include "vam-curethrough/figures.hpp"
+#include "vam-curethrough/part.hpp"
+#include "vam-curethrough/print.hpp"
 #include "vam-curethrough/slices.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
 namespace vam::curethrough {
 
 namespace {
+
+struct ModelOptions {
+  std::string input = "-";
+  PartOptions part;
+  PrintOptions print;
+  std::string output;
+  std::string section;
+  std::optional<int> row;
+  std::optional<int> column;
+  std::optional<double> slice_um;
+  std::string report;
+};
 
 constexpr int slices_a_block = resin::StackDose::block_slices;
 
@@ -191,8 +208,6 @@ void read_twice(const Inputs& in, Judge& judge) {
   }
 }
 
-}  // namespace
-
 void declare(cli::App& app, ModelOptions& options) {
   options.part.path.clear();
   app.positional("SLICES", options.input,
@@ -221,14 +236,15 @@ void declare(cli::App& app, ModelOptions& options) {
   cli::add_threads(app);
 }
 
-void run(const cli::App& root, const cli::App& app, const ModelOptions& options) {
+void run(const cli::App& app, ModelOptions& options) {
+  if (tool::print_printer(options.print.printer)) return;
   const Inputs in = open_inputs(app, options);
   Judge judge(options, in);
   read_twice(in, judge);
   if (judge.dose_) {
     judge.dose_->units = "full-cure doses";
     judge.dose_->history = in.slices.history;
-    judge.dose_->history.push_back(root.history());
+    judge.dose_->history.push_back(app.history());
     judge.dose_->metadata = attributes(in.print.process);
     judge.dose_->metadata["vam:full_cure_dose_mj_cm3"] = format_number(in.print.process.full_cure_dose_mj_cm3, 9);
     io::write_volume(options.output, *judge.dose_);
@@ -241,6 +257,12 @@ void run(const cli::App& root, const cli::App& app, const ModelOptions& options)
   }
   if (!options.section.empty()) draw_plane(options.section, judge.plane_, in.print);
   io::write_report(options.report, "vam-curethrough-model", report);
+}
+
+}  // namespace
+
+void add_model(cli::App& app) {
+  app.subcommand<ModelOptions>("model", "compute dose and cure map of slices", declare, run);
 }
 
 }  // namespace vam::curethrough

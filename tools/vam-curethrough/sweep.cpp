@@ -4,18 +4,33 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
+#include "printer.hpp"
 #include "vam-curethrough/figures.hpp"
+#include "vam-curethrough/print.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
 namespace vam::curethrough {
 
 namespace {
+
+struct SweepOptions {
+  PrintOptions print;
+  std::string ranges = "df_over_dc=1..8,omega_max=1..5";
+  std::vector<double> heights{4, 6, 8, 10, 14, 20, 40};
+  double slice_um = 50;
+  std::optional<double> gel_dose_mj_cm3;
+  std::string plot;
+  std::string report;
+};
 
 double number(const std::string& text, const std::string& whole) {
   const auto value = parse_number(text);
@@ -107,8 +122,6 @@ std::vector<int> whole_heights(const std::vector<double>& heights) {
   return whole;
 }
 
-}  // namespace
-
 void declare(cli::App& app, SweepOptions& options) {
   app.positional(
       "RANGES", options.ranges,
@@ -127,7 +140,8 @@ void declare(cli::App& app, SweepOptions& options) {
   cli::add_threads(app);
 }
 
-void run(const cli::App&, const cli::App&, const SweepOptions& options) {
+void run(const cli::App& /*app*/, SweepOptions& options) {
+  if (tool::print_printer(options.print.printer)) return;
   resin::Study study;
   parse(options.ranges, study);
   const PrintSettings print = resolve(options.print, options.slice_um);
@@ -140,5 +154,9 @@ void run(const cli::App&, const cli::App&, const SweepOptions& options) {
   if (!options.plot.empty()) draw_study(options.plot, points, options.slice_um);
   io::write_report(options.report, "vam-curethrough-sweep", figures(points, study));
 }
+
+}  // namespace
+
+void add_sweep(cli::App& app) { app.subcommand<SweepOptions>("sweep", "study parameters on a ladder", declare, run); }
 
 }  // namespace vam::curethrough

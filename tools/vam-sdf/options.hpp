@@ -13,7 +13,6 @@
 namespace vam::sdf_tool {
 
 struct Options {
-  std::string command;
   std::string print = "-";
   std::string design;
   std::string output;

@@ -2,8 +2,6 @@
 // vam-sim camera: a GigE Vision camera that views a simulated vial, on a network address of this machine.
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +35,7 @@ struct CameraOptions {
   std::optional<int> pitch_px, width_px;  // its lines
   std::string stamp;
   bool no_latch = false;
+  std::optional<double> glow;
   double lag_ms = 0, latency_ms = 0;
   std::string drop, incomplete;
   std::optional<int> unplug, shrink;
@@ -87,6 +86,7 @@ void declare_resin(cli::App& app, CameraOptions& o) {
 
 void declare_pattern(cli::App& app, CameraOptions& o) {
   app.group("Test pattern");
+  o.pattern.name.clear();
   app.option("--pattern", "NAME", o.pattern.name, "Test pattern shown by vam-project.");
   app.option("--pitch", "PX", o.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.")
       .default_is("16; 4 for sweep");
@@ -120,14 +120,14 @@ void declare_projector(cli::App& app, CameraOptions& o) {
   app.option("--vignetting", "FRACTION", bench.vignetting, {0, 1},
              "Relative loss of intensity at the corners of the image.");
   app.option("--latency", "MS", o.latency_ms, {0, 1000}, "Delay from a flip to its light.");
-  app.option("--glow", "FRACTION", bench.glow, {0, 10000},
+  app.option("--glow", "FRACTION", o.glow, {0, 10000},
              "Fluorescence of a fully lit vial in an exposure of 20 ms, as a fraction of full scale; a thin line needs "
              "a larger value.")
       .default_is("0.6; 0 with --cure");
   app.flag("--card", bench.card, "Uniform card in place of the vial, lit by the mean of the image.");
 }
 
-void declare_sensor(cli::App& app, CameraOptions& o) {
+void declare_camera(cli::App& app, CameraOptions& o) {
   auto& bench = o.camera.bench;
   app.group("Camera");
   app.choice("--maker", o.camera.maker, sim::sim_maker_names(), "Maker whose identity and time stamps are simulated.");
@@ -159,7 +159,7 @@ void declare(cli::App& app, CameraOptions& o) {
   declare_pattern(app, o);
   declare_misalignment(app, o.camera.bench);
   declare_projector(app, o);
-  declare_sensor(app, o);
+  declare_camera(app, o);
   declare_faults(app, o);
   app.group("Program");
   app.option("--seed", "N", o.camera.bench.seed, {0, 1e9}, "Seed of the random numbers.");
@@ -221,23 +221,24 @@ std::vector<GreyImage> images(const CameraOptions& o, const model::Projector& pr
 }
 
 // The light cures the resin; the true state is written for whoever judges.
-void cure(const cli::App& root, const cli::App& app, CameraOptions& o) {
+void cure(const cli::App& app, CameraOptions& o) {
   auto& camera = o.camera;
   camera.bench.resin = o.resin;
-  if (!app.given("--glow")) camera.bench.glow = 0;
+  camera.bench.glow = 0;              // its filter
   (void)sim::SimPrint(camera.bench);  // a printer that does not do ends the program before it serves a camera
   if (o.cured.empty()) return;
-  camera.cured = [&root, &o](const sim::SimPrint& print) {
+  camera.cured = [&app, &o](const sim::SimPrint& print) {
     const model::Volume volume = print.resin().conversion();
     io::SparseVolume written("conversion", volume.grid);
-    written.history = {root.history()};
+    written.history = {app.history()};
     written.units = "conversion of the gel point";
     written.write_slices(0, volume.grid.nz, volume.values.data());
     io::write_volume(o.cured, written);
   };
 }
 
-void run(const cli::App& root, const cli::App& app, CameraOptions& o) {
+// A signal ends it at once: nothing needs a safe state, and waiting for the threads of Aravis may never end.
+void run(const cli::App& app, CameraOptions& o) {
   if (tool::print_printer(o.printer)) return;
   optics::set_lines(o.pattern, o.pitch_px, o.width_px);
   if (o.with_parent) device::end_with_parent();
@@ -253,7 +254,8 @@ void run(const cli::App& root, const cli::App& app, CameraOptions& o) {
                                  event.value("full_scale", 0.0))
         .frames;
   };
-  if (o.cure) cure(root, app, o);
+  if (o.cure) cure(app, o);
+  if (o.glow) camera.bench.glow = *o.glow;
   camera.lag_s = 1e-3 * o.lag_ms;
   camera.sources.latency_s = 1e-3 * o.latency_ms;
   camera.latch = !o.no_latch;
@@ -269,13 +271,8 @@ void run(const cli::App& root, const cli::App& app, CameraOptions& o) {
 
 }  // namespace
 
-std::function<void()> declare_camera(cli::App& app, std::string& chosen) {
-  const auto options = std::make_shared<CameraOptions>();
-  options->pattern.name.clear();
-  cli::App& command = app.subcommand("camera", "simulate a GigE Vision camera beside the vial", chosen);
-  declare(command, *options);
-  // A signal ends it at once: nothing needs a safe state, and waiting for the threads of Aravis may never end.
-  return [&app, &command, options] { run(app, command, *options); };
+void add_camera(cli::App& app) {
+  app.subcommand<CameraOptions>("camera", "simulate a GigE Vision camera beside the vial", declare, run);
 }
 
 }  // namespace vam::sim_tool

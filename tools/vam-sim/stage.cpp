@@ -2,9 +2,7 @@
 // vam-sim stage: a controller with a rotation stage, or the relay of a lamp, on a pseudo-terminal.
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -116,7 +114,7 @@ class Link {
   std::string path_;
 };
 
-void run(StageOptions& options) {
+void simulate(StageOptions& options) {
   if (options.shim) return device::print_line(cli::companion("vam-pty-shim.so"));
   if (options.with_parent) device::end_with_parent();
   options.stage.latency_s = 1e-3 * options.reply_delay_ms;
@@ -133,12 +131,14 @@ void run(StageOptions& options) {
   sim::serve(pty, *stage, options.baud);
 }
 
+void run(const cli::App& /*app*/, StageOptions& options) {
+  device::interruptible([&] { simulate(options); });
+}
+
 }  // namespace
 
-std::function<void()> declare_stage(cli::App& app, std::string& chosen) {
-  const auto options = std::make_shared<StageOptions>();
-  declare(app.subcommand("stage", "simulate a rotation stage on a pseudo-terminal", chosen), *options);
-  return [options] { device::interruptible([&] { run(*options); }); };
+void add_stage(cli::App& app) {
+  app.subcommand<StageOptions>("stage", "simulate a rotation stage on a pseudo-terminal", declare, run);
 }
 
 }  // namespace vam::sim_tool

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct App::State {
   CLI::App* parser = nullptr;
   std::unique_ptr<CLI::App> owned;                // the root's parser
   std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
+  std::function<void()> body;                     // of a subcommand
   std::vector<std::string> words;                 // of the history
   std::string heading = App::plain_heading;       // of the options that follow
   bool operand_last = false;                      // what was declared last is an operand

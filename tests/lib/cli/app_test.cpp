@@ -120,10 +120,10 @@ struct Stage {
   App app{Manual{"vam-demo", "shows commands"}};
   explicit Stage(bool plain = false) {
     if (plain) app.positional("INPUT", input, "What to read.").flag("--quick", quick, "Quick.");
-    App& spin = app.subcommand("spin", "turn on", chosen);
+    App& spin = app.subcommand("spin", "turn on", [this] { chosen = "spin"; });
     spin.option("--device", "DEVICE", device, "The stage.");
     spin.option("--speed", "DEG_S", speed, positive, "Speed.").default_is("stage.speed_deg_s");
-    App& move = app.subcommand("move", "go there", chosen);
+    App& move = app.subcommand("move", "go there", [this] { chosen = "move"; });
     move.option("--device", "DEVICE", device, "The stage.").option("--angle", "DEG", angle, any, "Angle.");
     move.positional("FILE", file, "A file.");
   }
@@ -138,6 +138,14 @@ TEST_CASE("an operand of a command may have the name of another command") {
   CHECK(stage.chosen == "move");
   CHECK(stage.file == "spin");
   CHECK(stage.angle == 3);
+}
+
+TEST_CASE("a command is asked for its own options") {
+  Stage stage(true);
+  CHECK(stage.run({"spin", "--speed", "2"}) == 0);
+  CHECK(stage.chosen == "spin");
+  CHECK(stage.app.given("--speed"));
+  CHECK_FALSE(stage.app.given("--device"));
 }
 
 TEST_CASE("only the first operand names a command") {
@@ -284,12 +292,12 @@ TEST_CASE("an option that stands for an operand is a form of its own in the syno
 
 TEST_CASE("required options of a form are shown as such and refused where missing") {
   const auto said = [](const std::vector<std::string>& words, std::FILE* stream) {
-    std::string frames, log, chosen;
+    std::string frames, log;
     App app(Manual{"vam-demo", "shows options"});
-    auto& scan = app.subcommand("scan", "one", chosen);
+    auto& scan = app.subcommand("scan", "one", [] {});
     scan.positional("FRAMES", frames, "Captured frames.");
     scan.option("--flips", "FILE", log, "Log.").required();
-    app.subcommand("check", "another", chosen);
+    app.subcommand("check", "another", [] {});
     return written_to(stream, [&] { run_app(app, words); });
   };
   CHECK(said({"scan", "a.exr", "--flips", "log"}, stderr).empty());
@@ -308,7 +316,7 @@ TEST_CASE("an option that stands for others is a form of its own without them") 
     double first = 0;
     bool side = false;
     App app(Manual{"vam-demo", "shows options"});
-    auto& beam = app.subcommand("beam", "one", chosen);
+    auto& beam = app.subcommand("beam", "one", [] {});
     beam.flag("--side", side, "From the side.").form();
     beam.option("--first", "MM", first, any, "First plane.").required_without("--side");
     return written_to(stream, [&] { run_app(app, words); });
