@@ -187,9 +187,7 @@ std::vector<ExitStatus> exit_statuses(const Declaration& tool) {
 std::string help_text(const Declaration& tool, bool all) {
   std::string text = usage(tool) + wrap(tool.manual.summary, width, 2) + "\n";
   if (!tool.subcommands.empty()) text += "Commands:\n";
-  for (const auto& nested : tool.subcommands) {
-    text += "  " + nested.manual.name + "\n" + wrap(nested.manual.summary, width, indent);
-  }
+  for (const auto& nested : tool.subcommands) text += brief_entry(nested.manual.name, nested.manual.summary);
   if (!tool.subcommands.empty()) text += "\n";
   const bool whole = all || !has_usual(tool);
   for (const auto& positional : tool.positionals) {
