@@ -84,6 +84,13 @@ std::optional<StopReason> look(const Method& method, const Problem& problem, con
 
 }  // namespace
 
+Deadline Deadline::share(double of) const {
+  Deadline shorter = *this;
+  const double now = now_s();
+  shorter.end_s = now + of * std::max(0.0, end_s - now);
+  return shorter;
+}
+
 std::string reason_name(StopReason stop) {
   switch (stop) {
     case StopReason::goal:

@@ -18,6 +18,9 @@ struct Deadline {
   std::function<double()> now_s;
   double end_s = 0;
   double rest_iterations = 3;  // as long as so many takes what follows the last one
+
+  /// Of so much of the time that is left.
+  [[nodiscard]] Deadline share(double of) const;
 };
 
 struct Limits {

@@ -2,16 +2,16 @@
 #include "optimize/run/shown.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/index.hpp"
 #include "model/figures.hpp"
-#include "optimize/run/private/division.hpp"
+#include "optimize/run/private/jobs.hpp"
+#include "optimize/run/private/misses.hpp"
+#include "optimize/run/private/run_totals.hpp"
 #include "optimize/run/private/shown_pass.hpp"
-#include "optimize/run/private/tally.hpp"
 
 namespace vam::optimize {
 
@@ -30,24 +30,19 @@ class Frames {
 
 /// What prints if the resin sets at that dose: figures, and voxels on the wrong side of it slice by slice.
 VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, const Frames& frames, double threshold) {
-  const int slices = task.source.slices;
   const SliceReader reader(task.source, light.object());
-  const Division division = division_of(task, light);
-  std::vector<int> each_its_own(slices);
-  std::iota(each_its_own.begin(), each_its_own.end(), 0);
-  const std::vector<int> once(slices, 1);
-  Ledger ledger;
+  const Jobs jobs = every_slice(task.source.slices, division_of(task, light));
+  RunTotals totals;
   VolumeOutcome outcome;
   const light::Shape object = light.object();
   std::vector<float> target(product(object.width, object.height));
   std::optional<verdict::PrintPieceCounter> pieces;
   if (!task.demands.grey && threshold > 0) pieces.emplace(object.width, object.height, threshold);
-  for (int first = 0; first < slices;) {
-    const Pass pass = division.from(first, slices);
+  for (const Pass& pass : jobs.passes) {
     ShownPass shown = shown_pass(
         task, light, reader, pass, [](int k) { return k; }, [&](int k) { return frames[k]; });
     shown.problem.demands.window = {threshold, threshold};
-    tally(shown.dose, shown.problem, pass, {task.part, each_its_own, {0, slices}, once}, ledger);
+    totals.add(shown.dose, shown.problem, pass, jobs, task.part);
     if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
     if (pieces) {
       for_each_dose(shown, pass, [&](int k, const float* dose) {
@@ -55,9 +50,8 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
         pieces->add(dose, target.data(), 1);
       });
     }
-    first = pass.last;
   }
-  ledger.complete(outcome, task.demands.grey, each_its_own);
+  totals.complete(outcome, task.demands.grey, jobs.schedule.job_of_slice);
   if (pieces) outcome.pieces = pieces->found();
   return outcome;
 }

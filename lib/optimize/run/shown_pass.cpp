@@ -7,30 +7,34 @@
 
 #include "base/index.hpp"
 #include "optimize/run/private/misses.hpp"
-#include "optimize/run/private/pass_light.hpp"
+#include "optimize/run/private/pass_setup.hpp"
 #include "optimize/target/exclusions.hpp"
 
 namespace vam::optimize {
 
-ShownPass shown_pass(const VolumeTask& task, const light::Operator& light, const SliceReader& reader, const Pass& pass,
-                     const std::function<int(int job)>& slice, const std::function<Image(int job)>& image) {
-  const light::Shape object = light.object();
-  PassInput input =
-      read_pass(pass, slice, reader, object, task.circle, task.demands, light.couples_slices() || task.blur_px > 0);
-  ShownPass shown;
+PassSetup set_up(const VolumeTask& task, const light::Operator& light, const SliceReader& reader, const Pass& pass,
+                 const std::function<int(int job)>& slice) {
+  PassInput input = read_pass(pass, slice, reader, light.object(), task.circle, task.demands,
+                              light.couples_slices() || task.blur_px > 0);
   std::unique_ptr<light::Operator> around;
+  std::vector<std::int64_t> dark;
   if (!input.inserts.empty()) {
     exclude(input.problem, input.inserts);
     around = task.around(input.inserts);
-    (void)exclude_dark(input.problem, *around);
+    dark = exclude_dark(input.problem, *around);
   }
-  const PassLight passed(light, std::move(around), task.blur_px, pass.slices());
-  const std::vector<Slab> sinograms = collapse_images(pass, image, passed.sharp());
-  shown.dose = slabs(sinograms.size(), object.width, object.height);
-  passed.blurred().adjoint(sinograms, shown.dose);
-  add_delivered(input.problem, shown.dose);
-  shown.problem = std::move(input.problem);
-  return shown;
+  return {std::move(input.problem), std::move(input.inserts), std::move(dark),
+          PassLight(light, std::move(around), task.blur_px, pass.slices())};
+}
+
+ShownPass shown_pass(const VolumeTask& task, const light::Operator& light, const SliceReader& reader, const Pass& pass,
+                     const std::function<int(int job)>& slice, const std::function<Image(int job)>& image) {
+  PassSetup setup = set_up(task, light, reader, pass, slice);
+  const std::vector<Slab> sinograms = collapse_images(pass, image, setup.light.sharp());
+  std::vector<Slab> dose = slabs(sinograms.size(), light.object().width, light.object().height);
+  setup.light.blurred().adjoint(sinograms, dose);
+  add_delivered(setup.problem, dose);
+  return {std::move(setup.problem), std::move(dose)};
 }
 
 void for_each_dose(const ShownPass& shown, const Pass& pass,

@@ -45,7 +45,7 @@ struct VolumeTask {
   Raising raising;     // of the limit, while the goal is not met
   double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
   bool watch = false;  // fill the trace
-  bool count_pieces = false;                         // of part and print
+  bool count_pieces = false;                         // of part and print; not of a grey target, nor of some slices
   std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
   std::function<std::unique_ptr<light::Operator>(std::span<const Slab>)>
       around;  // the operator of a pass with these inserts
@@ -57,6 +57,8 @@ struct VolumeTask {
   int certify = 0;  // iterations that prove how good any light could be, after the work; 0: no proof
   Show front;       // fills the outcome's front while the limit is raised; empty: none
   Interruption interruption;
+
+  [[nodiscard]] bool counts_pieces() const { return count_pieces && !demands.grey && !slices; }
 };
 
 /// What a slice asks of the exposure that all slices share.

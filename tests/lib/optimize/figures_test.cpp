@@ -2,11 +2,12 @@
 // How slices become passes and jobs, and their figures those of a volume.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "optimize/run/private/division.hpp"
+#include "optimize/run/private/jobs.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "optimize/target/schedule.hpp"
 
@@ -73,6 +74,18 @@ TEST_CASE("a pass has as many slices as four slabs hold, those of its halo inclu
   check_pass(Division{false, 3}.from(0, 100), 0, 58, 0, 61);
   check_pass(Division{false, 3}.from(10, 100), 10, 68, 7, 71);
   check_pass(Division{false, 3}.from(58, 100), 58, 100, 55, 100);
+}
+
+TEST_CASE("passes without a slice that is asked for are left out") {
+  const Jobs every = every_slice(200, {false, 0});
+  CHECK(every.passes.size() == 4);
+  const Jobs jobs = make_jobs(every.schedule, {70, 130}, {false, 0});
+  REQUIRE(jobs.passes.size() == 2);
+  check_pass(jobs.passes[0], 64, 128, 64, 128);
+  check_pass(jobs.passes[1], 128, 192, 128, 192);
+  CHECK(std::count(jobs.times.begin(), jobs.times.end(), 1) == 60);
+  CHECK(jobs.times[69] == 0);
+  CHECK(jobs.times[129] == 1);
 }
 
 TEST_CASE("a slice like one not long ago shares its job") {

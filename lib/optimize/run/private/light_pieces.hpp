@@ -5,7 +5,7 @@
 
 #include <deque>
 
-#include "optimize/run/private/division.hpp"
+#include "optimize/run/private/jobs.hpp"
 #include "optimize/run/volume.hpp"
 #include "optimize/target/slice_reader.hpp"
 #include "verdict/print_pieces.hpp"

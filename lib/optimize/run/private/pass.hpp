@@ -15,6 +15,7 @@ namespace vam::optimize {
 /// The jobs [first, last) are the pass's own, [low, high) it knows, because they share dose with its own.
 struct Pass {
   int first, last, low, high;
+  [[nodiscard]] int jobs() const { return last - first; }
   [[nodiscard]] int slices() const { return high - low; }
 };
 

@@ -9,26 +9,29 @@
 
 #include "base/image.hpp"
 #include "model/dose_metrics.hpp"
-#include "model/piece.hpp"
-#include "optimize/target/schedule.hpp"
+#include "optimize/run/private/jobs.hpp"
 
 namespace vam::optimize {
 
 /// Keeps the projections of a job until the last slice that it stands for has been written.
-class Finished {
+class OutputQueue {
  public:
   using Write = std::function<void(int k, const Image& image)>;  // takes the slices asked for, in order
 
-  Finished(const Schedule& schedule, model::ImageRange slices, Write write)
-      : schedule_(schedule), asked_(slices), write_(std::move(write)) {}
+  /// The jobs are referred to.
+  OutputQueue(const Jobs& jobs, Write write)
+      : jobs_(jobs),
+        write_(std::move(write)),
+        next_(jobs.passes.front().first),
+        peaks_(jobs.schedule.job_of_slice.size()) {}
 
-  /// The projections of the jobs that follow those already taken; every slice whose turn has come is written.
-  /// Throws Fault::data for values that are not finite.
+  /// The pass that the next projections are of; null: all are finished.
+  [[nodiscard]] const Pass* open() const { return pass_ < jobs_.passes.size() ? &jobs_.passes[pass_] : nullptr; }
+  /// How many of its jobs are not finished.
+  [[nodiscard]] int left() const { return open() == nullptr ? 0 : open()->last - next_; }
+  /// The projections of its next jobs; every slice whose turn has come is written. Throws Fault::data for values that
+  /// are not finite.
   void take(std::vector<Image> images);
-  /// The next job, which no slice asked for needs, is left out.
-  void skip() { take(std::vector<Image>(1)); }
-  /// How many have been taken.
-  [[nodiscard]] int jobs() const { return jobs_; }
   /// Of all that has been written.
   [[nodiscard]] double efficiency() const { return efficiency_.value(); }
   [[nodiscard]] double peak() const { return efficiency_.max; }
@@ -36,11 +39,13 @@ class Finished {
   [[nodiscard]] const std::vector<float>& peaks() const { return peaks_; }
 
  private:
-  const Schedule& schedule_;
-  model::ImageRange asked_;
+  void write_ready();
+
+  const Jobs& jobs_;
   Write write_;
+  std::size_t pass_ = 0;
+  int next_;  // job
   std::map<int, Image> held_;
-  int jobs_ = 0;
   int slices_ = 0;  // dealt with
   model::LightEfficiency efficiency_;
   std::vector<float> peaks_;

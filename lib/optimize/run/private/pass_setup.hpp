@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The operators of a pass, one around the other.
+// What a pass is optimised and judged with: its problem, and its light, one operator around the other.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "light/operators/blurred_operator.hpp"
+#include "optimize/run/private/pass.hpp"
+#include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
 
@@ -28,5 +33,16 @@ class PassLight {
   const light::Operator& sharp_;
   std::unique_ptr<light::Operator> blurred_;
 };
+
+struct PassSetup {
+  Problem problem;                 // without what inserts fill and hide
+  std::vector<Slab> inserts;       // coverage, a slab for every slab of the problem; empty without any
+  std::vector<std::int64_t> dark;  // of each slice's part, in the shadow of inserts from everywhere; empty without any
+  PassLight light;
+};
+
+/// slice(job): the slice of the volume that the job computes.
+[[nodiscard]] PassSetup set_up(const VolumeTask& task, const light::Operator& light, const SliceReader& reader,
+                               const Pass& pass, const std::function<int(int job)>& slice);
 
 }  // namespace vam::optimize

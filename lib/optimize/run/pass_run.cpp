@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optimize/run/private/pass_run.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "optimize/methods/metrics.hpp"
+#include "optimize/run/private/misses.hpp"
+#include "optimize/run/private/threshold.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+/// Progress in iterations of a job. A goal may be met before the last of them, but not before the first that counts.
+void show(const RunState& run, const Pass& pass, int iteration, const model::DoseMetrics& figures, Progress& progress) {
+  const Limits& limits = run.task.limits;
+  int expected = limits.iterations;
+  if (!limits.until.empty() && limits.at_least > 0) expected = std::min(expected, limits.at_least);
+  while (expected < iteration) expected *= 2;
+  const int most = std::max(1, std::min(expected, limits.iterations));
+  long before = 0, all = 0;
+  for (const Pass& one : run.jobs.passes) {
+    all += one.jobs();
+    if (one.first < pass.first) before += one.jobs();
+  }
+  progress.stand(before * most + static_cast<long>(pass.jobs()) * iteration, all * most,
+                 {{"iteration", static_cast<double>(iteration)}, {"VER", figures.ver}, {"PW", figures.pw}});
+}
+
+/// The pass has its share of the time that is left.
+Limits limits_of(const RunState& run, const Pass& pass) {
+  Limits limits = run.task.limits;
+  limits.watch_last = run.task.watch;
+  const double share = static_cast<double>(pass.jobs()) / (run.jobs.count() - pass.first);
+  if (limits.deadline) limits.deadline = limits.deadline->share(share);
+  return limits;
+}
+
+}  // namespace
+
+void begin(RunState& run, const Pass& pass, const PassSetup& setup, PassState& work) {
+  for (int job = pass.first; job < pass.last && !setup.dark.empty(); ++job)
+    run.totals.add_dark(setup.dark[job - pass.low] * run.jobs.times[job]);
+  work.search.max_intensity = run.first_limit;
+  work.method = run.task.make(run.first_limit);
+  if (!run.task.initial) return;
+  work.state.g = collapse_images(
+      pass, [&](int job) { return run.task.initial(run.jobs.slice(job)); }, setup.light.sharp());
+}
+
+bool iterate(RunState& run, const Pass& pass, const Faced& faced, PassState& work, Progress& progress) {
+  const VolumeTask& task = run.task;
+  const Problem& problem = faced.setup.problem;
+  const light::Operator& light = faced.setup.light.blurred();
+  const Watch watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) {
+    SliceFigures figures;
+    for (int job = pass.first; job < pass.last; ++job) figures.add(slices[job - pass.low], run.jobs.times[job]);
+    show(run, pass, iteration, figures.mean(), progress);
+    if (task.watch) run.totals.note(iteration, figures);
+  };
+  AtLimit at_limit;
+  if (task.front) {
+    at_limit = [&](double most) {
+      run.outcome.front.push_back(front_point(problem, light, most, work.state, faced.all(), task.front));
+    };
+  }
+  Search& search = work.search;
+  const Outcome outcome = run_shortest(*work.method, problem, light, limits_of(run, pass), task.raising, work.state,
+                                       search, watch, task.interruption.pause, at_limit);
+  if (outcome.stop == StopReason::interrupted) return false;
+  const bool returned = outcome.stop != StopReason::goal && return_to_best(problem, light, search.standing, work.state);
+  if (returned) search.max_intensity = search.best_max_intensity;
+  search.standing.best_light = {};
+  run.totals.end(outcome);
+  return true;
+}
+
+void finish(RunState& run, const Pass& pass, const Faced& faced, PassState& work) {
+  const VolumeTask& task = run.task;
+  const Problem& problem = faced.setup.problem;
+  const bool whole = run.jobs.division.whole;
+  const double most = work.search.max_intensity;
+  VolumeOutcome& outcome = run.outcome;
+  outcome.eigenvalue = work.method->eigenvalue();
+  outcome.least_ratio = std::max(outcome.least_ratio, work.method->provable_ratio());
+  outcome.max_intensity = std::max(outcome.max_intensity, most);  // the brightest pass sets the duration
+  Iterate& state = work.state;
+  if (task.certify > 0) outcome.certificate = certify(problem, faced.setup.light.blurred(), state.g, task.certify);
+  // Slices that share dose with other passes are to scale already, as is what is missing of a dose.
+  if (run.jobs.division.halo == 0 && problem.delivered.empty()) {
+    bring_to_threshold(problem, faced.setup.light.sharp(), whole ? Together::pass : Together::slice, most, faced.all(),
+                       state);
+  }
+  if (whole) outcome.surface = work.method->surface_miss(state.dose);
+  run.totals.add(state.dose, problem, pass, run.jobs, task.part);
+  if (run.light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(state.dose, problem);  // one pass
+  if (whole && task.counts_pieces()) outcome.pieces = print_pieces(state.dose, problem, task.source);
+}
+
+void hand_out(const RunState& run, const Pass& pass, const light::Operator& light, PassState work,
+              OutputQueue& outputs) {
+  work.method.reset();
+  work.state.dose.clear();
+  for (std::size_t s = 0; s < work.state.g.size(); ++s) {
+    std::vector<Image> images = expand_slab(pass, s, work.state.g[s], light);
+    work.state.g[s] = {};
+    if (images.empty()) continue;
+    if (run.task.interruption.to != nullptr) keep_finished(*run.task.interruption.to, images);
+    outputs.take(std::move(images));
+  }
+}
+
+}  // namespace vam::optimize
