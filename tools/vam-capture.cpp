@@ -8,7 +8,7 @@
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
 #include "manual_page.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-capture/session.hpp"
 
 namespace {
@@ -72,7 +72,7 @@ void declare(cli::App& app, Options& o) {
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_report(app, o.report);
   cli::App& who = app.subcommand("identify", "print the camera, its settings and its firmware as JSON", [&o] {
-    if (!tool::print_printer(o.printer)) device::interruptible([&] { capture_tool::identify(o); });
+    if (!session::print_printer(o.printer)) device::interruptible([&] { capture_tool::identify(o); });
   });
   add_camera(who, o);
   cli::add_printer(who, o.printer);
@@ -81,7 +81,7 @@ void declare(cli::App& app, Options& o) {
 }
 
 void run(const cli::App& app, const Options& options) {
-  if (tool::print_printer(options.printer)) return;
+  if (session::print_printer(options.printer)) return;
   device::interruptible([&] {
     if (options.with_parent) device::end_with_parent();
     device::logged(options.log, [&] { capture_tool::take(app, options); });

@@ -2,7 +2,7 @@
 // vam-convert: data of other programs, and from these tools to others; pieces of stacks.
 #include "io/stream/file_type.hpp"
 #include "manual_page.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-convert/export.hpp"
 #include "vam-convert/options.hpp"
 #include "vam-convert/pieces.hpp"
@@ -16,8 +16,8 @@ using convert_tool::Options;
 
 /// Native file -> array, array -> volume, array or images -> projections.
 void run(const cli::App& app, const Options& options) {
-  const model::Printer printer = tool::load_printer(options.printer);
-  if (tool::print_printer(options.printer, printer, options.output)) return;
+  const model::Printer printer = session::load_printer(options.printer);
+  if (session::print_printer(options.printer, printer, options.output)) return;
   const auto type = io::known_file_type(options.input);
   if (type == io::FileType::volume || type == io::FileType::stack) {
     check_export(app, options);

@@ -9,16 +9,16 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
-#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/settings/resin_record.hpp"
 #include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
 #include "metrology/cure/sensitivity.hpp"
+#include "model/metadata.hpp"
+#include "session/volumes.hpp"
 #include "vam-correct/renew.hpp"
 
 namespace {
@@ -74,13 +74,6 @@ void declare(cli::App& app, Options& o) {
   app.usual({"--output", "--dose", "--uncertainty", "--column-offset", "--before", "--sensitivity", "--report"});
 }
 
-io::SparseVolume read_dose(const std::string& path) {
-  io::SparseVolume dose = io::read_volume(path, "dose");
-  if (dose.units == "mJ/cm3") return dose;
-  throw Error{Fault::data, path + ": the dose is in units of " + excerpt(dose.units) +
-                               ", not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in vam-dose"};
-}
-
 /// A dose for one place of the axis, or for three; and the first one's facts.
 struct Dose {
   metrology::PlannedDose planned;
@@ -95,10 +88,10 @@ Dose read_doses(const std::vector<std::string>& paths, const Options& options, c
                                   (wanted == 3 ? ", not the three that --column-offset requires"
                                                : ", not one; three require --column-offset")};
   }
-  io::SparseVolume first = read_dose(paths.front());
+  io::SparseVolume first = session::read_dose(paths.front());
   metrology::PlannedDose planned{{io::dense_volume(first)}, options.column_offset_px.value_or(1)};
   for (std::size_t n = 1; n < paths.size(); ++n) {
-    planned.at.push_back(io::dense_volume(read_dose(paths[n])));
+    planned.at.push_back(io::dense_volume(session::read_dose(paths[n])));
     if (planned.at.back().grid == planned.at.front().grid) continue;
     throw Error{Fault::data,
                 paths[n] + ": has other voxels than " + paths.front() + "; compute both by vam-dose --like"};
@@ -176,8 +169,7 @@ void run(const cli::App& app, Options& options) {
   options.limits.sigma = 0.01 * options.max_uncertainty_percent;
   options.limits.deviation = std::log(options.max_factor);
   const metrology::ScatterCurve curve = curve_of(options.curve);
-  const io::SparseVolume seen = io::read_volume(options.scatter, "scatter");
-  tool::require_scatter(options.scatter, seen.units);
+  const io::SparseVolume seen = session::read_scatter(options.scatter);
   const model::Volume scatter = io::dense_volume(seen);
   std::optional<model::Volume> sigma;
   if (!options.uncertainty.empty()) sigma = io::dense_volume(io::read_volume(options.uncertainty, "uncertainty"));
@@ -186,7 +178,7 @@ void run(const cli::App& app, Options& options) {
   }
   const Dose shown = read_doses(options.acted, options, "--acted");
   const Dose given = read_doses(options.delivered.empty() ? options.acted : options.delivered, options, "--dose");
-  const metrology::ActedDose acted{shown.planned, tool::stretch_z(shown.first.metadata)};
+  const metrology::ActedDose acted{shown.planned, model::stretch_z(shown.first.metadata)};
   const auto before = field_before(options, given.planned.middle(), curve);
   const auto fit = fit_sensitivity(scatter, sigma ? &*sigma : nullptr, acted, curve, before,
                                    options.resolution_mm.value_or(0.7 * scatter.grid.voxel_mm));

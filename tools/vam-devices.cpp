@@ -17,7 +17,7 @@
 #include "io/settings/report.hpp"
 #include "manual_page.hpp"
 #include "model/device_schemes.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 
 namespace {
 
@@ -106,7 +106,7 @@ std::vector<device::Switched> to_switch_off(const Options& options, std::vector<
 }
 
 void switch_off(const Options& options) {
-  if (tool::print_printer(options.printer)) return;
+  if (session::print_printer(options.printer)) return;
   std::vector<std::string> problems;
   Fault fault = Fault::busy;
   auto devices = to_switch_off(options, problems, fault);

@@ -3,13 +3,13 @@
 #include <malloc.h>
 
 #include "base/json.hpp"
-#include "facts.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
-#include "printer.hpp"
+#include "model/metadata.hpp"
+#include "session/printer.hpp"
 #include "vam-dose/expose.hpp"
 #include "vam-dose/light.hpp"
 #include "vam-dose/options.hpp"
@@ -24,15 +24,15 @@ using dose_tool::Options;
 
 /// Options -> light and voxels -> doses of a turn, slice by slice -> one unit for all -> volume and report.
 void run(const cli::App& app, Options& options) {
-  const model::Printer printer = tool::load_printer(printer_of(options));
-  if (tool::print_printer(options.printer, printer, options.output)) return;
+  const model::Printer printer = session::load_printer(printer_of(options));
+  if (session::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
   take_sinogram(app, options);
   take_full_scale(options);
 
   io::StackReader in(options.inputs.front());
   io::require(options.inputs.front(), in.info(), model::Kind::sinogram);
-  if (!options.full_scale) options.full_scale = tool::full_scale(in.info().extra);
+  if (!options.full_scale) options.full_scale = model::full_scale(in.info().extra);
   const model::StackInfo info = posed(in.info(), options);
   const dose_tool::Place place = place_of(options, printer, info);
   io::SparseVolume volume = empty_volume(app, place, printer, info);

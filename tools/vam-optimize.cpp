@@ -19,7 +19,7 @@
 #include "optimize/run/printable.hpp"
 #include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-optimize/beginning.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/inputs.hpp"
@@ -61,8 +61,8 @@ void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, co
 /// Options -> volumes -> light and task -> one pass after the other -> stack.
 void run(const cli::App& app, Options& options) {
   settle(app, options);
-  model::Printer printer = tool::load_printer(options.printer);
-  if (tool::print_printer(options.printer, printer, options.output)) return;
+  model::Printer printer = session::load_printer(options.printer);
+  if (session::print_printer(options.printer, printer, options.output)) return;
   printer.projector.axis_column += options.column_offset_px;
   settle_recorded(printer, options);
   settle_response(app, options);

@@ -15,7 +15,7 @@
 #include "io/stream/input_name.hpp"
 #include "manual_page.hpp"
 #include "plot/save.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-ost/print.hpp"
 #include "vam-ost/session.hpp"
 #include "vam-ost/usable_views.hpp"
@@ -145,7 +145,7 @@ void once(const cli::App& app, const Options& options) {
 }
 
 void run(const cli::App& app, const Options& options) {
-  if (tool::print_printer(options.printer)) return;
+  if (session::print_printer(options.printer)) return;
   if (options.step_deg == 0.0) {
     throw Error{Fault::usage, "--view-step: is 0; give the angle between views"};
   }

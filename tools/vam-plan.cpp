@@ -4,7 +4,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-plan/options.hpp"
 #include "vam-plan/plan.hpp"
 
@@ -13,8 +13,8 @@ namespace {
 using namespace vam;
 
 void run(const plan_tool::Options& options) {
-  const model::Printer printer = tool::load_printer(options.printer);
-  if (tool::print_printer(options.printer, printer, "-")) return;
+  const model::Printer printer = session::load_printer(options.printer);
+  if (session::print_printer(options.printer, printer, "-")) return;
   const plan_tool::Plan plan = plan_tool::plan(options, printer);
   io::write_report(options.report, "vam-plan", report(plan));
   if (options.report != "-") io::write_text("-", table(plan));

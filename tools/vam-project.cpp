@@ -7,7 +7,7 @@
 #include "io/image/frame_sink.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-project/files.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/options.hpp"
@@ -30,7 +30,7 @@ void freeze(const Options& options, const model::Printer& printer) {
 
 void run(const cli::App& app, Options& options) {
   const model::Printer printer = settle(options);
-  if (tool::print_printer(options.printer, printer, options.output)) return;
+  if (session::print_printer(options.printer, printer, options.output)) return;
   if (!options.freeze.empty()) return freeze(options, printer);
   const bool live = device::names_display(options.output);
   if (!live) project::refuse_live(app, options.output);

@@ -6,11 +6,11 @@
 #include "base/error.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "grey_options.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "plot/page.hpp"
-#include "printer.hpp"
+#include "session/grey_target.hpp"
+#include "session/printer.hpp"
 #include "vam-report/content.hpp"
 #include "vam-report/names.hpp"
 #include "vam-report/page_data.hpp"
@@ -26,7 +26,7 @@ struct Options {
   std::string title;
   int sections = 24;
   int projections = 36;
-  tool::GreyChoice grey;
+  session::GreyChoice grey;
   cli::PrinterOptions printer;
 };
 
@@ -38,15 +38,15 @@ void declare(cli::App& app, Options& o) {
   app.option("--title", "TEXT", o.title, "Title of the page.").default_is("the name of the first file");
   app.option("--max-sections", "N", o.sections, {1, 200}, "Maximum number of sections of a volume.");
   app.option("--max-images", "N", o.projections, {1, 360}, "Maximum number of images of a stack or video.");
-  tool::add_grey_target(app, o.grey);
+  session::add_grey_target(app, o.grey);
   cli::add_printer(app, o.printer);
   cli::add_threads(app);
   app.usual({"--output", "--title", "--max-sections", "--max-images", "--grey-target", "--printer", "--set"});
 }
 
 void run(const cli::App& app, Options& o) {
-  const model::Printer printer = tool::load_printer(o.printer);
-  if (tool::print_printer(o.printer, printer, o.output)) return;
+  const model::Printer printer = session::load_printer(o.printer);
+  if (session::print_printer(o.printer, printer, o.output)) return;
   if (o.files.empty()) throw Error{Fault::usage, "FILE: give the files of a print, or their folder"};
   if (o.title.empty()) o.title = report_tool::file_name(o.files.front());
   plot::Page page;

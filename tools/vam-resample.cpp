@@ -19,7 +19,7 @@
 #include "optics/crossed_slices.hpp"
 #include "optics/ray_list.hpp"
 #include "optics/resample_stack.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-resample/options.hpp"
 
 namespace {
@@ -51,9 +51,9 @@ void warn_of_climb(const Options& options, const model::Printer& printer, const 
 
 void run(const cli::App& app, Options& options) {
   const bool projector = options.in_vial();
-  const model::Printer printer = tool::load_printer(options.printer);
+  const model::Printer printer = session::load_printer(options.printer);
   check(options, printer);
-  if (tool::print_printer(options.printer, printer, options.output)) return;
+  if (session::print_printer(options.printer, printer, options.output)) return;
 
   optics::ResampleOptions how;
   how.interpolation = options.interpolation == "linear" ? optics::Interpolation::linear : optics::Interpolation::cubic;

@@ -9,8 +9,6 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
-#include "grey_target.hpp"
 #include "io/exr/stack.hpp"
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
@@ -18,9 +16,11 @@
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/conditions.hpp"
-#include "printer.hpp"
+#include "model/metadata.hpp"
 #include "score/score.hpp"
-#include "score_volumes.hpp"
+#include "session/dose_score.hpp"
+#include "session/grey_target.hpp"
+#include "session/printer.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "vam-score/inputs.hpp"
 #include "vam-score/lit_fraction.hpp"
@@ -74,7 +74,7 @@ void require_files_for_outputs(const Options& options) {
 /// Of gaps of the target that none of its voxels resolves, and which the figures pass over.
 void warn_of_gaps(const verdict::Unresolved& unresolved, const io::SparseVolume& target, const std::string& file) {
   const std::string doubt =
-      solid::gap_doubt(io::input_name(file), unresolved, target.grid(), tool::stretch_z(target.metadata));
+      solid::gap_doubt(io::input_name(file), unresolved, target.grid(), model::stretch_z(target.metadata));
   if (!doubt.empty()) warn(doubt + "; they are not judged");
 }
 
@@ -93,11 +93,8 @@ std::vector<model::Condition> conditions_of(const Options& options) {
 void score_grey(const Options& options, const model::Printer& printer,
                 const std::vector<model::Condition>& conditions) {
   const Inputs in = read(options);
-  score::GreyOptions how = options.grey.options();
-  how.circle = tool::judged_circle(in.target(), printer);
-  how.unit = tool::grey_unit(in.target(), in.dose(), options.input);
-  tool::require_linear(in.dose(), options.input);
-  const score::GreyScore result = tool::score_grey_volumes(in.dose(), in.target(), how, in.band());
+  const score::GreyScore result =
+      session::score_grey(*in.dose, *in.target, options.grey.options(), in.band, printer, options.input);
   io::write_report(options.report, "vam-score-grey", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });
@@ -106,23 +103,23 @@ void score_grey(const Options& options, const model::Printer& printer,
 void run(const cli::App& app, Options& options) {
   check(app, options);
   const std::vector<model::Condition> conditions = conditions_of(options);
-  const model::Printer printer = tool::load_printer(options.printer);
-  if (tool::print_printer(options.printer, printer, "-")) return;
+  const model::Printer printer = session::load_printer(options.printer);
+  if (session::print_printer(options.printer, printer, "-")) return;
   if (options.grey.is_target) return score_grey(options, printer, conditions);
   require_files_for_outputs(options);
   const Inputs in = read(options);
   const std::string& file = options.target.empty() ? options.input : options.target;
-  const bool is_grey = tool::warn_of_grey(in.target(), file);
+  const bool is_grey = session::warn_of_grey(*in.target, file);
   options.how.target = io::input_name(file);
-  tool::settle_exposure(options.how, in.dose(), in.target(), printer);
+  session::resolve_exposure(options.how, *in.dose, *in.target, printer);
   require_known(conditions, options);
-  score::Score result = tool::score_print(in.dose(), in.target(), options.how);
-  if (!is_grey) warn_of_gaps(result.unresolved(), in.target(), file);
+  score::Score result = session::score_print(*in.dose, *in.target, options.how);
+  if (!is_grey) warn_of_gaps(result.unresolved(), *in.target, file);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
   if (!options.lit_fraction.empty())
-    score_tool::write_lit_fraction(options.lit_fraction, in.target().grid(), printer, app);
-  if (!options.print.empty()) write_print(options, in.dose(), options.print_at.value_or(result.print_threshold()));
+    score_tool::write_lit_fraction(options.lit_fraction, in.target->grid(), printer, app);
+  if (!options.print.empty()) write_print(options, *in.dose, options.print_at.value_or(result.print_threshold()));
   io::write_report(options.report, "vam-score", figures);
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });

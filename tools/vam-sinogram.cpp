@@ -13,7 +13,7 @@
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "tomo/fbp.hpp"
 #include "tomo/negative_values.hpp"
 #include "vam-sinogram/options.hpp"
@@ -57,8 +57,8 @@ void run(const cli::App& app, const Options& options) {
   if (options.printer_absorption && options.absorption_per_mm)
     throw Error{Fault::usage, "--absorption: give either --absorption or --printer-absorption"};
   if (options.cutoff && options.filter == "none") throw Error{Fault::usage, "--cutoff: requires --filter"};
-  const model::Printer printer = tool::load_printer(options.printer);
-  if (tool::print_printer(options.printer, printer, options.output)) return;
+  const model::Printer printer = session::load_printer(options.printer);
+  if (session::print_printer(options.printer, printer, options.output)) return;
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);
   io::require_usable(options.input, volume);
   if (volume.name() == "target" && io::farthest_mm(volume, 0) < 0) {

@@ -14,7 +14,7 @@
 #include "base/progress.hpp"
 #include "base/slab.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
@@ -22,9 +22,10 @@
 #include "manual_page.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
+#include "model/metadata.hpp"
 #include "model/printer.hpp"
 #include "optics/writable_radius.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "solid/shapes/shapes.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
@@ -146,8 +147,8 @@ void run(const cli::App& app, Options& options) {
   check(app, options);
   options.unit_given = app.given("--unit");
   options.insert_unit_given = app.given("--insert-unit");
-  const model::Printer printer = tool::load_printer(options.printer);
-  if (tool::print_printer(options.printer, printer, options.output)) return;
+  const model::Printer printer = session::load_printer(options.printer);
+  if (session::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
 
   solid::Writable room = options.extent == "resin" ? solid::whole_resin(printer)
@@ -174,7 +175,7 @@ void run(const cli::App& app, Options& options) {
   }
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", printed, grid, content));
-  if (content.unresolved.surface) tool::state_surface(volumes.front().metadata, content.unresolved.surface->places);
+  if (content.unresolved.surface) model::state_surface(volumes.front().metadata, content.unresolved.surface->places);
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject, advice(options));
   judge_size(app, options, part, content, grid, room);
   Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);

@@ -20,7 +20,7 @@
 #include "device/stage/spin.hpp"
 #include "io/settings/printer_file.hpp"
 #include "manual_page.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 
 namespace {
 
@@ -66,7 +66,7 @@ std::string plan_text(device::Stage& stage, const Options& options) {
 }
 
 void drive(const std::string& command, Options& options) {
-  if (tool::print_printer(options.printer)) return;
+  if (session::print_printer(options.printer)) return;
   settle(options);
   if (options.with_parent) device::end_with_parent();
   device::Guardian guardian;

@@ -7,16 +7,17 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
-#include "grey_target.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "manual_page.hpp"
+#include "model/metadata.hpp"
 #include "plot/save.hpp"
 #include "plot/view.hpp"
-#include "printer.hpp"
-#include "score_volumes.hpp"
+#include "session/dose_score.hpp"
+#include "session/grey_target.hpp"
+#include "session/printer.hpp"
 #include "vam-view/bodies.hpp"
 #include "vam-view/movie.hpp"
 #include "vam-view/options.hpp"
@@ -80,10 +81,10 @@ struct Judged {
 
 Judged judged(const Options& options, const io::SparseVolume& dose) {
   Judged made{target_for(options), {}};
-  tool::warn_of_grey(made.target, options.target.empty() ? options.input : options.target, grey_remedy);
+  session::warn_of_grey(made.target, options.target.empty() ? options.input : options.target, grey_remedy);
   made.target.extend_to(dose.grid(), options.target.empty() ? options.input : options.target);
   made.how.threshold = options.threshold;
-  tool::settle_exposure(made.how, dose, made.target, tool::load_printer(options.printer));
+  session::resolve_exposure(made.how, dose, made.target, session::load_printer(options.printer));
   return made;
 }
 
@@ -102,13 +103,13 @@ bool is_movie(const Options& options) { return options.output.ends_with(".mp4");
 void write_movie(const Options& options, const io::SparseVolume& dose, const std::string& history) {
   const Judged with = judged(options, dose);
   view_tool::Exposure exposure;
-  const auto turns = tool::stated_number(dose.metadata, "vam:print_turns");
-  const auto seconds = tool::stated_number(dose.metadata, "vam:print_s");
+  const auto turns = model::stated_number(dose.metadata, "vam:print_turns");
+  const auto seconds = model::stated_number(dose.metadata, "vam:print_s");
   if (turns && seconds) exposure.duration = {*turns, *seconds};
   if (options.threshold) {
     exposure.threshold = *options.threshold;
   } else {
-    const score::Score result = tool::score_volumes(dose, with.target, with.how);
+    const score::Score result = session::score_volumes(dose, with.target, with.how);
     exposure.threshold = threshold_of(options, result);
     const auto plan = with.how.threshold ? std::nullopt : result.plan();  // for the dose of one turn
     if (plan) exposure.duration = {static_cast<double>(plan->turns), plan->seconds};
@@ -126,7 +127,7 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
     const Judged with = judged(options, volume);
     const double threshold = options.threshold
                                  ? *options.threshold
-                                 : threshold_of(options, tool::score_volumes(volume, with.target, with.how));
+                                 : threshold_of(options, session::score_volumes(volume, with.target, with.how));
     if (!options.cure) return view_tool::print_figure(volume, with.target, threshold, options.view, insert);
     return plot::view_cure(volume, with.target, threshold, with.how.circle, options.view, insert);
   }
@@ -140,7 +141,7 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
 
 void show_volume(Options options, const std::string& history) {
   const io::SparseVolume volume = io::read_volume(options.input, grid_of(options));
-  options.view.stretch_z = tool::stretch_z(volume.metadata);
+  options.view.stretch_z = model::stretch_z(volume.metadata);
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
     const Judged with = judged(options, volume);
@@ -183,7 +184,7 @@ void show_images(const cli::App& app, Options options, io::FileType type) {
     return io::write_nrrd(options.exported, stack);
   }
   const auto images = io::open_images(options.input, type);
-  options.view.stretch_z = tool::stretch_z(images->info().extra);
+  options.view.stretch_z = model::stretch_z(images->info().extra);
   write_figure(options, plot::view_images(*images, options.view), app.history());
 }
 
@@ -204,7 +205,7 @@ void show_other(const cli::App& app, const Options& options) {
 }
 
 void run(const cli::App& app, Options& options) {
-  if (tool::print_printer(options.printer)) return;
+  if (session::print_printer(options.printer)) return;
   check(options);
   if (app.given("--title")) options.view.title = options.title;
   options.view.name = view_tool::file_name(options.input, options.compare);

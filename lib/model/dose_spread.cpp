@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "base/log.hpp"
+#include "base/text.hpp"
+
 namespace vam::model {
 
 namespace {
@@ -24,6 +27,17 @@ double diffused_mm2(const Resin& resin, double seconds) {
 
 double spread_mm(const Resin& resin, double seconds) {
   return std::sqrt(resin.psf_mm * resin.psf_mm + diffused_mm2(resin, seconds));
+}
+
+void warn_of_diffusion(const Resin& resin, double seconds) {
+  const double variance_mm2 = diffused_mm2(resin, seconds);
+  if (!(variance_mm2 > 0)) return;
+  [[maybe_unused]] static const bool warned = [&] {
+    warn("resin.diffusion_mm2_s: blurs the dose as what absorbed it diffuses, " +
+         format_number(std::sqrt(variance_mm2), 2) + " mm (sigma) in " + format_number(seconds, 3) +
+         " s; it does not stand for oxygen, which inhibits and needs a model of a resin that reacts");
+    return true;
+  }();
 }
 
 }  // namespace vam::model

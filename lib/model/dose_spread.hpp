@@ -13,4 +13,7 @@ namespace vam::model {
 /// Standard deviation in mm along one axis, by the point spread of the beam and diffusion together.
 [[nodiscard]] double spread_mm(const Resin& resin, double seconds);
 
+/// Once a run, where diffusion blurs the dose of a print of `seconds`: it is not taken for more than it stands for.
+void warn_of_diffusion(const Resin& resin, double seconds);
+
 }  // namespace vam::model

@@ -32,10 +32,13 @@ all_found() {
 }
 finds tools/vam-score/new.cpp '#include "../vam-slice/part.hpp"' 'vam-score must not include tools/vam-slice/part.hpp'
 finds tools/vam-score/new.cpp '#include <vam-slice/part.hpp>' 'vam-score must not include tools/vam-slice/part.hpp'
+touch tree/tools/loose.hpp
+finds tools/vam-score/new.cpp '#include "loose.hpp"' 'vam-score must not include tools/loose.hpp'
 finds tools/vam-score/new.cpp '#include "io/mesh/private/formats.hpp"' 'is private to io/mesh'
 finds tools/vam-score/new.cpp '#include "oracle/meshes.hpp"' 'oracle/meshes.hpp> has no room'
 finds tools/vam-score/new.cpp '#include "../../tests/oracle/meshes.hpp"' 'must not include tests/oracle/meshes.hpp'
 finds tools/vam-score/new.cpp '#include "opencv2/core.hpp"' 'belongs to .*metrology/ost'
+finds lib/plot/new.cpp '#include "session/printer.hpp"' 'plot must not include session'
 finds tests/oracle/new.cpp '#include <light/rays/vial_setup.hpp>' 'the oracle must share nothing'
 finds tests/lib/tomo/new.cpp '#include "io/mesh/private/formats.hpp"' 'is private to io/mesh'
 finds tests/lib/tomo/new.cpp '#include <OpenEXR/ImfHeader.h>' 'belongs to io/exr'

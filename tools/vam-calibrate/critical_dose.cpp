@@ -5,12 +5,12 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
-#include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"
-#include "io/vdb/vdb.hpp"
 #include "metrology/compare/surface_dose.hpp"
-#include "surface.hpp"
+#include "model/metadata.hpp"
+#include "session/printer.hpp"
+#include "session/surface.hpp"
+#include "session/volumes.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -23,14 +23,9 @@ constexpr double most_spread = 0.2;      // of the dose
 }  // namespace
 
 void measure_critical_dose(const CriticalDoseOptions& options) {
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
-  const io::SparseVolume sparse = io::read_volume(options.dose, "dose");
-  if (sparse.units != "mJ/cm3") {
-    throw Error{Fault::data,
-                options.dose + ": its doses are " + sparse.units +
-                    ", not mJ/cm3; set resin.absorption_per_mm and resin.critical_dose_mj_cm3 for vam-dose"};
-  }
-  const bool total = tool::stated_number(sparse.metadata, "vam:full_intensity_turns").has_value();
+  const model::Printer printer = session::load_printer(options.printer);
+  const io::SparseVolume sparse = session::read_dose(options.dose);
+  const bool total = model::stated_number(sparse.metadata, "vam:full_intensity_turns").has_value();
   if (!total && !options.turns) {
     throw Error{Fault::data,
                 options.dose +
@@ -40,7 +35,7 @@ void measure_critical_dose(const CriticalDoseOptions& options) {
   if (total && options.turns) throw Error{Fault::usage, "--turns: " + options.dose + " states its turns; omit it"};
   model::Volume dose = io::dense_volume(sparse);
   for (float& value : dose.values) value *= static_cast<float>(options.turns.value_or(1));
-  const double stretch_z = tool::stretch_z(sparse.metadata);
+  const double stretch_z = model::stretch_z(sparse.metadata);
   const auto at_print =
       metrology::surface_dose(print_surface(options.print, options.isovalue), dose, stretch_z, options.print);
   Json figures = metrology::to_json(at_print);
@@ -49,8 +44,8 @@ void measure_critical_dose(const CriticalDoseOptions& options) {
     if (!printer.resin.critical_dose_mj_cm3) {
       throw Error{Fault::usage, "--design: requires resin.critical_dose_mj_cm3, with which the print was planned"};
     }
-    const auto at_design =
-        metrology::surface_dose(tool::read_surface(options.design, design_isovalue), dose, stretch_z, options.design);
+    const auto at_design = metrology::surface_dose(session::read_surface(options.design, design_isovalue), dose,
+                                                   stretch_z, options.design);
     const double designed = at_design.critical_dose_mj_cm3.value;
     figures["design_dose_mj_cm3"] = designed;
     figures["next_critical_dose_mj_cm3"] = *printer.resin.critical_dose_mj_cm3 + middle - designed;

@@ -7,7 +7,8 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/settings/printer_match.hpp"
-#include "surface.hpp"
+#include "io/stream/file_type.hpp"
+#include "session/surface.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -33,7 +34,7 @@ Finding scan_registration(const ScanOptions& options, const model::Printer& prin
     throw Error{Fault::usage, "registration: set camera.axis_row, from which the heights of the print were counted"};
   }
   const model::TriangleSoup print = print_surface(options.from, options.isovalue);
-  const solid::Surface design(tool::read_surface(options.design, design_isovalue));
+  const solid::Surface design(session::read_surface(options.design, design_isovalue));
   const auto found = metrology::registration(print, design, camera.pixel_mm);
   const bool other_scale = std::abs(found.scale.value - 1) > 2 * found.scale.sigma;  // else the pixel is as good
   const double pixel_mm = camera.pixel_mm * (other_scale ? found.scale.value : 1);

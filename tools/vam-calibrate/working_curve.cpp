@@ -9,10 +9,10 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/stats/median.hpp"
-#include "facts.hpp"
 #include "io/settings/report.hpp"
-#include "io/vdb/vdb.hpp"
 #include "metrology/cure/curing_curve.hpp"
+#include "model/metadata.hpp"
+#include "session/volumes.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -29,14 +29,9 @@ struct TurnDose {
 };
 
 TurnDose read_dose(const std::string& path) {
-  const io::SparseVolume sparse = io::read_volume(path, "dose");
-  if (sparse.units != "mJ/cm3") {
-    throw Error{Fault::data,
-                path + ": its doses are " + sparse.units +
-                    ", not mJ/cm3; set resin.absorption_per_mm and resin.critical_dose_mj_cm3 for vam-dose"};
-  }
-  TurnDose dose{io::dense_volume(sparse), tool::stretch_z(sparse.metadata),
-                tool::stated_number(sparse.metadata, "vam:full_intensity_turns")};
+  const io::SparseVolume sparse = session::read_dose(path);
+  TurnDose dose{io::dense_volume(sparse), model::stretch_z(sparse.metadata),
+                model::stated_number(sparse.metadata, "vam:full_intensity_turns")};
   if (!dose.turns) return dose;
   for (float& value : dose.volume.values) value /= static_cast<float>(*dose.turns);
   return dose;
@@ -66,11 +61,10 @@ void measure_working_curve(const WorkingCurveOptions& options) {
   std::vector<metrology::CuringReading> readings;
   std::vector<double> turn_s;
   for (const std::string& file : files) {
-    const io::SparseVolume sparse = io::read_volume(file, "scatter");
-    tool::require_scatter(file, sparse.units);
-    const auto turns = tool::stated_number(sparse.metadata, "vam:turns");
+    const io::SparseVolume sparse = session::read_scatter(file);
+    const auto turns = model::stated_number(sparse.metadata, "vam:turns");
     if (!turns && !one) throw Error{Fault::data, file + ": does not state its turns; use volumes of vam-ost --live"};
-    turn_s.push_back(tool::stated_number(sparse.metadata, "vam:turn_s").value_or(0));
+    turn_s.push_back(model::stated_number(sparse.metadata, "vam:turn_s").value_or(0));
     const double last = turns ? *turns - options.lit_from_turn : for_ever;
     if (last <= 0) continue;
     const auto of_turn = metrology::curing_readings(io::dense_volume(sparse), dose.volume, dose.stretch_z,

@@ -17,7 +17,7 @@
 #include "device/port/lines.hpp"
 #include "io/image/image_file.hpp"
 #include "io/settings/report.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-capture/recording.hpp"
 #include "vam-capture/sinks.hpp"
 
@@ -201,11 +201,11 @@ std::unique_ptr<device::Camera> open_camera(const Options& options, const model:
 }
 
 void identify(const Options& options) {
-  device::print_line(facts(*open_camera(options, tool::load_printer(options.printer))).dump(2));
+  device::print_line(facts(*open_camera(options, session::load_printer(options.printer))).dump(2));
 }
 
 void take(const cli::App& app, const Options& options) {
-  const model::Printer printer = tool::load_printer(options.printer);
+  const model::Printer printer = session::load_printer(options.printer);
   check(options, printer);
   const device::CapturePlan plan = plan_of(options, printer);
   device::EventLog log(options.log);

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "facts.hpp"
 #include "io/stream/input_name.hpp"
+#include "model/metadata.hpp"
 
 namespace vam::convert_tool {
 

@@ -7,7 +7,7 @@
 
 #include "base/index.hpp"
 #include "optics/projector_frames.hpp"
-#include "response.hpp"
+#include "session/printer.hpp"
 
 namespace vam::convert_tool {
 
@@ -22,7 +22,7 @@ namespace {
 std::vector<float> intensities(const Options& options, const model::Printer& printer) {
   std::vector<float> table;
   if (!options.in_vial() || printer.projector.response.empty()) return table;
-  const resin::Response response = tool::response_of(printer.projector);
+  const resin::Response response = session::response_of(printer.projector);
   for (int level = 0; level < 65536; ++level) table.push_back(static_cast<float>(response.intensity(level / 65535.0)));
   return table;
 }

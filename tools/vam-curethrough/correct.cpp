@@ -22,10 +22,10 @@
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/slice_place.hpp"
-#include "printer.hpp"
 #include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/gaps.hpp"
 #include "resin/curethrough/slice_correction.hpp"
+#include "session/printer.hpp"
 #include "vam-curethrough/catalogue.hpp"
 #include "vam-curethrough/part.hpp"
 #include "vam-curethrough/print.hpp"
@@ -251,7 +251,7 @@ void declare(cli::App& app, CorrectOptions& options) {
 }
 
 void run(const cli::App& app, CorrectOptions& options) {
-  if (tool::print_printer(options.print.printer)) return;
+  if (session::print_printer(options.print.printer)) return;
   const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
   const bool images = !options.png.empty();
   if (stack && !options.catalogue.empty() && options.output == "-") {

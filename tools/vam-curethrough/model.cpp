@@ -11,14 +11,14 @@
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "model/dose_metrics.hpp"
-#include "printer.hpp"
+#include "model/metadata.hpp"
 #include "resin/curethrough/cure_map.hpp"
 #include "resin/curethrough/stack_dose.hpp"
+#include "session/printer.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/part.hpp"
 #include "vam-curethrough/print.hpp"
@@ -69,7 +69,7 @@ struct Inputs {
 
 // The stack's facts about its print apply where the command line gives none.
 PrintOptions with_facts(const cli::App& app, PrintOptions options, const SliceSource& slices) {
-  const auto speed = tool::stated_number(slices.facts, "vam:speed_mm_h");
+  const auto speed = model::stated_number(slices.facts, "vam:speed_mm_h");
   if (speed && *speed > 0 && !app.given("--print-speed")) options.speed_mm_h = *speed;
   const auto mode = slices.facts.find("vam:exposure");
   const bool layered = mode != slices.facts.end() && mode->second == "layered";
@@ -80,7 +80,7 @@ PrintOptions with_facts(const cli::App& app, PrintOptions options, const SliceSo
 double slice_height_um(const ModelOptions& options, const Inputs& in) {
   if (in.part) return in.part->slice_um();
   if (options.slice_um) return *options.slice_um;
-  const auto height = tool::stated_number(in.slices.facts, "vam:slice_mm");
+  const auto height = model::stated_number(in.slices.facts, "vam:slice_mm");
   if (height && *height > 0) return *height * 1e3;
   throw Error{Fault::usage, in.slices.name + ": the slice height is not known; give --slice-height or --target"};
 }
@@ -237,7 +237,7 @@ void declare(cli::App& app, ModelOptions& options) {
 }
 
 void run(const cli::App& app, ModelOptions& options) {
-  if (tool::print_printer(options.print.printer)) return;
+  if (session::print_printer(options.print.printer)) return;
   const Inputs in = open_inputs(app, options);
   Judge judge(options, in);
   read_twice(in, judge);

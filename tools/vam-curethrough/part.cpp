@@ -6,9 +6,9 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
+#include "model/metadata.hpp"
 
 namespace vam::curethrough {
 
@@ -63,7 +63,7 @@ PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
       block.values != nullptr ? take_values(block) : fill(block);
     };
   });
-  const double factor = tool::stretch_z(facts_.metadata);
+  const double factor = model::stretch_z(facts_.metadata);
   if (std::fabs(factor - 1) > 1e-6) {
     warn(name_ + ": stretched along z by " + format_number(factor) +
          " for a vial, which vam-curethrough does not model; slice with --stretch-z 1");

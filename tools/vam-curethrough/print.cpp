@@ -7,8 +7,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "printer.hpp"
-#include "response.hpp"
+#include "session/printer.hpp"
 
 namespace vam::curethrough {
 
@@ -40,7 +39,7 @@ resin::ExposureMode exposure_of(const PrintOptions& options) {
 }
 
 PrintSettings resolve(const PrintOptions& options, double slice_um) {
-  PrintSettings print{tool::load_printer(options.printer), {}, {}, resin::Response()};
+  PrintSettings print{session::load_printer(options.printer), {}, {}, resin::Response()};
   model::Projector& projector = print.printer.projector;
   if (options.min_intensity_mw_cm2) projector.min_intensity_mw_cm2 = *options.min_intensity_mw_cm2;
   if (options.max_intensity_mw_cm2) projector.max_intensity_mw_cm2 = *options.max_intensity_mw_cm2;
@@ -68,7 +67,7 @@ PrintSettings resolve(const PrintOptions& options, double slice_um) {
   }
   process.max_intensity_mw_cm2 = projector.max_intensity_mw_cm2;
   process.min_intensity_mw_cm2 = projector.min_intensity_mw_cm2;
-  print.response = tool::response_of(projector);
+  print.response = session::response_of(projector);
   if (!projector.response.empty()) {
     process.min_intensity_mw_cm2 = print.response.intensity(0) * process.max_intensity_mw_cm2;
   }

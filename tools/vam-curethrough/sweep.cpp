@@ -13,7 +13,7 @@
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/print.hpp"
 #include "vam-curethrough/subcommands.hpp"
@@ -141,7 +141,7 @@ void declare(cli::App& app, SweepOptions& options) {
 }
 
 void run(const cli::App& /*app*/, SweepOptions& options) {
-  if (tool::print_printer(options.print.printer)) return;
+  if (session::print_printer(options.print.printer)) return;
   resin::Study study;
   parse(options.ranges, study);
   const PrintSettings print = resolve(options.print, options.slice_um);

@@ -15,8 +15,6 @@
 #include "base/progress.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
-#include "dark_part.hpp"
-#include "diffusion.hpp"
 #include "io/stream/input_name.hpp"
 #include "light/blur/blur_stream.hpp"
 #include "light/grids/dose_grid.hpp"
@@ -25,6 +23,7 @@
 #include "model/dose_spread.hpp"
 #include "model/grid_size.hpp"
 #include "optics/projector_frames.hpp"
+#include "session/volumes.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/sink.hpp"
 
@@ -121,7 +120,7 @@ double blur_mm(const Options& options, const model::Printer& printer, const mode
   const double usual = model::repeat(info.poses) ? printer.stage.turns : optics::turns_of(info);
   const double turns = options.shown.empty() ? usual : shown_turns;
   const double seconds = options.diffusion_time_s.value_or(model::seconds_of(printer.stage, turns));
-  tool::warn_of_diffusion(printer.resin, seconds);
+  model::warn_of_diffusion(printer.resin, seconds);
   return model::spread_mm(printer.resin, seconds);
 }
 
@@ -160,7 +159,7 @@ Exposed expose(Light& light, const model::StackInfo& info, const Options& option
   if (judged) exposed.outside = sink.outside();
   if (insert.there() && place.target != nullptr) exposed.dark_part_voxels = insert.dark_part_voxels();
   warn_about(options, light, projector);
-  tool::warn_of_dark_part(options.like, insert.dark_part_voxels());
+  session::warn_of_shadowed_voxels(options.like, insert.dark_part_voxels());
   return exposed;
 }
 

@@ -12,7 +12,7 @@
 #include "io/exr/stack_batches.hpp"
 #include "io/stream/stream.hpp"
 #include "resin/dither.hpp"
-#include "response.hpp"
+#include "session/printer.hpp"
 #include "vam-dose/shown.hpp"
 
 namespace vam::dose_tool {
@@ -24,7 +24,7 @@ class Display {
  public:
   Display(const light::DisplayRange& range, const Options& options, const model::Projector& projector) : range_(range) {
     if (!options.bits) return;
-    levels_.emplace(tool::response_of(projector), *options.bits);
+    levels_.emplace(session::response_of(projector), *options.bits);
     if (options.dither_turns) dither_.emplace(*levels_, *options.dither_turns);
   }
 

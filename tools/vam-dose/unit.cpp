@@ -8,7 +8,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
+#include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
@@ -29,7 +29,7 @@ score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const
          " mJ/cm3 per turn, the part at least " + format_number(scale * doses.min_part, 4) +
          "; there is no process window, and the plan is for the best threshold");
   }
-  return score::plan_exposure(doses, scale, printer, optics::turns_of(light), tool::threshold_dose(light.extra));
+  return score::plan_exposure(doses, scale, printer, optics::turns_of(light), model::threshold_dose(light.extra));
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
     scale(volume, unit.turn * (of_run ? 1.0 : turns));  // that of a run is of its turns already
     volume.units = "mJ/cm3";
     volume.metadata["vam:dose_unit_mj_cm3"] = format_number(unit.turn * turns, 9);
-    const auto threshold = tool::threshold_dose(volume.metadata);
+    const auto threshold = model::threshold_dose(volume.metadata);
     if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.turn * turns, 9);
   }
   if (!unit.plan && !of_run) return;
@@ -89,7 +89,7 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
     const bool of_print = of_run && unit.absolute;
     model::Outside outside =
         exposed.outside->at(of_print ? *printer.resin.critical_dose_mj_cm3 / unit.turn
-                                     : score::aimed_dose(exposed.metrics, tool::threshold_dose(light.extra)));
+                                     : score::aimed_dose(exposed.metrics, model::threshold_dose(light.extra)));
     outside.max_dose *= unit.turn;
     add_to(report, outside);
   }

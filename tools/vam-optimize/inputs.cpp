@@ -1,58 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-optimize/inputs.hpp"
 
-#include <utility>
-
 #include "base/error.hpp"
-#include "base/printable.hpp"
-#include "grey_target.hpp"
-#include "io/vdb/gate.hpp"
-#include "own_grid.hpp"
+#include "session/grey_target.hpp"
+#include "session/volumes.hpp"
 
 namespace vam::optimize_tool {
 
-namespace {
-
-io::SparseVolume read_dose(const std::string& path) {
-  io::SparseVolume dose = tool::read_own(path, "dose");
-  if (dose.units == "mJ/cm3") return dose;
-  throw Error{Fault::data, path + ": the dose is in units of " + excerpt(dose.units) +
-                               ", not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
-                               "vam-dose"};
-}
-
-}  // namespace
-
 Inputs read(const Options& options) {
+  const bool grey = options.demands.grey;
+  std::vector<io::SparseVolume> grids =
+      session::read_grids(options.input, grey ? io::TargetKind::grey : io::TargetKind::coverage);
   Inputs in;
-  std::vector<io::SparseVolume> all = io::read_volumes(options.input);
-  io::require_usable(options.input, all, options.demands.grey ? io::TargetKind::grey : io::TargetKind::coverage);
-  for (io::SparseVolume& volume : all) {
-    if (volume.name() == "target")
-      in.target.push_back(std::move(volume));
-    else if (volume.name() == "insert")
-      in.insert.push_back(std::move(volume));
-    else if (volume.name() == "weight" && options.weights.empty())
-      in.weight.push_back(std::move(volume));
-    else if (volume.name() == "tolerance" && options.band_volume.empty())
-      in.tolerance.push_back(std::move(volume));
-  }
-  if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice writes one"};
-  if (options.demands.grey && in.target.front().units != "relative") {
+  in.target.push_back(
+      session::taken(grids, session::require_grid(grids, "target", options.input, "vam-slice writes one")));
+  if (grey && in.target.front().units != "relative") {
     throw Error{Fault::data, options.input + ": is in " + in.target.front().units +
                                  ", but projections have relative doses; divide it by the dose that is to be 1"};
   }
-  if (!options.demands.grey) tool::warn_of_grey(in.target.front(), options.input);
-  if (!options.weights.empty()) in.weight.push_back(tool::read_own(options.weights, "weight"));
-  if (!options.band_volume.empty()) in.tolerance.push_back(tool::read_own(options.band_volume, "tolerance"));
-  for (const std::string& path : options.delivered) in.delivered.push_back(read_dose(path));
-  if (!in.insert.empty())
-    in.insert.front().extend_to(in.grid(), options.input);  // other programs leave the void around it out
-  for (const auto& [volumes, file] :
-       {std::pair{&in.weight, &options.weights}, std::pair{&in.tolerance, &options.band_volume}}) {
-    if (volumes->empty() || volumes->front().grid() == in.grid()) continue;
-    throw tool::differs_from_target(volumes->front(), file->empty() ? options.input : *file);
+  if (!grey) session::warn_of_grey(in.target.front(), options.input);
+  if (io::SparseVolume* insert = session::find_grid(grids, "insert")) {
+    insert->extend_to(in.grid(), options.input);  // other programs leave the void around it out
+    in.insert.push_back(session::taken(grids, *insert));
   }
+  const auto take = [&](const char* name, const std::string& own, std::vector<io::SparseVolume>& to) {
+    if (!own.empty()) to.push_back(session::read_grid(own, name));
+    io::SparseVolume* grid = own.empty() ? session::find_grid(grids, name) : &to.back();
+    if (grid == nullptr) return;
+    if (grid->grid() != in.grid()) throw session::differs_from_target(*grid, own.empty() ? options.input : own);
+    if (own.empty()) to.push_back(session::taken(grids, *grid));
+  };
+  take("weight", options.weights, in.weight);
+  take("tolerance", options.band_volume, in.tolerance);
+  for (const std::string& path : options.delivered) in.delivered.push_back(session::read_dose(path));
   return in;
 }
 

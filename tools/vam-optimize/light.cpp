@@ -8,7 +8,6 @@
 #include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "diffusion.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "light/grids/poses.hpp"
@@ -171,7 +170,7 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
 }
 
 void warn_of(const Scene& scene, const io::SparseVolume& target, const Options& options) {
-  if (!options.no_blur) tool::warn_of_diffusion(scene.printer.resin, diffusion_s(scene, options));
+  if (!options.no_blur) model::warn_of_diffusion(scene.printer.resin, diffusion_s(scene, options));
   if (!options.in_vial()) return;
   warn_of_reach(target, scene.printer, options);
   if (scene.poses.empty()) warn_of_wobble(scene.printer, scene.grid.voxel_mm);

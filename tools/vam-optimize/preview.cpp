@@ -14,10 +14,11 @@
 #include "io/stream/stream.hpp"
 #include "model/coarser.hpp"
 #include "model/magnification.hpp"
+#include "model/metadata.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "score/exposure_plan.hpp"
-#include "unresolved.hpp"
+#include "session/dose_score.hpp"
 #include "vam-optimize/coarse_start.hpp"
 #include "vam-optimize/coarser.hpp"
 #include "vam-optimize/exposure.hpp"
@@ -69,14 +70,14 @@ bool can_be_coarser(const Level& level) {
 std::vector<Level> levels_of(const model::Printer& printer, const Inputs& in, const Options& options) {
   std::vector<Level> levels;
   levels.push_back({1, printer, options, {}, &in, make_scene(in.target.front(), printer, options)});
-  levels.front().unresolved = tool::unresolved(in.target.front());
+  levels.front().unresolved = session::sub_voxel_features(in.target.front());
   while (levels.back().pixels < 4) {
     if (!can_be_coarser(levels.back())) break;
     levels.push_back(coarser(levels.back()));
   }
   for (; levels.size() > 1; levels.pop_back()) {
     Level& level = levels.back();
-    level.unresolved = tool::unresolved(level.own.target.front());
+    level.unresolved = session::sub_voxel_features(level.own.target.front());
     if (!level.unresolved.is_much() || !is_quick(levels[levels.size() - 2])) break;
   }
   return levels;
@@ -165,7 +166,7 @@ std::optional<verdict::PrintPieces> pieces_of(const Level& level, const optimize
   auto pieces = outcome.pieces;
   if (!pieces) return pieces;
   if (target.surface) pieces->set_solids(target.surface->places);
-  pieces->set_places(level.scene.grid, tool::stretch_z(level.in().target.front().metadata));
+  pieces->set_places(level.scene.grid, model::stretch_z(level.in().target.front().metadata));
   return pieces;
 }
 
@@ -216,14 +217,14 @@ struct FromCoarser {
 
 FromCoarser from_coarser(const Level& level) {
   Level coarse = coarser(level);
-  if (tool::unresolved(coarse.own.target.front()).share() > hopeless) return {};
+  if (session::sub_voxel_features(coarse.own.target.front()).share() > hopeless) return {};
   SolvedLevel found = solved(coarse, proof_on(coarse), {});
   const double least = found.outcome.certificate->least;
   return {least, start_of(std::move(found), coarse.scene, coarse.options, level.scene, level.options)};
 }
 
 Seen see(Level& level, const verdict::Unresolved& target) {
-  level.unresolved = level.pixels == 1 ? target : tool::unresolved(level.own.target.front());
+  level.unresolved = level.pixels == 1 ? target : session::sub_voxel_features(level.own.target.front());
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
   warn_of(level.scene, level.in().target.front(), level.options);
   const bool has_coarser = can_be_coarser(level);
@@ -295,7 +296,7 @@ Json report_of(const Seen& seen) {
 }  // namespace
 
 void preview(const model::Printer& printer, const Inputs& in, const Options& options) {
-  const verdict::Unresolved target = tool::unresolved(in.target.front());
+  const verdict::Unresolved target = session::sub_voxel_features(in.target.front());
   std::vector<Level> levels = levels_of(printer, in, options);
   Seen seen = see(levels.back(), target);
   while (seen.answer.is_torn && levels.size() > 1 && is_quick(levels[levels.size() - 2])) {  // by its voxels, perhaps

@@ -11,15 +11,15 @@
 #include "base/log.hpp"
 #include "base/slab.hpp"
 #include "base/text.hpp"
-#include "dark_part.hpp"
-#include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "model/magnification.hpp"
+#include "model/metadata.hpp"
 #include "optimize/run/limited_by.hpp"
 #include "score/exposure_plan.hpp"
-#include "unresolved.hpp"
+#include "session/dose_score.hpp"
+#include "session/volumes.hpp"
 #include "vam-optimize/delivered.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
@@ -31,7 +31,7 @@ namespace vam::optimize_tool {
 namespace {
 
 void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
-  tool::warn_of_dark_part(options.input, outcome.dark_part_voxels);
+  session::warn_of_shadowed_voxels(options.input, outcome.dark_part_voxels);
   const model::DoseMetrics& m = outcome.metrics;
   const bool has_goal = !options.until.empty() || options.max_intensity || options.turns;
   if (!has_goal || outcome.stop == optimize::StopReason::goal || options.demands.grey || outcome.all_cut || m.ver == 0)
@@ -93,7 +93,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
   }
   report_delivered(report, task.source, scene, options);
-  if (const auto full = tool::full_scale(info.extra)) report["full_scale"] = *full;
+  if (const auto full = model::full_scale(info.extra)) report["full_scale"] = *full;
   const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, printer, info, options);
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
@@ -106,9 +106,9 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     if (outcome.all_cut) verdict.whole.part = 0;
     if (plan) verdict.seconds = plan->seconds;
     verdict.threshold = fixed_threshold(options);
-    verdict.unresolved = tool::unresolved(target);
+    verdict.unresolved = session::sub_voxel_features(target);
     set_pieces(verdict, outcome.pieces);
-    if (verdict.pieces) verdict.pieces->set_places(scene.grid, tool::stretch_z(target.metadata));
+    if (verdict.pieces) verdict.pieces->set_places(scene.grid, model::stretch_z(target.metadata));
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(

@@ -16,7 +16,7 @@
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"
-#include "slices.hpp"
+#include "session/slices.hpp"
 #include "vam-optimize/deadline.hpp"
 #include "vam-optimize/options.hpp"
 
@@ -135,7 +135,7 @@ void refuse_beside_delivered(const cli::App& app, const Options& options) {
 /// What is of the whole part, or depends on the machine.
 void settle_slices(const cli::App& app, Options& options) {
   if (options.slices.empty()) return;
-  (void)tool::slices_named(options.slices);
+  (void)session::slices_named(options.slices);
   for (const char* flag : {"--preview", "--budget", "--robust", "--tradeoff", "--certify", "--bits", "--poses",
                            "--helix", "--wobble-record"}) {
     if (app.given(flag)) {

@@ -6,12 +6,12 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "response.hpp"
+#include "session/printer.hpp"
 
 namespace vam::optimize_tool {
 
 resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
-  return {tool::response_of(printer.projector), bits};
+  return {session::response_of(printer.projector), bits};
 }
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)

@@ -12,7 +12,7 @@
 #include "io/vdb/covered.hpp"
 #include "optimize/target/void_rule.hpp"
 #include "resin/absolute_dose.hpp"
-#include "slices.hpp"
+#include "session/slices.hpp"
 #include "vam-optimize/delivered.hpp"
 #include "vam-optimize/front.hpp"
 
@@ -73,7 +73,7 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
 
 std::optional<model::ImageRange> slices_of(const model::StackInfo& whole, const Options& options) {
   if (options.slices.empty()) return std::nullopt;
-  return tool::slices_among(options.slices, whole.count, io::input_name(options.input), slices_per_pass);
+  return session::slices_among(options.slices, whole.count, io::input_name(options.input), slices_per_pass);
 }
 
 model::StackInfo written_info(const model::StackInfo& whole, const std::optional<model::ImageRange>& slices,

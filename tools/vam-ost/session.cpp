@@ -10,9 +10,10 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/image/image_file.hpp"
+#include "io/settings/printer_file.hpp"
 #include "metrology/ost/flicker.hpp"
 #include "optics/chief_ray.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 
 namespace vam::ost_tool {
 
@@ -25,7 +26,7 @@ double captured(double px, int binning) { return (px + 0.5) * binning - 0.5; }
 }  // namespace
 
 Session::Session(const cli::App& app, const Options& options)
-    : app_(app), options_(options), printer_(tool::load_printer(options.printer)) {
+    : app_(app), options_(options), printer_(session::load_printer(options.printer)) {
   if (!options.dark.empty()) fields_.dark = io::read_field(options.dark);
   if (!options.flat.empty()) {
     fields_.flat = io::read_field(options.flat);

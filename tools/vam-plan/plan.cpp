@@ -8,13 +8,13 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "diffusion.hpp"
 #include "io/stream/input_name.hpp"
-#include "mesh_in_unit.hpp"
+#include "model/dose_spread.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
 #include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
+#include "session/surface.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "vam-plan/steps.hpp"
@@ -43,7 +43,7 @@ class Source {
  public:
   explicit Source(const Options& options)
       : options_(options), subject_(options.shape.empty() ? io::input_name(options.input) : "shape " + options.shape) {
-    if (options.shape.empty()) mesh_ = tool::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale");
+    if (options.shape.empty()) mesh_ = session::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale");
   }
   [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] solid::Part part(const model::Printer& printer, double factor) const {
@@ -145,7 +145,7 @@ Plan plan(const Options& options, const model::Printer& printer) {
   made.stretch_z = 1 / model::vertical_magnification(printer);
   add_walls(made, part);
   if (options.no_preview) return made;
-  tool::warn_of_diffusion(printer.resin, model::seconds_of(printer.stage, printer.stage.turns));
+  model::warn_of_diffusion(printer.resin, model::seconds_of(printer.stage, printer.stage.turns));
   add_preview(made, part, printer);
   if (!made.preview) return made;
   const optimize::VolumeOutcome& outcome = made.preview->outcome;

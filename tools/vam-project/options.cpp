@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
 
 namespace vam::project {
 
@@ -166,7 +166,7 @@ void refuse_live(const cli::App& app, const std::string& output) {
 
 model::Printer settle(Options& options) {
   optics::set_lines(options.pattern.plan, options.pattern.pitch_px, options.pattern.width_px);
-  model::Printer printer = tool::load_printer(options.printer);
+  model::Printer printer = session::load_printer(options.printer);
   printer.projector.fps = options.fps.value_or(printer.projector.fps);
   printer.projector.bits = options.bits.value_or(printer.projector.bits);
   printer.stage.speed_deg_s = options.speed_deg_s.value_or(printer.stage.speed_deg_s);

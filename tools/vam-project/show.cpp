@@ -16,7 +16,7 @@
 #include "base/text.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/dither.hpp"
-#include "response.hpp"
+#include "session/printer.hpp"
 
 namespace vam::project {
 
@@ -111,7 +111,7 @@ class Whole {
 
 resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
                        const Dithering& dithering, io::FrameSink& sink) {
-  const resin::GreyLevels levels(tool::response_of(projector), projector.bits);
+  const resin::GreyLevels levels(session::response_of(projector), projector.bits);
   DitheredFrames dithered(levels, dithering);
   const Whole whole(frames, projector, levels);
   std::vector<resin::LightTally> tallies(frames.count);

@@ -14,7 +14,7 @@
 #include "io/image/any_frames.hpp"
 #include "io/stream/input_name.hpp"
 #include "optics/slice_place.hpp"
-#include "response.hpp"
+#include "session/printer.hpp"
 #include "vam-project/match.hpp"
 
 namespace vam::project {
@@ -60,7 +60,7 @@ double slices_per_s(const SliceStack& stack, const Options& options) {
 Frames frames_of(const SliceStack& stack, double fps, const Options& options, const model::Projector& projector) {
   const auto place = std::make_shared<optics::SlicePlace>(stack.name, projector, stack.info, options.column_offset,
                                                           options.row_offset);
-  const auto response = std::make_shared<resin::Response>(tool::response_of(projector));
+  const auto response = std::make_shared<resin::Response>(session::response_of(projector));
   const auto dark = static_cast<float>(response->intensity(0));
   Frames frames{stack.info.count, fps, 0, {}, {}, true};
   frames.light = [=, grey = is_grey(stack.info), next = stack.next, name = stack.name](int, const Image&) {

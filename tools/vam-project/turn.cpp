@@ -12,7 +12,7 @@
 #include "base/log.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
+#include "model/metadata.hpp"
 #include "optics/flatland_movie.hpp"
 #include "vam-project/match.hpp"
 
@@ -76,8 +76,8 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
           static_cast<double>(composer->peak()),
           composer->lit(),
           whole,
-          tool::full_scale(info.extra),
-          tool::shown_turns(info.extra)};
+          model::full_scale(info.extra),
+          model::shown_turns(info.extra)};
 }
 
 Dithering dithering_of(const Options& options, double frames_per_turn, double turns) {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
+#include "model/metadata.hpp"
 #include "plot/missing.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
@@ -156,8 +156,8 @@ std::string body_view(const io::SparseVolume& target, const std::optional<Printe
   }
   if (layers[0].mesh.triangles.empty()) return "";
   for (Layer& layer : layers) {
-    tool::unstretch(layer.mesh, target.metadata);
-    tool::unstretch(layer.beside, target.metadata);
+    model::unstretch(layer.mesh, target.metadata);
+    model::unstretch(layer.beside, target.metadata);
   }
   const solid::Bounds design = solid::bounding_box(layers[0].mesh);
   const Vector3 size = design.high - design.low;

@@ -8,11 +8,12 @@
 #include "base/json.hpp"
 #include "base/printable.hpp"
 #include "base/progress.hpp"
-#include "grey_target.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/page.hpp"
-#include "score_volumes.hpp"
+#include "session/dose_score.hpp"
+#include "session/grey_target.hpp"
+#include "session/volumes.hpp"
 #include "vam-report/body.hpp"
 #include "vam-report/inspection.hpp"
 #include "vam-report/light.hpp"
@@ -27,21 +28,17 @@ namespace {
 
 /// Of a grey target.
 std::optional<score::GreyScore> judge_grey(const Volumes& volumes, const model::Printer& printer,
-                                           const tool::GreyChoice& grey) {
+                                           const session::GreyChoice& grey) {
   const io::SparseVolume* dose = volumes.find("dose");
   const io::SparseVolume* target = volumes.find("target");
   if (dose == nullptr || target == nullptr) return std::nullopt;
-  score::GreyOptions how = grey.options();
-  how.circle = tool::judged_circle(*target, printer);
-  how.unit = tool::grey_unit(*target, *dose, "dose");
-  tool::require_linear(*dose, "dose");
   const io::SparseVolume* band = volumes.find("tolerance");
   std::optional<io::SparseVolume> own;
   if (!grey.band_volume.empty()) {
-    own = tool::read_own(grey.band_volume, "tolerance");
+    own = session::read_grid(grey.band_volume, "tolerance");
     band = &*own;
   }
-  return tool::score_grey_volumes(*dose, *target, how, band);
+  return session::score_grey(*dose, *target, grey.options(), band, printer, "dose");
 }
 
 /// A dose with its target, and what it is worth.
@@ -54,10 +51,10 @@ std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printe
   const io::SparseVolume* dose = volumes.find("dose");
   const io::SparseVolume* target = volumes.find("target");
   if (dose == nullptr || target == nullptr) return std::nullopt;
-  tool::warn_of_grey(*target, target->name());
+  session::warn_of_grey(*target, target->name());
   score::ScoreOptions how;
-  tool::settle_exposure(how, *dose, *target, printer);
-  return Judged{how, tool::score_print(*dose, *target, how)};
+  session::resolve_exposure(how, *dose, *target, printer);
+  return Judged{how, session::score_print(*dose, *target, how)};
 }
 
 std::string verdict(bool good, const std::string& words) {

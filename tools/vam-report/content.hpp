@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "grey_options.hpp"
 #include "model/printer.hpp"
+#include "session/grey_target.hpp"
 #include "vam-report/sources.hpp"
 
 namespace vam::report_tool {
@@ -15,7 +15,7 @@ struct Wanted {
   std::string history;  // of this command
   int sections = 0;     // of a volume, at most
   int projections = 0;  // of a stack or video, at most
-  tool::GreyChoice grey = {};
+  session::GreyChoice grey = {};
 };
 
 /// HTML of the body. Throws what the readers of its files throw.

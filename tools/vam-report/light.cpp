@@ -9,9 +9,9 @@
 
 #include "base/index.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
+#include "model/metadata.hpp"
 #include "plot/view.hpp"
 #include "vam-report/names.hpp"
 #include "vam-report/series.hpp"
@@ -139,7 +139,7 @@ std::string light_view(const std::string& path, io::FileType type, int count) {
   options.size = shown_px;
   const auto images = io::open_images(path, type);
   const bool sinogram = images->info().kind == model::Kind::sinogram;
-  options.stretch_z = tool::stretch_z(images->info().extra);
+  options.stretch_z = model::stretch_z(images->info().extra);
   options.sheet = sinogram ? std::min(count, most_sinograms) : count;
   const std::string views = series(
       sinogram ? "Sinograms" : "Frames", frames_of(plot::view_images(*images, options)),

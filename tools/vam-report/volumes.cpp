@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "base/printable.hpp"
-#include "facts.hpp"
-#include "io/vdb/gate.hpp"
+#include "model/metadata.hpp"
 #include "plot/page.hpp"
 #include "plot/view.hpp"
+#include "session/volumes.hpp"
 #include "vam-report/names.hpp"
 #include "vam-report/series.hpp"
 
@@ -31,7 +31,7 @@ std::string sections(const io::SparseVolume& volume, const std::string& file, co
   options.plane = plane;
   options.sheet = std::min(count, plot::plane_count(volume.grid(), plane));
   options.size = shown_px;
-  options.stretch_z = tool::stretch_z(volume.metadata);
+  options.stretch_z = model::stretch_z(volume.metadata);
   const plot::PlaneAxes axes = plot::plane_axes(plane);
   const std::string title = volume.name() + ", sections across " + axes.across;
   return series(title, frames_of(plot::view_volume(volume, within.target, options, within.insert)),
@@ -50,9 +50,8 @@ const io::SparseVolume* Volumes::find(const std::string& name) const {
 Volumes read_volumes(const std::vector<std::string>& paths, io::TargetKind kind) {
   Volumes all;
   for (const std::string& path : paths) {
-    std::vector<io::SparseVolume> read = io::read_volumes(path);
-    io::require_usable(path, read, kind);
-    for (io::SparseVolume& grid : read) {
+    std::vector<io::SparseVolume> grids = session::read_grids(path, kind);
+    for (io::SparseVolume& grid : grids) {
       all.files.push_back(file_name(path));
       all.grids.push_back(std::move(grid));
     }
@@ -92,7 +91,7 @@ std::string cure_views(const Volumes& volumes, const score::ScoreOptions& how, d
   options.name = "dose";
   options.sheet = std::min(count, plot::plane_count(dose.grid(), options.plane));
   options.size = shown_px;
-  options.stretch_z = tool::stretch_z(dose.metadata);
+  options.stretch_z = model::stretch_z(dose.metadata);
   const plot::ImageFigure sheet =
       plot::view_cure(dose, *volumes.find("target"), threshold, how.circle, options, insert);
   return series("Part as printed, sections across z", frames_of(sheet), "The shares are of all sections.");

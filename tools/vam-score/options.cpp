@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "io/mesh/file.hpp"
+#include "session/grey_target.hpp"
 
 namespace vam::score_tool {
 
@@ -45,7 +46,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--lit-fraction", "FILE", options.lit_fraction,
              "Write a volume (grid lit_fraction): the fraction of stage angles from which each voxel is lit.")
       .writes_as({".vdb"});
-  tool::add_grey_target(app, options.grey);
+  session::add_grey_target(app, options.grey);
   declare_print(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");

@@ -7,8 +7,8 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "grey_options.hpp"
 #include "score/score.hpp"
+#include "session/grey_target.hpp"
 
 namespace vam::score_tool {
 
@@ -23,7 +23,7 @@ struct Options {
   std::string print;
   std::string print_as = "mesh";
   std::optional<double> print_at;
-  tool::GreyChoice grey;
+  session::GreyChoice grey;
   score::ScoreOptions how;
   cli::PrinterOptions printer;
 };

@@ -6,8 +6,9 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "io/mesh/file.hpp"
+#include "model/metadata.hpp"
+#include "session/surface.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 namespace vam::score_tool {
@@ -18,19 +19,18 @@ void write_print(const Options& options, const io::SparseVolume& dose, double th
     throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold) + " " + dose.units +
                                  "; choose an --isovalue below the largest dose"};
   };
-  const auto read_slices = [&](int k, int count, float* out) { dose.read_slices(k, count, out); };
   const std::vector<std::string> comments{"threshold dose " + format_number(threshold) + " " + dose.units};
   if (options.print_as == "mesh") {
-    auto mesh = solid::fine_isosurface(dose.grid(), read_slices, threshold);
+    const auto mesh = session::fine_surface(dose, threshold, dose.metadata);
     require_print(mesh.triangles.empty());
-    tool::unstretch(mesh, dose.metadata);
     for (const std::string& ending : io::written_mesh_endings())
       if (options.print.ends_with(ending)) return io::write_mesh(options.print, mesh, comments);
     return io::write_ply(options.print, mesh, {}, comments);  // of another name, as of a device
   }
-  auto print = solid::printed_points(dose.grid(), read_slices, threshold);
+  auto print = solid::printed_points(
+      dose.grid(), [&](int k, int count, float* out) { dose.read_slices(k, count, out); }, threshold);
   require_print(print.points.points.empty());
-  tool::unstretch(print.points, dose.metadata);
+  model::unstretch(print.points, dose.metadata);
   io::write_ply(options.print, print.points, print.values, comments);
 }
 

@@ -13,16 +13,17 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/settings/resin_record.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/compare/inspection.hpp"
 #include "metrology/compare/uncertainty.hpp"
 #include "model/conditions.hpp"
 #include "plot/deviation_histogram.hpp"
 #include "plot/save.hpp"
+#include "session/surface.hpp"
 #include "solid/mesh/align.hpp"
 #include "solid/mesh/repair.hpp"
 #include "solid/mesh/signed_distance.hpp"
-#include "surface.hpp"
 #include "vam-sdf/figure_names.hpp"
 #include "vam-sdf/options.hpp"
 #include "vam-sdf/pose.hpp"
@@ -159,7 +160,7 @@ void deviation(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--isovalue, --resin: both determine the isovalue of the print; give only one"};
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
-  const model::TriangleSoup design_mesh = tool::read_surface(options.design, options.design_isovalue);
+  const model::TriangleSoup design_mesh = session::read_surface(options.design, options.design_isovalue);
   PrintSurface surface = read_print(options, isovalue);
   model::TriangleSoup& print = surface.mesh;
   const auto& bodies = surface.bodies;

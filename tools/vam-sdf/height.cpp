@@ -16,7 +16,7 @@
 #include "plot/image_figure.hpp"
 #include "plot/plot.hpp"
 #include "plot/save.hpp"
-#include "surface.hpp"
+#include "session/surface.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace vam::sdf_tool {
@@ -30,10 +30,10 @@ Image read_heights(const HeightOptions& options) {
   const bool levels = io::is_image_file(options.image);
   const bool stack = options.image == "-" || options.image.ends_with(".exr");
   const double unit_mm = levels || stack ? options.full_mm : 1.0;
-  Image heights =
-      levels || stack
-          ? io::read_field(options.image)
-          : solid::height_map(tool::read_surface(options.image, options.design_isovalue), options.pixel_mm).heights_mm;
+  Image heights = levels || stack ? io::read_field(options.image)
+                                  : solid::height_map(session::read_surface(options.image, options.design_isovalue),
+                                                      options.pixel_mm)
+                                        .heights_mm;
   for (float& h : heights.values) {
     const bool lost = levels && h == 0;
     const double mm = static_cast<double>(h) * unit_mm;
@@ -102,7 +102,7 @@ void draw_section(const std::string& path, const metrology::Section& section) {
 void height(const HeightOptions& options) {
   std::vector<model::Condition> conditions;
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::emboss_names());
-  const model::TriangleSoup design = tool::read_surface(options.design, options.design_isovalue);
+  const model::TriangleSoup design = session::read_surface(options.design, options.design_isovalue);
   const Image heights = read_heights(options);
   const std::vector<double> line = line_of(options, heights);
   const metrology::Relief print = metrology::levelled(heights, options.pixel_mm);

@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "session/surface.hpp"
 #include "solid/mesh/signed_distance.hpp"
-#include "surface.hpp"
 
 namespace vam::sdf_tool {
 
@@ -25,7 +25,7 @@ std::vector<metrology::Region> read_faces(const Options& options) {
       throw Error{Fault::usage, "--region " + text + ": a region of this name is given already"};
     }
     if (region.faces_file.empty()) continue;
-    region.faces = std::make_shared<solid::Surface>(tool::read_surface(region.faces_file, options.design_isovalue));
+    region.faces = std::make_shared<solid::Surface>(session::read_surface(region.faces_file, options.design_isovalue));
   }
   return regions;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surface.hpp"
+
+#include "session/surface.hpp"
 
 #include "base/error.hpp"
 #include "base/stats/median.hpp"
@@ -7,6 +8,7 @@
 #include "io/stream/file_type.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/surface_uncertainty.hpp"
+#include "model/metadata.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace vam::sdf_tool {
@@ -23,13 +25,13 @@ PrintSurface read_print(const Options& options, std::optional<double> isovalue) 
     print.uncertainty_mm = std::move(read.uncertainty);
     return print;
   }
-  const io::SparseVolume sparse = tool::open_body(options.print, isovalue);
+  const io::SparseVolume sparse = session::open_body(options.print, isovalue);
   model::Volume volume = io::dense_volume(sparse);
   print.bodies = metrology::keep_bodies(volume, *isovalue, {options.pieces_mm3, {}});
-  print.mesh = tool::surface_of(options.print, volume, *isovalue);
+  print.mesh = session::surface_of(options.print, volume, *isovalue);
   if (!options.uncertainty.empty()) {
     const io::SparseVolume known = io::read_volume(options.uncertainty, "uncertainty");
-    const auto correlation = [&](const char* name) { return tool::stated_number(known.metadata, name).value_or(0); };
+    const auto correlation = [&](const char* name) { return model::stated_number(known.metadata, name).value_or(0); };
     const metrology::VoxelUncertainty voxels{io::dense_volume(known), correlation("vam:correlation_xy"),
                                              correlation("vam:correlation_z")};
     print.uncertainty_mm = metrology::surface_uncertainty_mm(volume, voxels, print.mesh.points);
@@ -37,7 +39,7 @@ PrintSurface read_print(const Options& options, std::optional<double> isovalue) 
   if (options.isovalue_uncertainty > 0) {
     print.mm_per_isovalue = stats::median(metrology::mm_per_value(volume, print.mesh.points));
   }
-  tool::unstretch(print.mesh, sparse.metadata);
+  model::unstretch(print.mesh, sparse.metadata);
   return print;
 }
 

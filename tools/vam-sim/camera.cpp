@@ -14,11 +14,11 @@
 #include "io/image/any_frames.hpp"
 #include "io/vdb/vdb.hpp"
 #include "optics/patterns.hpp"
-#include "printer.hpp"
+#include "session/printer.hpp"
+#include "session/sinogram_frames.hpp"
 #include "sim/cameras/gv_camera.hpp"
 #include "sim/cameras/makers.hpp"
 #include "sim/controllers/options.hpp"
-#include "sinogram_frames.hpp"
 #include "vam-sim/commands.hpp"
 
 namespace vam::sim_tool {
@@ -239,19 +239,19 @@ void cure(const cli::App& app, CameraOptions& o) {
 
 // A signal ends it at once: nothing needs a safe state, and waiting for the threads of Aravis may never end.
 void run(const cli::App& app, CameraOptions& o) {
-  if (tool::print_printer(o.printer)) return;
+  if (session::print_printer(o.printer)) return;
   optics::set_lines(o.pattern, o.pitch_px, o.width_px);
   if (o.with_parent) device::end_with_parent();
   auto& camera = o.camera;
-  camera.bench.printer = tool::load_printer(o.printer);
+  camera.bench.printer = session::load_printer(o.printer);
   if (!o.part.empty()) camera.bench.bodies = sim::parse_bodies(o.part);
   camera.sources.images = images(o, camera.bench.printer.projector);
   camera.sources.draw = [&camera](const Json& event) {
     return images(pattern_of(event), camera.bench.printer.projector);
   };
   camera.sources.renew = [&camera](const Json& event, int frames) {
-    return tool::sinogram_frames(event.value("sinogram", ""), camera.bench.printer.projector, frames,
-                                 event.value("full_scale", 0.0))
+    return session::sinogram_frames(event.value("sinogram", ""), camera.bench.printer.projector, frames,
+                                    event.value("full_scale", 0.0))
         .frames;
   };
   if (o.cure) cure(app, o);

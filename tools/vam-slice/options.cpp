@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "facts.hpp"
 #include "model/magnification.hpp"
+#include "model/metadata.hpp"
 #include "solid/voxel/size_doubt.hpp"
 
 namespace vam::slice_tool {

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/input_name.hpp"
-#include "mesh_in_unit.hpp"
+#include "session/surface.hpp"
 #include "solid/voxel/size_doubt.hpp"
 
 namespace vam::slice_tool {
@@ -37,7 +37,7 @@ solid::Part image_part(const Options& options) {
 
 solid::Part mesh_part(const Options& options, const solid::Writable& room, Correction& correction) {
   model::TriangleSoup mesh =
-      corrected(tool::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale"), options, correction);
+      corrected(session::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale"), options, correction);
   const std::string subject = io::input_name(options.input);
   const solid::Affine map = solid::place(mesh, options.placement, room, subject);
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));
@@ -83,7 +83,7 @@ solid::Placement insert_placement(const Options& options, const solid::Part& par
 std::optional<solid::Part> insert_of(const Options& options, const solid::Part& part, const solid::Writable& room) {
   if (!options.insert.empty()) {
     model::TriangleSoup mesh =
-        tool::mesh_in_unit(options.insert, options.insert_unit_given, "--insert-unit", "--insert-scale");
+        session::mesh_in_unit(options.insert, options.insert_unit_given, "--insert-unit", "--insert-scale");
     const solid::Affine map = solid::place(mesh, insert_placement(options, part), room, options.insert);
     return solid::mesh_part(std::move(mesh), options.insert, map, solid::FillMode::automatic);
   }

@@ -8,9 +8,9 @@
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/metadata.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
 
@@ -32,7 +32,7 @@ plot::ImageFigure section_of(const io::SparseVolume& volume) {
       most = std::max(most, std::abs(static_cast<double>(value) - 1));
     }
   }
-  const double stretch = tool::stretch_z(volume.metadata);
+  const double stretch = model::stretch_z(volume.metadata);
   plot::ImageFigure figure;
   figure.panels.push_back({std::move(section), "", {}});
   figure.x = {"x (mm)", g.x_mm(-0.5), g.x_mm(g.nx - 0.5)};

@@ -12,6 +12,7 @@
 #include "model/dose_metrics.hpp"
 #include "plot/missing.hpp"
 #include "plot/render.hpp"
+#include "session/surface.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "vam-view/sight.hpp"
@@ -55,7 +56,7 @@ plot::ImageFigure mesh_figure(const std::string& path, const plot::ViewOptions& 
 
 plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, const plot::ViewOptions& view,
                               const io::SparseVolume* insert) {
-  plot::Body body{surface_of(volume, level, volume), {}};
+  plot::Body body{session::fine_surface(volume, level, volume.metadata), {}};
   if (body.mesh.triangles.empty()) {
     throw Error{Fault::data, view.name + ": grid " + excerpt(volume.name()) + " reaches " + format_number(level, 4) +
                                  " nowhere; choose another --threshold"};
@@ -66,8 +67,8 @@ plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, cons
 
 plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
                                const plot::ViewOptions& view, const io::SparseVolume* insert) {
-  plot::Body part{surface_of(target, model::half_surface, target), {}};
-  plot::Body print{surface_of(dose, threshold, target), {}};
+  plot::Body part{session::fine_surface(target, model::half_surface, target.metadata), {}};
+  plot::Body print{session::fine_surface(dose, threshold, target.metadata), {}};
   if (part.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
   if (print.mesh.triangles.empty()) {
     throw Error{Fault::data, view.name + ": nothing prints at a threshold of " + format_number(threshold, 4) + " " +
@@ -80,8 +81,8 @@ plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVol
   }
   plot::Body missing{beyond(part.mesh, solid::Surface(print.mesh).signed_distances(part.mesh.points), voxel_mm), {}};
   missing.colours.assign(missing.mesh.points.size(), plot::paint::blue);
-  plot::Body thin{surface_of(plot::lost_wall_volume(target, nullptr, 0), 0.5, target), {}};
-  plot::Body lost{surface_of(plot::lost_wall_volume(target, &dose, threshold), 0.5, target), {}};
+  plot::Body thin{session::fine_surface(plot::lost_wall_volume(target, nullptr, 0), 0.5, target.metadata), {}};
+  plot::Body lost{session::fine_surface(plot::lost_wall_volume(target, &dose, threshold), 0.5, target.metadata), {}};
   lost.colours.assign(lost.mesh.points.size(), plot::paint::blue);
   const plot::Body held = insert_body(insert, target);
   plot::ImageFigure figure;

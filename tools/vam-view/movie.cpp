@@ -15,6 +15,7 @@
 #include "model/dose_metrics.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/render.hpp"
+#include "session/surface.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "vam-view/sight.hpp"
 
@@ -73,7 +74,7 @@ class Growth {
         target_(target),
         exposure_(exposure),
         view_(view),
-        part_{surface_of(target, model::half_surface, target), {}},
+        part_{session::fine_surface(target, model::half_surface, target.metadata), {}},
         insert_(insert_body(insert, target)) {
     if (part_.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
     const plot::Body print = print_after(1);
@@ -105,7 +106,7 @@ class Growth {
  private:
   [[nodiscard]] double fraction(int n) const { return first_ + (1 - first_) * static_cast<double>(n) / (growing - 1); }
   [[nodiscard]] plot::Body print_after(double fraction) const {
-    return {surface_of(dose_, exposure_.threshold / fraction, target_), {}};
+    return {session::fine_surface(dose_, exposure_.threshold / fraction, target_.metadata), {}};
   }
 
   const io::SparseVolume& dose_;

@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "facts.hpp"
 #include "model/dose_metrics.hpp"
-#include "solid/voxel/isosurface.hpp"
+#include "session/surface.hpp"
 
 namespace vam::view_tool {
 
@@ -16,16 +15,9 @@ constexpr double air = 1.04;  // of the square around the body
 constexpr Rgb insert_colour = plot::paint::green;
 }  // namespace
 
-model::TriangleSoup surface_of(const io::SparseVolume& volume, double level, const io::SparseVolume& part) {
-  model::TriangleSoup mesh = solid::fine_isosurface(
-      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, level);
-  tool::unstretch(mesh, part.metadata);
-  return mesh;
-}
-
 plot::Body insert_body(const io::SparseVolume* insert, const io::SparseVolume& part) {
   if (insert == nullptr) return {};
-  plot::Body body{surface_of(*insert, model::half_surface, part), {}};
+  plot::Body body{session::fine_surface(*insert, model::half_surface, part.metadata), {}};
   body.colours.assign(body.mesh.points.size(), insert_colour);
   return body;
 }

@@ -14,10 +14,6 @@
 
 namespace vam::view_tool {
 
-/// Where the volume reaches the level, in the frame of the part: the stretch in z that `part` states is undone.
-[[nodiscard]] model::TriangleSoup surface_of(const io::SparseVolume& volume, double level,
-                                             const io::SparseVolume& part);
-
 /// What was in the vial before the print, in its own colour; without triangles for null.
 [[nodiscard]] plot::Body insert_body(const io::SparseVolume* insert, const io::SparseVolume& part);
 

@@ -19,7 +19,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/seal.hpp"
-#include "model/stretch.hpp"
+#include "model/metadata.hpp"
 
 namespace vam::io::exr {
 

@@ -14,7 +14,7 @@
 #include "base/index.hpp"
 #include "base/printable.hpp"
 #include "io/stream/seal.hpp"
-#include "model/stretch.hpp"
+#include "model/metadata.hpp"
 
 namespace vam::io {
 

@@ -1,30 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The frames of a projector sinogram in grey levels, for simulators: what vam-project shows of it.
-#pragma once
+#include "session/sinogram_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <string>
-#include <vector>
 
-#include "base/pixels.hpp"
-#include "facts.hpp"
 #include "io/exr/stack.hpp"
-#include "model/printer.hpp"
+#include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 
-namespace vam::tool {
+namespace vam::session {
 
-struct SinogramFrames {
-  std::vector<GreyImage> frames;
-  double full_scale = 0;  // that the stack states, or else its largest value
-};
-
-/// Of one turn, so many frames; 0: one for each angle. full_scale: instead of the stack's own; 0: none. Of 8 bits, by a
-/// linear response. Throws what StackReader and FrameComposer throw.
-inline SinogramFrames sinogram_frames(const std::string& path, const model::Projector& projector, int frames,
-                                      double full_scale) {
+SinogramFrames sinogram_frames(const std::string& path, const model::Projector& projector, int frames,
+                               double full_scale) {
   io::StackReader reader(path);
   optics::FrameComposer composer(path, reader.info(), optics::frame_place(projector, 0, 0));
   Image slice;
@@ -33,7 +21,7 @@ inline SinogramFrames sinogram_frames(const std::string& path, const model::Proj
   SinogramFrames made;
   made.full_scale = full_scale > 0
                         ? full_scale
-                        : tool::full_scale(reader.info().extra).value_or(static_cast<double>(composer.peak()));
+                        : model::full_scale(reader.info().extra).value_or(static_cast<double>(composer.peak()));
   const int count = frames > 0 ? frames : reader.info().height;
   const double step_deg = 360.0 / count;
   for (int n = 0; n < count; ++n) {
@@ -47,4 +35,4 @@ inline SinogramFrames sinogram_frames(const std::string& path, const model::Proj
   return made;
 }
 
-}  // namespace vam::tool
+}  // namespace vam::session

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/dose_score.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/index.hpp"
+#include "base/memory.hpp"
+#include "base/progress.hpp"
+#include "io/vdb/covered.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/grid_size.hpp"
+#include "model/metadata.hpp"
+#include "optics/writable_radius.hpp"
+#include "session/grey_target.hpp"
+#include "session/volumes.hpp"
+#include "verdict/print_pieces.hpp"
+
+namespace vam::session {
+
+namespace {
+
+std::optional<model::VoxelisedSurface> own_surface(const io::SparseVolume& target) {
+  const auto places = model::stated_surface(target.metadata);
+  if (!places) return std::nullopt;
+  return model::VoxelisedSurface{*places, target.grid().voxel_mm};
+}
+
+model::Circle scoring_circle(const io::SparseVolume& target, const model::Printer& printer) {
+  const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
+  return model::judged_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
+}
+
+/// add(count, slices of each volume) for all, a slab at a time.
+template <class Add>
+void for_each_slab(const std::vector<const io::SparseVolume*>& volumes, const char* title, const Add& add) {
+  constexpr int slab = 16;
+  const model::Grid& grid = volumes.front()->grid();
+  constexpr double copies = 4;  // both; pieces are counted in copies
+  require_memory(copies * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
+                 volumes[1]->name() + ": " + model::size_text(grid), "use larger voxels");
+  std::vector<std::vector<float>> slices(volumes.size(), std::vector<float>(grid.slice_size() * slab));
+  Progress progress(title, grid.nz);
+  for (int k = 0; k < grid.nz; k += slab) {
+    const int count = std::min(slab, grid.nz - k);
+    for (std::size_t n = 0; n < volumes.size(); ++n) volumes[n]->read_slices(k, count, slices[n].data());
+    add(count, slices);
+    progress.tick(count);
+  }
+}
+
+}  // namespace
+
+verdict::Unresolved sub_voxel_features(const io::SparseVolume& target) {
+  constexpr std::size_t million = 1'000'000;  // voxels at a time
+  const model::Grid& grid = target.grid();
+  const int slab = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, 16));
+  verdict::UnresolvedFinder finder(grid);
+  std::vector<float> slices(product(slab, grid.slice_size()));
+  for (int k = 0; k < grid.nz; k += slab) {
+    const int count = std::min(slab, grid.nz - k);
+    target.read_slices(k, count, slices.data());
+    finder.add(count, slices.data());
+  }
+  verdict::Unresolved found = finder.found();
+  found.surface = own_surface(target);
+  return found;
+}
+
+void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
+                      const model::Printer& printer) {
+  how.circle = scoring_circle(target, printer);
+  how.voxel_mm = target.grid().voxel_mm;
+  how.aimed_at = model::threshold_dose(dose.metadata);
+  how.part = io::covered_box(target, model::coverage_rounding);
+  how.own_surface = own_surface(target);
+  if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
+  how.exposure = {printer, model::stated_number(dose.metadata, "vam:full_intensity_turns")};
+  if (!how.threshold && how.exposure->full_intensity_turns) how.threshold = printer.resin.critical_dose_mj_cm3;
+}
+
+score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
+                           const score::ScoreOptions& how) {
+  score::Score result(how, target.grid().nx, target.grid().ny);
+  for_each_slab({&dose, &target}, "scoring",
+                [&](int count, const auto& slices) { result.add(slices[0].data(), slices[1].data(), count); });
+  return result;
+}
+
+score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target, const score::ScoreOptions& how) {
+  score::Score result = score_volumes(dose, target, how);
+  const model::Grid& grid = target.grid();
+  const double threshold = result.print_threshold();
+  if (!(threshold > 0)) return result;  // the part stays dark
+  verdict::PrintPieceCounter counter(grid.nx, grid.ny, threshold, how.circle);
+  for_each_slab({&dose, &target}, "counting pieces",
+                [&](int count, const auto& slices) { counter.add(slices[0].data(), slices[1].data(), count); });
+  verdict::PrintPieces pieces = counter.found();
+  pieces.set_places(grid, model::stretch_z(target.metadata));
+  result.set_pieces(pieces);
+  return result;
+}
+
+score::GreyScore score_grey(const io::SparseVolume& dose, const io::SparseVolume& target, score::GreyOptions how,
+                            const io::SparseVolume* band, const model::Printer& printer, const std::string& file) {
+  const model::Grid& grid = target.grid();
+  how.circle = scoring_circle(target, printer);
+  how.unit = grey_unit(target, dose, file);
+  require_linear(dose, file);
+  score::GreyScore result(how, grid.nx, grid.ny);
+  std::optional<io::SparseVolume> bands;
+  if (band != nullptr) bands = widened(*band, grid, static_cast<float>(how.band), "target");
+  std::vector<const io::SparseVolume*> volumes{&dose, &target};
+  if (bands) volumes.push_back(&*bands);
+  for_each_slab(volumes, "scoring", [&](int count, const auto& slices) {
+    result.add(slices[0].data(), slices[1].data(), count, bands ? slices[2].data() : nullptr);
+  });
+  return result;
+}
+
+}  // namespace vam::session

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A dose in a file scored against the target in another, slab by slab: both on the same grid.
+#pragma once
+
+#include <string>
+
+#include "io/vdb/vdb.hpp"
+#include "model/printer.hpp"
+#include "score/grey_score.hpp"
+#include "score/score.hpp"
+#include "verdict/unresolved.hpp"
+
+namespace vam::session {
+
+/// Features of a target that are too fine for its voxels, with what it states of its own surface.
+[[nodiscard]] verdict::Unresolved sub_voxel_features(const io::SparseVolume& target);
+
+/// Fills in the circle that is judged, void outside which is not, the threshold that the light was made for, and for a
+/// dose in mJ/cm3 of a resin with a critical dose the exposure, with that threshold where it is the dose of a whole
+/// print.
+void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
+                      const model::Printer& printer);
+
+/// Against coverage.
+[[nodiscard]] score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                         const score::ScoreOptions& how);
+/// Against coverage, and by the pieces of the print.
+[[nodiscard]] score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                       const score::ScoreOptions& how);
+
+/// Against a grey target, whose circle and unit are filled in. band: of each voxel, that of `how` around it; null: it
+/// is the same for all. Throws as require_linear() and grey_unit() do, whose messages `file` begins, and Fault::data
+/// where the band is on another grid.
+[[nodiscard]] score::GreyScore score_grey(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                          score::GreyOptions how, const io::SparseVolume* band,
+                                          const model::Printer& printer, const std::string& file);
+
+}  // namespace vam::session

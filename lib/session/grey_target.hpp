@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A target that is a dose for every voxel: its options, and the dose that is judged against it.
+#pragma once
+
+#include <string>
+
+#include "cli/app.hpp"
+#include "io/vdb/vdb.hpp"
+#include "score/grey_score.hpp"
+
+namespace vam::session {
+
+struct GreyChoice {
+  bool is_target = false;
+  std::string void_rule = "met";
+  std::string band_volume;
+  score::GreyOptions how;
+
+  /// The circle and the unit are not known yet. Throws Fault::usage for a band of a void that has another rule.
+  [[nodiscard]] score::GreyOptions options() const;
+};
+
+void add_grey_target(cli::App& app, GreyChoice& grey);
+
+/// Warns where a target that is taken as coverage looks like doses, and returns whether it does. remedy: ends the
+/// warning.
+bool warn_of_grey(const io::SparseVolume& target, const std::string& path,
+                  const std::string& remedy = "--grey-target takes the target as the dose of every voxel");
+
+/// --grey-target judges doses. Throws Fault::data for one whose projections were made for a response of the resin.
+void require_linear(const io::SparseVolume& dose, const std::string& file);
+
+/// What a target's 1 is in the unit of the dose: a target prescribes relative doses unless it states otherwise.
+[[nodiscard]] double grey_unit(const io::SparseVolume& target, const io::SparseVolume& dose, const std::string& file);
+
+}  // namespace vam::session

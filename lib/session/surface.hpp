@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface of a body: of a mesh, or where a volume has a value.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/vdb/vdb.hpp"
+#include "model/mesh.hpp"
+#include "model/metadata.hpp"
+
+namespace vam::session {
+
+/// A mesh whose unit may be said on the command line. Throws Fault::usage where `flag` is given for a file that states
+/// its unit, by which that of the command line would be multiplied; `scale` is the option to change the size.
+[[nodiscard]] model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std::string& flag,
+                                               const std::string& scale);
+
+/// Throws Fault::usage without an isovalue, otherwise as io::read_volume() and io::require_usable(): a target whose
+/// surface is beyond 1 is grey.
+[[nodiscard]] io::SparseVolume open_body(const std::string& path, std::optional<double> isovalue);
+/// Throws Fault::data where the volume does not cross it.
+[[nodiscard]] model::TriangleSoup surface_of(const std::string& path, const model::Volume& volume, double isovalue);
+
+/// In mm of the part, whose stretch is undone. Throws Error: usage, no_input, data.
+[[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue);
+
+/// Where a volume reaches the level, by its slices; its stretch, or that of another volume, is undone. Empty where it
+/// reaches it nowhere.
+[[nodiscard]] model::TriangleSoup fine_surface(const io::SparseVolume& volume, double level,
+                                               const model::Metadata& stretched);
+
+}  // namespace vam::session

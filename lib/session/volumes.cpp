@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/volumes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/index.hpp"
+#include "base/log.hpp"
+#include "base/printable.hpp"
+#include "io/stream/input_name.hpp"
+#include "model/grid_place.hpp"
+
+namespace vam::session {
+
+std::vector<io::SparseVolume> read_grids(const std::string& path, io::TargetKind kind) {
+  std::vector<io::SparseVolume> grids = io::read_volumes(path);
+  io::require_usable(path, grids, kind);
+  return grids;
+}
+
+io::SparseVolume* find_grid(std::vector<io::SparseVolume>& grids, const std::string& name) {
+  const auto found = std::find_if(grids.begin(), grids.end(), [&](const auto& grid) { return grid.name() == name; });
+  return found == grids.end() ? nullptr : &*found;
+}
+
+io::SparseVolume& require_grid(std::vector<io::SparseVolume>& grids, const std::string& name, const std::string& file,
+                               const std::string& remedy) {
+  if (io::SparseVolume* found = find_grid(grids, name)) return *found;
+  throw Error{Fault::data, file + ": has no grid '" + name + "'; " + remedy};
+}
+
+io::SparseVolume taken(std::vector<io::SparseVolume>& grids, io::SparseVolume& grid) {
+  io::SparseVolume one = std::move(grid);
+  grids.erase(grids.begin() + (&grid - grids.data()));
+  return one;
+}
+
+io::SparseVolume read_grid(const std::string& path, const std::string& name) {
+  std::vector<io::SparseVolume> grids = read_grids(path, io::TargetKind::coverage);
+  for (io::SparseVolume& grid : grids) {
+    if (grid.name() == name || grids.size() == 1) return std::move(grid);
+  }
+  throw Error{Fault::data, path + ": has several grids, but none is called '" + name + "'"};
+}
+
+io::SparseVolume read_dose(const std::string& path) {
+  io::SparseVolume dose = io::read_volume(path, "dose");
+  io::require_usable(path, dose);
+  if (dose.units == "mJ/cm3") return dose;
+  throw Error{Fault::data, path + ": the dose is in units of " + excerpt(dose.units) +
+                               ", not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "
+                               "vam-dose"};
+}
+
+io::SparseVolume read_scatter(const std::string& path) {
+  io::SparseVolume scatter = io::read_volume(path, "scatter");
+  if (scatter.units != "mJ/cm3") return scatter;
+  throw Error{Fault::data, path + ": its values are a dose in mJ/cm3, not scattering; give a volume of vam-ost"};
+}
+
+io::SparseVolume widened(const io::SparseVolume& volume, const model::Grid& grid, float outside,
+                         const std::string& file) {
+  const model::Grid& own = volume.grid();
+  const auto place = model::place_in(grid, own);
+  if (!place) throw differs_from_target(volume, file);
+  const auto& [left, front, low] = *place;
+  constexpr int slab = 8;  // slices
+  io::SparseVolume wide(volume.name(), grid, outside);
+  std::vector<float> from(own.slice_size());
+  for (int first = 0; first < grid.nz; first += slab) {
+    const int count = std::min(slab, grid.nz - first);
+    std::vector<float> to(product(count, grid.slice_size()), outside);
+    for (int k = std::max(first, low); k < std::min(first + count, low + own.nz); ++k) {
+      volume.read_slices(k - low, 1, from.data());
+      float* corner = to.data() + product(k - first, grid.slice_size()) + product(front, grid.nx) + left;
+      for (int y = 0; y < own.ny; ++y)
+        std::copy_n(from.data() + product(y, own.nx), own.nx, corner + product(y, grid.nx));
+    }
+    wide.write_slices(first, count, to.data());
+  }
+  return wide;
+}
+
+Error differs_from_target(const io::SparseVolume& volume, const std::string& file) {
+  return {Fault::data, file + ": the grid of '" + volume.name() +
+                           "' differs from that of the target; make both from the same target"};
+}
+
+void warn_of_shadowed_voxels(const std::string& path, std::int64_t voxels) {
+  if (voxels <= 0) return;
+  warn(io::input_name(path) + ": the insert shadows " + std::to_string(voxels) +
+       " voxels of the part from all stage angles; they will not print");
+}
+
+}  // namespace vam::session
