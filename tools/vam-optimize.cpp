@@ -19,11 +19,11 @@
 #include "optimize/run/printable.hpp"
 #include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
+#include "session/job_volumes.hpp"
 #include "session/printer.hpp"
+#include "session/scene.hpp"
 #include "vam-optimize/beginning.hpp"
 #include "vam-optimize/exposure.hpp"
-#include "vam-optimize/inputs.hpp"
-#include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
 #include "vam-optimize/preview.hpp"
 #include "vam-optimize/publish.hpp"
@@ -34,12 +34,11 @@ namespace {
 
 using namespace vam;
 using optimize_tool::Options;
-using optimize_tool::Scene;
 
 /// Three slices (four with --delivered) and four sinograms for each slice (five where the best light is kept, six with
 /// --robust) and what the method has beside, of all slices where they are one pass; and images on their way out. Those
 /// are not kept in scratch files.
-void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, const light::Operator& light,
+void require_memory_for(const session::Scene& scene, const optimize::VolumeTask& task, const light::Operator& light,
                         const optimize::MethodEntry& method, const std::string& subject) {
   const bool robust = task.scenarios != nullptr;
   const bool whole = optimize::takes_whole(task, light);
@@ -68,17 +67,17 @@ void run(const cli::App& app, Options& options) {
   settle_response(app, options);
   settle_angles(app, options);
 
-  const optimize_tool::Inputs in = optimize_tool::read(options);
+  const session::JobVolumes in = session::read(options);
   if (options.preview) return preview(printer, in, options);
-  const Scene scene = make_scene(in.target.front(), printer, options);
-  warn_of(scene, in.target.front(), options);
+  const session::Scene scene = session::make_scene(in.target.front(), printer, options);
+  session::warn_of(scene, in.target.front(), options);
   const model::StackInfo whole = stack_info(scene, in.target.front(), app, options);
   const std::optional<model::ImageRange> slices = slices_of(whole, options);
   const model::StackInfo info = written_info(whole, slices, app, options);
   optimize::VolumeTask task = make_task(scene, in, options);
   task.slices = slices;
   task.count_pieces = !options.bits;  // else those of the frames
-  const auto light = make_light(scene, options);
+  const auto light = session::make_light(scene, options);
   optimize_tool::require_independent(task, *light);
   optimize_tool::Beginning beginning(app, printer, whole, options);
   optimize_tool::Sink sink(options, printer, info);

@@ -2,16 +2,61 @@
 // Where the iteration begins: at a checkpoint, at projections that are given, or at those of coarser voxels.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 
+#include "base/image.hpp"
 #include "cli/app.hpp"
-#include "vam-optimize/checkpoint.hpp"
+#include "io/exr/stack.hpp"
+#include "io/stream/stream.hpp"
+#include "model/printer.hpp"
+#include "model/stack.hpp"
+#include "optimize/run/volume.hpp"
+#include "session/job_volumes.hpp"
+#include "session/scene.hpp"
 #include "vam-optimize/coarse_start.hpp"
-#include "vam-optimize/inputs.hpp"
-#include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
+
+/// Reads a stack slice after slice, the last 64 of which may be read again; slices in between are skipped.
+class Initial {
+ public:
+  /// Throws Fault::data unless the stack has the size of `want`.
+  Initial(const std::string& path, const model::StackInfo& want);
+  Image operator()(int k);
+
+ private:
+  std::string path_;
+  io::StackReader reader_;
+  std::map<int, Image> recent_;  // passes that share dose overlap, and come back to some slices
+  int next_ = 0;
+};
+
+/// Finished slices and, when a signal comes, the last iterate go to a file without a name; keep() gives it one.
+class Checkpoint {
+ public:
+  /// Opens the file if it is there. Throws Error: no_input, no_output.
+  explicit Checkpoint(const std::string& path);
+  Checkpoint(const Checkpoint&) = delete;
+  Checkpoint& operator=(const Checkpoint&) = delete;
+
+  /// For the task, as long as this lives; the signals must be noted (device::interruptible).
+  [[nodiscard]] optimize::Interruption interruption(const std::string& job);
+  /// The state appears under its name.
+  void keep() { out_.commit(); }
+  /// The run is complete; the state it resumed from is removed.
+  void remove() const;
+
+ private:
+  void take(void* bytes, std::size_t size);
+  std::string path_;
+  std::optional<io::InputFile> in_;
+  io::OutputFile out_;
+  std::optional<optimize::Archive> from_;
+  optimize::Archive to_;
+};
 
 class Beginning {
  public:
@@ -20,8 +65,8 @@ class Beginning {
   /// The task starts there and refers to this. Without --init the coarser levels are solved, which takes time: call it
   /// after all that may refuse the task, and ask device::interrupted() then. A checkpoint has the iterate of the pass
   /// that was interrupted; where passes may follow, these start from the coarser levels, too.
-  void begin(optimize::VolumeTask& task, const Inputs& in, const Scene& scene, const light::Operator& light,
-             Options& options);
+  void begin(optimize::VolumeTask& task, const session::JobVolumes& in, const session::Scene& scene,
+             const light::Operator& light, Options& options);
   /// The run was interrupted: the checkpoint appears.
   void keep() { checkpoint_->keep(); }
   /// The run is complete.

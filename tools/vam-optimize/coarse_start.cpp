@@ -10,15 +10,13 @@
 #include "device/os/interrupt.hpp"
 #include "model/coarser.hpp"
 #include "optimize/run/volume.hpp"
-#include "vam-optimize/coarser.hpp"
-#include "vam-optimize/deadline.hpp"
 #include "vam-optimize/task.hpp"
 
 namespace vam::optimize_tool {
 
 namespace {
 
-constexpr int least_voxels = 24;      // a side of the coarser part
+constexpr int least_side = 24;        // a side of the coarser part
 constexpr double most_wrong = 0.02;   // voxel error rate of a print that is of use
 constexpr int first_iterations = 60;  // at the coarsest level
 constexpr double most_time = 0.5;     // of --budget, for all coarser levels
@@ -27,7 +25,7 @@ constexpr int next_iterations = 10;  // at those above, and for each raise of th
 constexpr double least_half_width = 0.05,
                  largest_half_width = 0.08;  // in doses; a wider one costs the surface its place
 
-optimize::StackSamples samples(const Scene& scene, const Options& options) {
+optimize::StackSamples samples(const session::Scene& scene, const Options& options) {
   const model::Projector& projector = scene.printer.projector;
   optimize::Samples columns{scene.turn.columns, -0.5 * (scene.turn.columns - 1) * scene.grid.voxel_mm,
                             scene.grid.voxel_mm};
@@ -38,9 +36,10 @@ optimize::StackSamples samples(const Scene& scene, const Options& options) {
   return {columns, angles, {scene.grid.nz, scene.grid.z_mm(0), scene.grid.voxel_mm}};
 }
 
-bool worthwhile(const model::Grid& grid) { return std::min(grid.nx, grid.ny) >= 2 * least_voxels && grid.nz > 1; }
+bool worthwhile(const model::Grid& grid) { return std::min(grid.nx, grid.ny) >= 2 * least_side && grid.nz > 1; }
 
-SolvedLevel solve_level(const Inputs& in, const Scene& scene, Options options, std::optional<CoarseStart> before) {
+SolvedLevel solve_level(const session::JobVolumes& in, const session::Scene& scene, Options options,
+                        std::optional<CoarseStart> before) {
   optimize::VolumeTask task = make_task(scene, in, options);
   task.title += " at " + mm_text(scene.grid.voxel_mm);
   task.limits.patience = task.limits.early = 0;
@@ -57,9 +56,9 @@ SolvedLevel solve_level(const Inputs& in, const Scene& scene, Options options, s
 }
 
 /// What is refused at a coarser level is left to the finer one.
-std::optional<CoarseStart> start_from_coarser(const Inputs& in, const Scene& finer, const Options& options,
-                                              const Options& finer_options) {
-  const Scene scene = make_scene(in.target.front(), model::coarser(finer.printer), options);
+std::optional<CoarseStart> start_from_coarser(const session::JobVolumes& in, const session::Scene& finer,
+                                              const Options& options, const Options& finer_options) {
+  const session::Scene scene = session::make_scene(in.target.front(), model::coarser(finer.printer), options);
   std::optional<CoarseStart> before = coarse_start(in, scene, options);
   if (device::interrupted()) return std::nullopt;
   return start_of(solve_level(in, scene, options, std::move(before)), scene, options, finer, finer_options);
@@ -67,15 +66,24 @@ std::optional<CoarseStart> start_from_coarser(const Inputs& in, const Scene& fin
 
 }  // namespace
 
-SolvedLevel solved(optimize::VolumeTask& task, const Scene& scene, const Options& options) {
+Options coarser(const Options& options) {
+  Options coarse = options;
+  coarse.angles = (options.angles + 1) / 2;
+  if (options.bins) coarse.bins = (*options.bins + 1) / 2;
+  coarse.trace.clear();
+  coarse.certify.clear();
+  return coarse;
+}
+
+SolvedLevel solved(optimize::VolumeTask& task, const session::Scene& scene, const Options& options) {
   SolvedLevel level;
   task.write = [&](int, const Image& image) { level.images.push_back(image); };
-  level.outcome = optimize::optimise(task, *make_light(scene, options));
+  level.outcome = optimize::optimise(task, *session::make_light(scene, options));
   return level;
 }
 
-std::optional<CoarseStart> start_of(SolvedLevel level, const Scene& scene, const Options& options, const Scene& finer,
-                                    const Options& finer_options) {
+std::optional<CoarseStart> start_of(SolvedLevel level, const session::Scene& scene, const Options& options,
+                                    const session::Scene& finer, const Options& finer_options) {
   const optimize::VolumeOutcome& outcome = level.outcome;
   const model::DoseMetrics& m = outcome.metrics;
   if (outcome.stop == optimize::StopReason::interrupted || m.part == 0 || m.ver > most_wrong) return std::nullopt;
@@ -88,11 +96,15 @@ std::optional<CoarseStart> start_of(SolvedLevel level, const Scene& scene, const
                      outcome.max_intensity};
 }
 
-std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options) {
+std::optional<CoarseStart> coarse_start(const session::JobVolumes& in, const session::Scene& scene,
+                                        const Options& options) {
   if (!options.coarse_start || !worthwhile(in.grid())) return std::nullopt;
   try {
     Options coarse = coarser(options);
-    if (coarse.limits.deadline) coarse.limits.deadline = share_of(*coarse.limits.deadline, most_time);
+    if (coarse.limits.deadline) {
+      coarse.limits.deadline = coarse.limits.deadline->share(most_time);
+      coarse.limits.deadline->rest_iterations = 1;
+    }
     return start_from_coarser(coarser(in), scene, coarse, options);
   } catch (const Error& error) {
     if (error.fault != Fault::data && error.fault != Fault::usage) throw;

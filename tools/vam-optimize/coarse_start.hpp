@@ -10,11 +10,15 @@
 #include "base/image.hpp"
 #include "optimize/run/prolongation.hpp"
 #include "optimize/run/volume.hpp"
-#include "vam-optimize/inputs.hpp"
-#include "vam-optimize/light.hpp"
+#include "session/job_volumes.hpp"
+#include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
+
+/// Those of the same job on voxels of twice the size: half of the angles and bins, and nothing that is made of the
+/// result alone.
+[[nodiscard]] Options coarser(const Options& options);
 
 struct CoarseStart {
   optimize::Prolongation images;  // of the finer problem's slices
@@ -27,18 +31,20 @@ struct CoarseStart {
 /// For the projections of `scene`, from `in`; a line for each level on a terminal. None where the coarser part is too
 /// small to be of use, or has no light that prints it, nearly; and after an interruption, for which
 /// device::interrupted() is to be asked.
-[[nodiscard]] std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options);
+[[nodiscard]] std::optional<CoarseStart> coarse_start(const session::JobVolumes& in, const session::Scene& scene,
+                                                      const Options& options);
 
 /// A problem solved, with its projections.
 struct SolvedLevel {
   optimize::VolumeOutcome outcome;
   std::vector<Image> images;
 };
-[[nodiscard]] SolvedLevel solved(optimize::VolumeTask& task, const Scene& scene, const Options& options);
+[[nodiscard]] SolvedLevel solved(optimize::VolumeTask& task, const session::Scene& scene, const Options& options);
 
 /// The start of a finer level from one that is solved; none where that has no light that prints the part, nearly.
-[[nodiscard]] std::optional<CoarseStart> start_of(SolvedLevel level, const Scene& scene, const Options& options,
-                                                  const Scene& finer, const Options& finer_options);
+[[nodiscard]] std::optional<CoarseStart> start_of(SolvedLevel level, const session::Scene& scene,
+                                                  const Options& options, const session::Scene& finer,
+                                                  const Options& finer_options);
 
 /// The task starts from it.
 void continue_from(CoarseStart start, optimize::VolumeTask& task, Options& options);

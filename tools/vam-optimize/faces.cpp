@@ -61,7 +61,7 @@ void warn_of(const std::vector<light::BlurredFace>& hard, const light::FaceRemed
 
 }  // namespace
 
-void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, const Scene& scene,
+void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, const session::Scene& scene,
                        const io::SparseVolume& target, const Options& options) {
   if (outcome.wrong.empty() || !scene.poses.empty()) return;
   const double scale = model::vertical_magnification(scene.printer);

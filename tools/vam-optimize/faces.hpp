@@ -5,14 +5,14 @@
 #include "base/json_fwd.hpp"
 #include "io/vdb/vdb.hpp"
 #include "optimize/run/volume.hpp"
-#include "vam-optimize/light.hpp"
+#include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
 
 /// The field blurred_faces of the report, and a warning where there are any. Nothing where rays stay level or the part
 /// moves.
-void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, const Scene& scene,
+void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, const session::Scene& scene,
                        const io::SparseVolume& target, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -4,34 +4,20 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr/stack.hpp"
-#include "model/tolerances.hpp"
 #include "optimize/run/volume.hpp"
+#include "session/job_options.hpp"
 
 namespace vam::optimize_tool {
 
-struct Options {
-  std::string input = "-";
+/// Those of the job, its method and its results.
+struct Options : session::JobOptions {
   std::string output = "-";
   std::string method = "auto";
-  std::string geometry = "vial";
-  int angles = 360;
-  std::optional<int> bins;
-  std::string poses;  // one of the three, or none
-  std::optional<double> helix_mm;
-  std::string wobble_record;
-  optimize::Demands demands;  // target constraints
-  double surface_margin_mm = 0;
-  std::string weights, band_volume;
-  std::vector<std::string> delivered;  // doses of the resin before this light
   std::string response = "logistic";
-  std::string void_rule = "met";
-  double void_weight = 1;
-  std::optional<double> void_band;
   std::optional<double> softness;
   std::optional<int> iterations;  // stopping criteria
   optimize::Limits limits;
@@ -43,7 +29,6 @@ struct Options {
   std::string trace;
   optimize::MethodOptions how;
   std::optional<double> max_intensity;
-  std::optional<double> turns;  // of the print, at full grey
   bool shortest = false;
   std::string tradeoff;
   std::string certify;
@@ -52,14 +37,9 @@ struct Options {
   optimize::IntensityLimit limit;
   optimize::Raising raising;
   std::string robust;
-  std::optional<model::Tolerances> printer_tolerances;  // as read from it
-  bool recorded_tolerances = false;                     // and from the calibration records
+  bool recorded_tolerances = false;  // of the printer, from the calibration records
   int yield_printers = 200;
   std::string negative = "clip";
-  std::string absorption_model = "exact";
-  std::string line_integrals = "footprints";
-  bool no_blur = false;
-  std::optional<double> diffusion_time_s;
   std::optional<int> bits;  // the projector's grey levels
   std::optional<double> full_scale;
   double column_offset_px = 0;
@@ -67,8 +47,6 @@ struct Options {
   cli::PrinterOptions printer;
   std::string report;
   io::StackOptions stack;
-
-  [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
 
 /// As many angles as the projections have from which it starts, unless --angles says otherwise. Throws as StackReader.

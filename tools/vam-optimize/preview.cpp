@@ -20,7 +20,6 @@
 #include "score/exposure_plan.hpp"
 #include "session/dose_score.hpp"
 #include "vam-optimize/coarse_start.hpp"
-#include "vam-optimize/coarser.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/task.hpp"
 #include "verdict/unresolved.hpp"
@@ -44,18 +43,18 @@ struct Level {
   int pixels = 1;  // of the target's voxels, for one of these
   model::Printer printer;
   Options options;
-  Inputs own;            // none at the target's own resolution
-  const Inputs* finest;  // the target's own
-  Scene scene = {};
+  session::JobVolumes own;            // none at the target's own resolution
+  const session::JobVolumes* finest;  // the target's own
+  session::Scene scene = {};
   verdict::Unresolved unresolved = {};  // of its own voxels, once it is asked for
 
-  [[nodiscard]] const Inputs& in() const { return own.target.empty() ? *finest : own; }
+  [[nodiscard]] const session::JobVolumes& in() const { return own.target.empty() ? *finest : own; }
   [[nodiscard]] double updates() const { return static_cast<double>(scene.grid.size()) * options.angles; }
 };
 
 Level coarser(const Level& fine) {
   Level coarse{2 * fine.pixels, model::coarser(fine.printer), coarser(fine.options), coarser(fine.in()), nullptr};
-  coarse.scene = make_scene(coarse.own.target.front(), coarse.printer, coarse.options);
+  coarse.scene = session::make_scene(coarse.own.target.front(), coarse.printer, coarse.options);
   return coarse;
 }
 
@@ -67,9 +66,9 @@ bool can_be_coarser(const Level& level) {
 }
 
 /// One, two and four voxels of the target, down to the coarsest that shows all of the part, or that is quick enough.
-std::vector<Level> levels_of(const model::Printer& printer, const Inputs& in, const Options& options) {
+std::vector<Level> levels_of(const model::Printer& printer, const session::JobVolumes& in, const Options& options) {
   std::vector<Level> levels;
-  levels.push_back({1, printer, options, {}, &in, make_scene(in.target.front(), printer, options)});
+  levels.push_back({1, printer, options, {}, &in, session::make_scene(in.target.front(), printer, options)});
   levels.front().unresolved = session::sub_voxel_features(in.target.front());
   while (levels.back().pixels < 4) {
     if (!can_be_coarser(levels.back())) break;
@@ -84,7 +83,7 @@ std::vector<Level> levels_of(const model::Printer& printer, const Inputs& in, co
 }
 
 SolvedLevel solved(Level& level, int proof, std::optional<CoarseStart> start, int at_least = least_iterations) {
-  const Scene& scene = level.scene;
+  const session::Scene& scene = level.scene;
   optimize::VolumeTask task = make_task(scene, level.in(), level.options);
   if (level.pixels == 1) {
     optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, io::input_name(level.options.input));
@@ -104,7 +103,7 @@ struct Place {
   double low_mm, high_mm, worst_mm;  // slices with wrong voxels, and the one with most of them
 };
 
-std::optional<Place> place_of(const optimize::VolumeOutcome& outcome, const Scene& scene) {
+std::optional<Place> place_of(const optimize::VolumeOutcome& outcome, const session::Scene& scene) {
   const std::vector<std::int64_t>& wrong = outcome.wrong;
   const auto first = std::find_if(wrong.begin(), wrong.end(), [](auto n) { return n > 0; });
   if (first == wrong.end()) return std::nullopt;
@@ -226,7 +225,7 @@ FromCoarser from_coarser(const Level& level) {
 Seen see(Level& level, const verdict::Unresolved& target) {
   level.unresolved = level.pixels == 1 ? target : session::sub_voxel_features(level.own.target.front());
   if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
-  warn_of(level.scene, level.in().target.front(), level.options);
+  session::warn_of(level.scene, level.in().target.front(), level.options);
   const bool has_coarser = can_be_coarser(level);
   const FromCoarser below = has_coarser ? from_coarser(level) : FromCoarser{};
   optimize::VolumeOutcome outcome = solved(level, has_coarser ? 0 : proof_on(level), below.start).outcome;
@@ -295,7 +294,7 @@ Json report_of(const Seen& seen) {
 
 }  // namespace
 
-void preview(const model::Printer& printer, const Inputs& in, const Options& options) {
+void preview(const model::Printer& printer, const session::JobVolumes& in, const Options& options) {
   const verdict::Unresolved target = session::sub_voxel_features(in.target.front());
   std::vector<Level> levels = levels_of(printer, in, options);
   Seen seen = see(levels.back(), target);

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "model/printer.hpp"
-#include "vam-optimize/inputs.hpp"
+#include "session/job_volumes.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
 
 /// Text on standard output, figures to --report. Throws as optimise() does.
-void preview(const model::Printer& printer, const Inputs& in, const Options& options);
+void preview(const model::Printer& printer, const session::JobVolumes& in, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,6 @@
 #include "score/exposure_plan.hpp"
 #include "session/dose_score.hpp"
 #include "session/volumes.hpp"
-#include "vam-optimize/delivered.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
 #include "vam-optimize/front.hpp"
@@ -52,7 +52,7 @@ std::string grey_verdict(const model::DoseMetrics& m) {
 }
 
 /// The weights of the proof, positive in the void, negative in the part, the largest 1 or -1.
-void write_proof(const optimize::Certificate& proof, const Scene& scene, const io::SparseVolume& target,
+void write_proof(const optimize::Certificate& proof, const session::Scene& scene, const io::SparseVolume& target,
                  const model::StackInfo& info, const std::string& path) {
   const model::Grid& grid = scene.grid;
   io::SparseVolume volume("certificate", grid);
@@ -75,10 +75,40 @@ void write_proof(const optimize::Certificate& proof, const Scene& scene, const i
   io::write_volume(path, volume);
 }
 
+/// What was delivered: to the part, on average, and the void that has gelled by it, which no light can undo. Nothing
+/// where none was.
+void report_delivered(Json& report, const optimize::VolumeSource& source, const session::Scene& scene,
+                      const Options& options) {
+  if (!source.delivered) return;
+  const double threshold = options.demands.window.threshold();
+  double part_dose = 0;
+  std::int64_t part = 0, gelled = 0;
+  std::vector<float> dose(scene.grid.slice_size()), target(dose.size());
+  for (int k = 0; k < scene.grid.nz; ++k) {
+    source.delivered(k, 1, dose.data());
+    source.target(k, 1, target.data());
+    for (std::size_t i = 0; i < dose.size(); ++i) {
+      const model::Label label = model::label_of(target[i]);
+      const auto received = static_cast<double>(dose[i]);
+      if (label == model::Label::part) {
+        part_dose += received;
+        ++part;
+      }
+      if (label == model::Label::void_ && received >= threshold) ++gelled;
+    }
+  }
+  const double percent = part > 0 ? 100 * part_dose / (static_cast<double>(part) * threshold) : 0;
+  report["delivered"] = {{"part_mean_percent", percent}, {"void_gelled_voxels", gelled}};
+  if (gelled == 0) return;
+  warn(join(options.delivered, ", ") + ": " + std::to_string(gelled) +
+       (gelled == 1 ? " voxel of the void has" : " voxels of the void have") +
+       " received the critical dose already, which no light can undo; stop earlier, or with less light");
+}
+
 }  // namespace
 
 void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
-             const std::optional<optimize::Trials>& trials, const Scene& scene, const io::SparseVolume& target,
+             const std::optional<optimize::Trials>& trials, const session::Scene& scene, const io::SparseVolume& target,
              const model::StackInfo& info, const Options& options) {
   const model::Printer& printer = scene.printer;
   warn_of(outcome, options);

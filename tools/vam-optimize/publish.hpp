@@ -8,14 +8,14 @@
 #include "model/stack.hpp"
 #include "optimize/run/volume.hpp"
 #include "optimize/run/yield.hpp"
-#include "vam-optimize/light.hpp"
+#include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
 
 /// Warnings on stderr; the files of --trace and --report where they are requested.
 void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
-             const std::optional<optimize::Trials>& trials, const Scene& scene, const io::SparseVolume& target,
+             const std::optional<optimize::Trials>& trials, const session::Scene& scene, const io::SparseVolume& target,
              const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::optimize_tool

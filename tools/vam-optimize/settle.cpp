@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What follows from the options of vam-optimize, and what contradicts itself in them.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -17,7 +18,6 @@
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"
 #include "session/slices.hpp"
-#include "vam-optimize/deadline.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
@@ -209,6 +209,23 @@ void settle_raising(const cli::App& app, Options& options) {
   if (!options.shortest) return;
   options.limit.of_even = optimize::shortest_of_even;
   if (!app.given("--iterations")) options.limits.iterations = 4 * options.limits.iterations;
+}
+
+/// What follows the last iteration, in iterations: scaling, counting and writing; judging the frames as they are shown
+/// and on other printers; the proof.
+double rest_iterations(const Options& options) {
+  double rest = 3;
+  if (options.bits) rest += 3;
+  if (!options.robust.empty()) rest += 5 + options.yield_printers / 3.0;
+  if (!options.certify.empty()) rest += 1.2 * optimize::certify_iterations;
+  return rest;
+}
+
+/// The clock of --budget begins now.
+optimize::Deadline deadline_of(const Options& options) {
+  using Clock = std::chrono::steady_clock;
+  const auto now_s = [began = Clock::now()] { return std::chrono::duration<double>(Clock::now() - began).count(); };
+  return {now_s, *options.budget_s, rest_iterations(options)};
 }
 
 void settle_limit(Options& options, const optimize::MethodEntry& method) {

@@ -10,10 +10,8 @@
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/covered.hpp"
-#include "optimize/target/void_rule.hpp"
 #include "resin/absolute_dose.hpp"
 #include "session/slices.hpp"
-#include "vam-optimize/delivered.hpp"
 #include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
@@ -21,7 +19,7 @@ namespace vam::optimize_tool {
 namespace {
 
 /// The value that, full grey for --turns turns, gives the critical dose where the relative dose is the threshold.
-double full_grey(const Scene& scene, const Options& options) {
+double full_grey(const session::Scene& scene, const Options& options) {
   if (!model::repeat(scene.poses)) {
     throw Error{Fault::usage,
                 "--turns: the poses do not return to the first one, so the frames are shown once; omit it"};
@@ -39,7 +37,7 @@ double full_grey(const Scene& scene, const Options& options) {
 
 }  // namespace
 
-model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, const cli::App& app,
+model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume& target, const cli::App& app,
                             const Options& options) {
   model::StackInfo info;
   info.width = scene.turn.columns;
@@ -98,49 +96,7 @@ void require_independent(const optimize::VolumeTask& task, const light::Operator
 
 namespace {
 
-/// Slices of the volume, `outside` in the margin around it.
-optimize::VolumeSource::Read padded(const std::vector<io::SparseVolume>& volumes, const Scene& scene, float outside) {
-  if (volumes.empty()) return {};
-  return [&volume = volumes.front(), &scene, outside](int k, int count, float* to) {
-    const model::Grid& inner = volume.grid();
-    const light::Margin& margin = scene.margin;
-    std::fill_n(to, scene.grid.slice_size() * static_cast<std::size_t>(count), outside);
-    std::vector<float> slice(inner.slice_size());
-    for (int n = 0; n < count; ++n, to += scene.grid.slice_size()) {
-      const int from = k + n - margin.below;
-      if (from < 0 || from >= inner.nz) continue;
-      volume.read_slices(from, 1, slice.data());
-      light::place_slice(slice.data(), inner, margin, to);
-    }
-  };
-}
-
-void add_void_rule(optimize::VolumeSource& source, std::size_t pixels, const Options& options) {
-  const auto weight = static_cast<float>(options.void_rule == "free" ? 0 : options.void_weight);
-  if (weight != 1) {
-    source.weight =
-        optimize::with_void(source.target, source.weight, 1, pixels, [weight](float& value) { value *= weight; });
-  }
-  if (options.void_rule != "below" && !options.void_band) return;
-  const double most = options.void_rule == "below" ? options.demands.window.low : *options.void_band;
-  source.tolerance = optimize::with_void(source.target, source.tolerance, static_cast<float>(options.demands.band),
-                                         pixels, [most](float& value) { value = static_cast<float>(most); });
-}
-
-optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const Options& options) {
-  optimize::VolumeSource source;
-  source.slices = scene.grid.nz;
-  source.target = padded(in.target, scene, 0);
-  source.insert = padded(in.insert, scene, 0);
-  source.weight = padded(in.weight, scene, 1);
-  source.tolerance = padded(in.tolerance, scene, static_cast<float>(options.demands.band));
-  source.delivered = delivered_dose(scene, in, options);
-  source.band_px = options.surface_margin_mm / in.grid().voxel_mm;
-  add_void_rule(source, scene.grid.slice_size(), options);
-  return source;
-}
-
-optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
+optimize::IntensityLimit limit(const session::Scene& scene, const Options& options) {
   if (!options.turns) return options.limit;
   constexpr double sure = 0.95;  // the middle of the window may lie a little below the threshold that was aimed at
   return {.most = sure * full_grey(scene, options), .of_even = 0};
@@ -148,16 +104,16 @@ optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
 
 }  // namespace
 
-optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options) {
+optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVolumes& in, const Options& options) {
   optimize::VolumeTask task;
-  task.source = make_source(scene, in, options);
+  task.source = session::source_of(in, scene, options);
   task.circle = scene.circle;
   task.part = light::moved(io::covered_box(in.target.front(), model::coverage_rounding), scene.margin);
   task.demands = options.demands;
   task.limits = options.limits;
   task.limit = limit(scene, options);
   task.raising = options.raising;
-  task.blur_px = blur_px(scene, options);
+  task.blur_px = session::blur_px(scene, options);
   task.watch = !options.trace.empty();
   task.make = [&](double max_intensity) {
     optimize::MethodOptions how = options.how;
@@ -165,22 +121,22 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
     const optimize::MethodEntry& method = optimize::method_entry(options.method);
     return (options.printer_tolerances ? method.make_robust : method.make)(how);
   };
-  task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
+  task.around = [&](std::span<const Slab> inserts) { return session::make_light(scene, options, inserts); };
   task.certify = options.certify.empty() ? 0 : optimize::certify_iterations;
   if (!options.tradeoff.empty()) task.front = make_show(scene.printer, options);
   if (options.printer_tolerances) {
-    task.scenarios = [&](std::span<const Slab> inserts) { return make_scenarios(scene, options, inserts); };
+    task.scenarios = [&](std::span<const Slab> inserts) { return session::make_scenarios(scene, options, inserts); };
   }
   return task;
 }
 
-optimize::Trial make_trial(const Scene& scene, const model::StackInfo& info, const Options& options) {
+optimize::Trial make_trial(const session::Scene& scene, const model::StackInfo& info, const Options& options) {
   optimize::Trial trial;
-  trial.printer = modelled(scene.printer, options);
+  trial.printer = session::modelled(scene.printer, options);
   trial.tolerances = *options.printer_tolerances;
   trial.info = info;
   trial.grid = scene.grid;
-  trial.seconds = diffusion_s(scene, options);
+  trial.seconds = session::diffusion_s(scene, options);
   trial.blur = !options.no_blur;
   trial.threshold = options.demands.window.threshold();
   trial.printers = options.yield_printers;

@@ -7,15 +7,15 @@
 #include "model/stack.hpp"
 #include "optimize/run/volume.hpp"
 #include "optimize/run/yield.hpp"
-#include "vam-optimize/inputs.hpp"
-#include "vam-optimize/light.hpp"
+#include "session/job_volumes.hpp"
+#include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
 
 /// Of the projections that come out.
-[[nodiscard]] model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, const cli::App& app,
-                                          const Options& options);
+[[nodiscard]] model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume& target,
+                                          const cli::App& app, const Options& options);
 
 /// Those of --slices, in shares of whole passes where it names one; none: all. Throws Fault::data where the stack has
 /// too few.
@@ -32,9 +32,11 @@ void require_independent(const optimize::VolumeTask& task, const light::Operator
 
 /// Without its output. Scene, inputs and options must outlive the task. Only options.how is read later, when a pass
 /// begins; all else is copied here.
-[[nodiscard]] optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options);
+[[nodiscard]] optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVolumes& in,
+                                             const Options& options);
 
 /// The printers to judge the frames with, of --robust.
-[[nodiscard]] optimize::Trial make_trial(const Scene& scene, const model::StackInfo& info, const Options& options);
+[[nodiscard]] optimize::Trial make_trial(const session::Scene& scene, const model::StackInfo& info,
+                                         const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The beam model of vam-optimize, from printer and options.
+// Projector, vial and part, and the light between them, from printer, target and options.
 #pragma once
 
 #include <memory>
@@ -15,10 +15,10 @@
 #include "model/pose.hpp"
 #include "model/printer.hpp"
 #include "optimize/methods/scenarios.hpp"
+#include "session/job_options.hpp"
 #include "tomo/radon.hpp"
-#include "vam-optimize/options.hpp"
 
-namespace vam::optimize_tool {
+namespace vam::session {
 
 /// Geometry of projector, vial and target.
 struct Scene {
@@ -35,26 +35,27 @@ struct Scene {
   [[nodiscard]] int frames() const { return poses.empty() ? turn.angles : count_of(poses); }
 };
 
-[[nodiscard]] Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options);
+[[nodiscard]] Scene make_scene(const io::SparseVolume& target, const model::Printer& printer,
+                               const JobOptions& options);
 /// Warns of a part beyond the writable radius, and of a wobble in the calibration records that the poses leave out.
-void warn_of(const Scene& scene, const io::SparseVolume& target, const Options& options);
+void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOptions& options);
 
 /// The printer as the light is computed: its resin is clear with --absorption-model none.
-[[nodiscard]] model::Printer modelled(model::Printer printer, const Options& options);
+[[nodiscard]] model::Printer modelled(model::Printer printer, const JobOptions& options);
 
 /// Time during which the dose diffuses.
-[[nodiscard]] double diffusion_s(const Scene& scene, const Options& options);
+[[nodiscard]] double diffusion_s(const Scene& scene, const JobOptions& options);
 /// Standard deviation in voxels of the blur by beam and resin; 0 if neglected.
-[[nodiscard]] double blur_px(const Scene& scene, const Options& options);
+[[nodiscard]] double blur_px(const Scene& scene, const JobOptions& options);
 
 /// Parallel beam or chief rays of the projector, with the resin's absorption unless neglected; around opaque inserts if
 /// there are any, a slab for every slab of the pass.
-[[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options,
+[[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const JobOptions& options,
                                                           std::span<const Slab> inserts = {});
 
 /// Printers off their settings by the tolerances of --robust, as their light falls on the same voxels: corners of the
 /// box of tolerances, each followed by the opposite one.
-[[nodiscard]] std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const Options& options,
+[[nodiscard]] std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const JobOptions& options,
                                                              std::span<const Slab> inserts);
 
-}  // namespace vam::optimize_tool
+}  // namespace vam::session

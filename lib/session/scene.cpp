@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-optimize/light.hpp"
+#include "session/scene.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -17,14 +17,13 @@
 #include "model/magnification.hpp"
 #include "optics/lit_fraction.hpp"
 #include "optics/writable_radius.hpp"
-#include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"
 
-namespace vam::optimize_tool {
+namespace vam::session {
 
 namespace {
 
-light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const Options& options) {
+light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const JobOptions& options) {
   light::VialSetup setup = light::vial_setup(modelled(printer, options), scene.grid, scene.turn.angles,
                                              scene.circle.radius * scene.grid.voxel_mm);
   if (scene.poses.empty()) return setup;
@@ -45,7 +44,7 @@ void warn_of_wobble(const model::Printer& printer, double voxel_mm) {
 }
 
 /// Of frames that are a few more or fewer than whole turns: by mistake, it seems.
-void warn_of_rest(int frames, const Options& options) {
+void warn_of_rest(int frames, const JobOptions& options) {
   const int turns = std::max(round_int(static_cast<double>(frames) / options.angles), 1);
   const int rest = frames - turns * options.angles;
   if (rest == 0 || 20 * std::abs(rest) > options.angles) return;
@@ -55,7 +54,7 @@ void warn_of_rest(int frames, const Options& options) {
        (rest < 0 ? "less" : "more"));
 }
 
-model::Poses poses_of(const model::Grid& part, const model::Printer& printer, const Options& options) {
+model::Poses poses_of(const model::Grid& part, const model::Printer& printer, const JobOptions& options) {
   if (options.helix_mm) return light::helix_poses(printer, part, *options.helix_mm, options.angles);
   if (!options.wobble_record.empty()) {
     const io::WobbleRecord wobble = io::read_wobble(options.wobble_record, printer, printer.stage.direction);
@@ -80,13 +79,13 @@ void place_poses(Scene& scene, const model::Grid& part) {
 }
 
 /// auto: footprints where the light is absorbed or blocked.
-light::LineIntegrals integrals_of(const Scene& scene, const Options& options, double mu, bool inserts) {
+light::LineIntegrals integrals_of(const Scene& scene, const JobOptions& options, double mu, bool inserts) {
   if (options.line_integrals == "fourier") return light::fourier_for(scene.grid.nz);
   if (options.line_integrals == "footprints" || mu > 0 || inserts) return light::LineIntegrals::footprints;
   return light::quicker_for(scene.grid.nz, scene.turn);
 }
 
-light::Beam beam_of(const Scene& scene, const Options& options, bool inserts) {
+light::Beam beam_of(const Scene& scene, const JobOptions& options, bool inserts) {
   if (options.in_vial()) return light_of(scene.printer, scene, options);
   const double voxel_mm = scene.grid.voxel_mm;
   const model::Printer printer = modelled(scene.printer, options);
@@ -96,13 +95,13 @@ light::Beam beam_of(const Scene& scene, const Options& options, bool inserts) {
                              integrals_of(scene, options, mu, inserts)};
 }
 
-std::string reaches(const Options& options, double farthest_mm) {
+std::string reaches(const JobOptions& options, double farthest_mm) {
   return io::input_name(options.input) + ": reaches " + format_number(farthest_mm, 4) +
          " mm from the axis, beyond the ";
 }
 
 /// Parts beyond the writable radius.
-void warn_of_reach(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
+void warn_of_reach(const io::SparseVolume& target, const model::Printer& printer, const JobOptions& options) {
   const double farthest = io::farthest_mm(target, model::coverage_rounding);
   const double writable = optics::writable_radius_mm(printer);
   if (optics::judged_radius_mm(printer, farthest) <= writable) return;
@@ -130,7 +129,7 @@ void require_rows(const model::Grid& grid, const light::VialSetup& setup) {
 }
 
 /// The radius of the resin to constrain. Throws Fault::data where the part reaches beyond the resin.
-double constrained_mm(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
+double constrained_mm(const io::SparseVolume& target, const model::Printer& printer, const JobOptions& options) {
   if (!options.in_vial()) return optics::writable_radius_mm(printer);
   const double farthest = io::farthest_mm(target, model::coverage_rounding);
   const double edge = model::resin_radius_mm(printer.vial);
@@ -143,12 +142,12 @@ double constrained_mm(const io::SparseVolume& target, const model::Printer& prin
 
 }  // namespace
 
-model::Printer modelled(model::Printer printer, const Options& options) {
+model::Printer modelled(model::Printer printer, const JobOptions& options) {
   if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
   return printer;
 }
 
-Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
+Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const JobOptions& options) {
   const model::Grid& grid = target.grid();
   const double radius_mm = constrained_mm(target, printer, options);
   const model::Poses poses = poses_of(grid, printer, options);
@@ -169,14 +168,14 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
   return scene;
 }
 
-void warn_of(const Scene& scene, const io::SparseVolume& target, const Options& options) {
+void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOptions& options) {
   if (!options.no_blur) model::warn_of_diffusion(scene.printer.resin, diffusion_s(scene, options));
   if (!options.in_vial()) return;
   warn_of_reach(target, scene.printer, options);
   if (scene.poses.empty()) warn_of_wobble(scene.printer, scene.grid.voxel_mm);
 }
 
-double diffusion_s(const Scene& scene, const Options& options) {
+double diffusion_s(const Scene& scene, const JobOptions& options) {
   const model::PrinterStage& stage = scene.printer.stage;
   const bool once = !model::repeat(scene.poses);
   const double turns = once ? static_cast<double>(scene.frames()) / scene.turn.angles : stage.turns;
@@ -185,23 +184,24 @@ double diffusion_s(const Scene& scene, const Options& options) {
 
 namespace {
 
-double blur_px(const model::Resin& resin, const Scene& scene, const Options& options) {
+double blur_px(const model::Resin& resin, const Scene& scene, const JobOptions& options) {
   if (options.no_blur) return 0;
   return model::spread_mm(resin, diffusion_s(scene, options)) / scene.grid.voxel_mm;
 }
 
 }  // namespace
 
-double blur_px(const Scene& scene, const Options& options) { return blur_px(scene.printer.resin, scene, options); }
+double blur_px(const Scene& scene, const JobOptions& options) { return blur_px(scene.printer.resin, scene, options); }
 
-std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options, std::span<const Slab> inserts) {
+std::unique_ptr<light::Operator> make_light(const Scene& scene, const JobOptions& options,
+                                            std::span<const Slab> inserts) {
   return light::make_operator(beam_of(scene, options, !inserts.empty()), inserts);
 }
 
 namespace {
 
 /// The voxels are those of the part as it was sliced for the printer as set.
-optimize::Scenario make_scenario(const Scene& scene, const Options& options, std::span<const Slab> inserts,
+optimize::Scenario make_scenario(const Scene& scene, const JobOptions& options, std::span<const Slab> inserts,
                                  const model::PrinterDeviation& by) {
   const model::DeviatingPrinter off = model::deviate(scene.printer, *options.printer_tolerances, by);
   light::VialSetup setup = light_of(off.printer, scene, options);
@@ -212,7 +212,7 @@ optimize::Scenario make_scenario(const Scene& scene, const Options& options, std
 
 }  // namespace
 
-std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const Options& options,
+std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const JobOptions& options,
                                                std::span<const Slab> inserts) {
   std::vector<optimize::Scenario> bank;
   for (const model::PrinterDeviation& corner : model::balanced_corners()) {
@@ -224,4 +224,4 @@ std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const Options
   return bank;
 }
 
-}  // namespace vam::optimize_tool
+}  // namespace vam::session
