@@ -2,7 +2,6 @@
 #include "vam-report/body.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "model/metadata.hpp"
+#include "model/value_at.hpp"
 #include "plot/missing.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
@@ -47,30 +47,12 @@ model::Volume averaged(const io::SparseVolume& volume, int by) {
   return coarse;
 }
 
-/// Trilinear; the border's value beyond it.
+/// The border's value beyond it.
 double value_at(const model::Volume& volume, const Vector3& point) {
-  const model::Grid& grid = volume.grid;
-  const std::array<int, 3> counts{grid.nx, grid.ny, grid.nz};
-  std::array<int, 3> low{};
-  std::array<double, 3> part{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double place =
-        std::clamp((point[axis] - grid.origin_mm[axis]) / grid.voxel_mm, 0.0, static_cast<double>(counts[axis] - 1));
-    low[axis] = std::min(static_cast<int>(place), std::max(0, counts[axis] - 2));
-    part[axis] = place - low[axis];
-  }
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const std::array<int, 3> step{corner & 1, corner >> 1 & 1, corner >> 2 & 1};
-    double weight = 1;
-    std::array<int, 3> at{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      weight *= step[axis] == 1 ? part[axis] : 1 - part[axis];
-      at[axis] = std::min(low[axis] + step[axis], counts[axis] - 1);
-    }
-    sum += weight * static_cast<double>(volume.slice(at[2])[at[1] * grid.nx + at[0]]);
-  }
-  return sum;
+  const model::Grid& g = volume.grid;
+  return static_cast<double>(model::value_at(volume, std::clamp(point[0], g.x_mm(0), g.x_mm(g.nx - 1)),
+                                             std::clamp(point[1], g.y_mm(0), g.y_mm(g.ny - 1)),
+                                             std::clamp(point[2], g.z_mm(0), g.z_mm(g.nz - 1))));
 }
 
 /// The 98th percentile of the magnitudes as a number with one digit.
