@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-view: figures of volumes, stacks, videos, folders, meshes and traces.
-#include <algorithm>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +16,7 @@
 #include "session/dose_score.hpp"
 #include "session/grey_target.hpp"
 #include "session/printer.hpp"
+#include "session/volumes.hpp"
 #include "vam-view/bodies.hpp"
 #include "vam-view/movie.hpp"
 #include "vam-view/options.hpp"
@@ -35,57 +34,54 @@ void write_figure(const Options& options, const plot::ImageFigure& figure, const
   io::write_png(options.output, pixels, {{"Comment", history}});
 }
 
-bool has_grid(const std::string& path, const std::string& name) {
-  if (path == "-") return false;  // can be read once only
-  const std::vector<io::VolumeFacts> grids = io::check_volumes(path, true);
-  return std::any_of(grids.begin(), grids.end(), [&](const io::VolumeFacts& facts) { return facts.name == name; });
-}
+/// A volume, and what its file or that of --target has beside it.
+class Shown {
+ public:
+  explicit Shown(const Options& options)
+      : file_(options.target.empty() ? options.input : options.target), grids_(io::read_volumes(options.input)) {
+    if (!options.target.empty()) others_ = io::read_volumes(options.target);
+    volume_ = &io::choose_volume(grids_, grid_of(options), options.input);
+  }
 
-io::SparseVolume target_for(const Options& options) {
-  if (!options.target.empty()) return io::read_volume(options.target, "target");
-  if (options.input != "-" && !has_grid(options.input, "target"))
-    throw Error{Fault::data, options.input + ": has no grid 'target'; give the part with --target"};
-  return io::read_volume(options.input, "target");
-}
+  [[nodiscard]] const io::SparseVolume& volume() const { return *volume_; }
+  [[nodiscard]] const std::string& file() const { return file_; }  // of the target
+  [[nodiscard]] io::SparseVolume& target() {
+    if (others_.empty()) return session::require_grid(grids_, "target", file_, "give the part with --target");
+    return io::choose_volume(others_, "target", file_);
+  }
+  /// On the grid of the volume; null: there is none.
+  [[nodiscard]] const io::SparseVolume* insert() {
+    io::SparseVolume* found = session::find_grid(others_.empty() ? grids_ : others_, "insert");
+    if (found == nullptr || volume_->name() == "insert") return nullptr;
+    found->extend_to(volume_->grid(), file_);
+    return found;
+  }
 
-/// A target is shown with its insert.
-std::string grid_of(const Options& options) {
-  if (!options.grid.empty()) return options.grid;
-  if (options.histogram || options.cure || (options.render && !options.target.empty())) return "dose";
-  return has_grid(options.input, "target") && has_grid(options.input, "insert") ? "target" : "";
-}
+ private:
+  /// A target is shown with its insert.
+  [[nodiscard]] std::string grid_of(const Options& options) {
+    if (!options.grid.empty()) return options.grid;
+    if (options.histogram || options.cure || (options.render && !options.target.empty())) return "dose";
+    const auto has = [&](const char* name) { return session::find_grid(grids_, name) != nullptr; };
+    return has("target") && has("insert") ? "target" : "";
+  }
 
-/// On the grid of the volume, if the file of the target has one.
-std::optional<io::SparseVolume> insert_for(const Options& options, const io::SparseVolume& volume) {
-  const std::string& with = options.target.empty() ? options.input : options.target;
-  if (volume.name() == "insert" || !has_grid(with, "insert")) return std::nullopt;
-  io::SparseVolume insert = io::read_volume(with, "insert");
-  insert.extend_to(volume.grid(), with);
-  return insert;
-}
-
-plot::ImageFigure sections(const Options& options, const io::SparseVolume& volume) {
-  std::optional<io::SparseVolume> target;
-  const std::optional<io::SparseVolume> insert = insert_for(options, volume);
-  if (!options.target.empty()) target.emplace(target_for(options));
-  return plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr);
-}
+  std::string file_;
+  std::vector<io::SparseVolume> grids_, others_;  // of the file, and of --target
+  io::SparseVolume* volume_ = nullptr;
+};
 
 constexpr const char* grey_remedy = "a target that is the dose of every voxel is judged by vam-score --grey-target";
 
-/// With the target around the dose, and how it is judged.
-struct Judged {
-  io::SparseVolume target;
+/// How the volume is judged as a dose, on whose grid the target is from now on.
+score::ScoreOptions judged(const Options& options, Shown& shown) {
+  io::SparseVolume& target = shown.target();
+  session::warn_of_grey(target, shown.file(), grey_remedy);
+  target.extend_to(shown.volume().grid(), shown.file());
   score::ScoreOptions how;
-};
-
-Judged judged(const Options& options, const io::SparseVolume& dose) {
-  Judged made{target_for(options), {}};
-  session::warn_of_grey(made.target, options.target.empty() ? options.input : options.target, grey_remedy);
-  made.target.extend_to(dose.grid(), options.target.empty() ? options.input : options.target);
-  made.how.threshold = options.threshold;
-  session::resolve_exposure(made.how, dose, made.target, session::load_printer(options.printer));
-  return made;
+  how.threshold = options.threshold;
+  session::resolve_exposure(how, shown.volume(), target, session::load_printer(options.printer));
+  return how;
 }
 
 /// Throws Fault::data where the doses give none.
@@ -100,8 +96,9 @@ double threshold_of(const Options& options, const score::Score& result) {
 
 bool is_movie(const Options& options) { return options.output.ends_with(".mp4"); }
 
-void write_movie(const Options& options, const io::SparseVolume& dose, const std::string& history) {
-  const Judged with = judged(options, dose);
+void write_movie(const Options& options, Shown& shown, const std::string& history) {
+  const io::SparseVolume& dose = shown.volume();
+  const score::ScoreOptions how = judged(options, shown);
   view_tool::Exposure exposure;
   const auto turns = model::stated_number(dose.metadata, "vam:print_turns");
   const auto seconds = model::stated_number(dose.metadata, "vam:print_s");
@@ -109,49 +106,46 @@ void write_movie(const Options& options, const io::SparseVolume& dose, const std
   if (options.threshold) {
     exposure.threshold = *options.threshold;
   } else {
-    const score::Score result = session::score_volumes(dose, with.target, with.how);
+    const score::Score result = session::score_volumes(dose, shown.target(), how);
     exposure.threshold = threshold_of(options, result);
-    const auto plan = with.how.threshold ? std::nullopt : result.plan();  // for the dose of one turn
+    const auto plan = how.threshold ? std::nullopt : result.plan();  // for the dose of one turn
     if (plan) exposure.duration = {static_cast<double>(plan->turns), plan->seconds};
   }
-  const std::optional<io::SparseVolume> insert = insert_for(options, dose);
-  view_tool::write_movie(options.output, dose, with.target, insert ? &*insert : nullptr, exposure, options.view,
-                         options.dpi, history);
+  view_tool::write_movie(options.output, dose, shown.target(), shown.insert(), exposure, options.view, options.dpi,
+                         history);
 }
 
-plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& volume) {
-  std::optional<io::SparseVolume> held;
-  if (options.cure || options.render) held = insert_for(options, volume);
-  const io::SparseVolume* insert = held ? &*held : nullptr;
+plot::ImageFigure volume_figure(const Options& options, Shown& shown) {
+  const io::SparseVolume& volume = shown.volume();
   if (options.cure || (options.render && !options.target.empty())) {
-    const Judged with = judged(options, volume);
-    const double threshold = options.threshold
-                                 ? *options.threshold
-                                 : threshold_of(options, session::score_volumes(volume, with.target, with.how));
-    if (!options.cure) return view_tool::print_figure(volume, with.target, threshold, options.view, insert);
-    return plot::view_cure(volume, with.target, threshold, with.how.circle, options.view, insert);
+    const score::ScoreOptions how = judged(options, shown);
+    const io::SparseVolume& target = shown.target();
+    const double threshold =
+        options.threshold ? *options.threshold : threshold_of(options, session::score_volumes(volume, target, how));
+    if (!options.cure) return view_tool::print_figure(volume, target, threshold, options.view, shown.insert());
+    return plot::view_cure(volume, target, threshold, how.circle, options.view, shown.insert());
   }
-  if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view, insert);
+  if (options.render)
+    return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view, shown.insert());
   if (!options.compare.empty()) {
     const io::SparseVolume other = io::read_volume(options.compare, volume.name());
     return plot::view_difference(volume, other, view_tool::file_name(options.compare, options.input), options.view);
   }
-  return sections(options, volume);
+  return plot::view_volume(volume, options.target.empty() ? nullptr : &shown.target(), options.view, shown.insert());
 }
 
 void show_volume(Options options, const std::string& history) {
-  const io::SparseVolume volume = io::read_volume(options.input, grid_of(options));
-  options.view.stretch_z = model::stretch_z(volume.metadata);
-  if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
+  Shown shown(options);
+  options.view.stretch_z = model::stretch_z(shown.volume().metadata);
+  if (!options.exported.empty()) return io::write_nrrd(options.exported, shown.volume());
   if (options.histogram) {
-    const Judged with = judged(options, volume);
-    const std::optional<io::SparseVolume> insert = insert_for(options, volume);
+    const score::ScoreOptions how = judged(options, shown);
     const plot::Plot plot =
-        plot::dose_histogram(volume, with.target, with.how.circle, options.view, insert ? &*insert : nullptr);
+        plot::dose_histogram(shown.volume(), shown.target(), how.circle, options.view, shown.insert());
     return plot::save(options.output, plot::draw(plot), history, options.dpi);
   }
-  if (is_movie(options)) return write_movie(options, volume, history);
-  write_figure(options, volume_figure(options, volume), history);
+  if (is_movie(options)) return write_movie(options, shown, history);
+  write_figure(options, volume_figure(options, shown), history);
 }
 
 /// Options that only other kinds of files have a use for.

@@ -60,7 +60,10 @@ class SparseVolume {
 /// float, non-uniform or rotated transform, NaN values, other than what was sealed), io.
 std::vector<SparseVolume> read_volumes(const std::string& path);
 
-/// The grid of that name; the only grid when name is empty. Throws Fault::data naming the grids that are there.
+/// Of the grids of a file the one of that name; the only one when name is empty. Throws Fault::data naming the grids
+/// that are there.
+[[nodiscard]] SparseVolume& choose_volume(std::vector<SparseVolume>& volumes, const std::string& name,
+                                          const std::string& path);
 SparseVolume read_volume(const std::string& path, const std::string& name);
 
 /// What a volume is, before its voxels.

@@ -144,8 +144,7 @@ std::vector<VolumeFacts> check_volumes(const std::string& path, bool fast) {
   return facts;
 }
 
-SparseVolume read_volume(const std::string& path, const std::string& name) {
-  std::vector<SparseVolume> volumes = read_volumes(path);
+SparseVolume& choose_volume(std::vector<SparseVolume>& volumes, const std::string& name, const std::string& path) {
   const std::string subject = input_name(path);
   SparseVolume* found = nullptr;
   std::string names;
@@ -158,10 +157,15 @@ SparseVolume read_volume(const std::string& path, const std::string& name) {
     if (found != nullptr) throw Error{Fault::data, subject + ": " + occurs_twice(name)};
     found = &volume;
   }
-  if (found != nullptr) return std::move(*found);
+  if (found != nullptr) return *found;
   if (name.empty())
     throw Error{Fault::data, subject + ": holds several grids (" + briefly(names) + "); choose one by name"};
   throw Error{Fault::data, subject + ": has no grid '" + name + "'; choose one of " + briefly(names)};
+}
+
+SparseVolume read_volume(const std::string& path, const std::string& name) {
+  std::vector<SparseVolume> volumes = read_volumes(path);
+  return std::move(choose_volume(volumes, name, path));
 }
 
 }  // namespace vam::io
