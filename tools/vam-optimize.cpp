@@ -117,10 +117,7 @@ void run(const cli::App& app, Options& options) {
 /// A paragraph for each row of the method table.
 std::vector<std::string> method_texts() {
   std::vector<std::string> texts;
-  for (const auto& entry : optimize::method_table()) {
-    const std::string options = entry.options.empty() ? "" : " Options: " + join(entry.options, ", ") + ".";
-    texts.push_back("Method " + entry.name + ": " + entry.summary + options + " Source: " + entry.paper + ".");
-  }
+  for (const auto& entry : optimize::method_table()) texts.push_back(entry.name + ": " + entry.summary);
   return texts;
 }
 

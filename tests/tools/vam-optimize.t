@@ -439,8 +439,4 @@ fails 73 'nowhere' vam-optimize part.vdb -o nowhere/out.exr
 fails 74 'space' vam-optimize --angles 90 part.vdb -o /dev/full
 fails 66 'none.toml' vam-optimize --printer none.toml part.vdb -o out.exr
 
-for option in $(vam-optimize --man | tr '\n' ' ' | grep -o ' Options: [^.]*\.' | grep -o -- '--[a-z-]*' | sort -u); do
-  vam-optimize --man | grep -qe "^.It Fl $(echo "$option" | cut -c2-)"; report $? "the table's $option is an option"
-done
-
 done_testing

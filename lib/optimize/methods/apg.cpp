@@ -220,11 +220,8 @@ class Apg final : public Method {
 
 MethodEntry apg_method() {
   return {"apg",
-          "Constrains the void to doses below LOW and the part to doses above HIGH by preconditioned, accelerated "
-          "projected gradient, starting each slice from the better result of fbp and dose-norm; the window of a slice "
-          "that satisfies "
-          "both is widened.",
-          "Beck and Teboulle, FISTA, 2009; two-metric projection: Bertsekas, 1982",
+          "Accelerated projected gradient: the void below LOW, the part above HIGH, the surface at the threshold; "
+          "then it widens the window.",
           60,
           true,
           {"--max-intensity", "--robust", "--free-surface", "--delivered"},

@@ -43,14 +43,12 @@ class Bclp final : public Descent {
 }  // namespace
 
 MethodEntry bclp_method() {
-  return {"bclp",
-          "Minimises the Lp norm of the resin's response outside a band around the target.",
-          "Li, Toombs, Taylor and Wallin, Tomographic projection optimization for volumetric additive manufacturing "
-          "with general band constraint Lp-norm minimization, 2024",
-          60,
-          true,
-          {"--band", "--resin-response", "--softness", "--power", "--max-intensity"},
-          make<Bclp>};
+  return {.name = "bclp",
+          .summary = "Minimises the Lp norm of the resin's response outside a band around the target.",
+          .iterations = 60,
+          .grey = true,
+          .options = {"--band", "--resin-response", "--softness", "--power", "--max-intensity"},
+          .make = make<Bclp>};
 }
 
 }  // namespace vam::optimize

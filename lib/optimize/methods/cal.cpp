@@ -103,9 +103,7 @@ class Cal final : public Method {
 
 MethodEntry cal_method() {
   return {"cal",
-          "Projected gradient descent on the error of the print, with the gelation threshold of the resin inside the "
-          "loop.",
-          "Kelly et al., Computed Axial Lithography, 2017, fig 2, and Science 2019, eq 4",
+          "Projected gradient descent on the error of the print, with the gelation threshold in the loop.",
           30,
           false,
           {"--resin-response", "--softness", "--max-intensity"},

@@ -77,10 +77,8 @@ class DoseNorm final : public Method {
 
 MethodEntry dose_norm_method() {
   return {"dose-norm",
-          "Filtered back-projection of the target with a background dose in the void, divided once by the resulting "
-          "dose: fast, with a smaller process window than the iterative methods.",
-          "Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (its "
-          "text states the background as the lower bound of the projections, its figures show 0)",
+          "Filtered back-projection with a background dose in the void, divided once by the resulting dose: fast, with "
+          "a small process window.",
           1,
           false,
           {"--void-dose", "--min-intensity"},

@@ -38,13 +38,12 @@ class Fbp final : public Method {
 }  // namespace
 
 MethodEntry fbp_method() {
-  return {"fbp",
-          "Filtered back-projection; negative intensities are set to the lower bound, or offset.",
-          "Kelly et al., Computed Axial Lithography, 2017, eq 3",
-          0,
-          false,
-          {"--min-intensity", "--negative"},
-          make<Fbp>};
+  return {.name = "fbp",
+          .summary = "Filtered back-projection; negative intensities are set to the lower bound, or offset.",
+          .iterations = 0,
+          .grey = false,
+          .options = {"--min-intensity", "--negative"},
+          .make = make<Fbp>};
 }
 
 }  // namespace vam::optimize

@@ -83,7 +83,6 @@ class Method {
 struct MethodEntry {
   std::string name;
   std::string summary;               // sentences
-  std::string paper;                 // source: authors, title, year
   int iterations;                    // default of --iterations
   bool grey;                         // supports grey targets
   std::vector<std::string> options;  // of vam-optimize that not every method reads

@@ -98,12 +98,8 @@ class Minimax final : public Method {
 
 MethodEntry minimax_method() {
   return {"minimax",
-          "Widens the process window itself, one for all slices that are optimised together, by a primal-dual method: "
-          "near the optimum after some hundreds of iterations (with --patience 0), where the maximum intensity is low "
-          "or the part is hard to print well beyond apg; of large volumes more slowly. The report states how wide the "
-          "window can be within the maximum intensity (least_void_over_part).",
-          "Chambolle and Pock, A first-order primal-dual algorithm for convex problems, 2011; Lu and Yang, Restarted "
-          "Halpern PDHG for linear programming, 2024",
+          "Widens the process window itself, in some hundreds of iterations (--patience 0): well beyond apg where the "
+          "maximum intensity is low or the part is hard to print.",
           200,
           false,
           {"--max-intensity"},

@@ -98,13 +98,12 @@ class Osmo final : public Method {
 }  // namespace
 
 MethodEntry osmo_method() {
-  return {"osmo",
-          "Corrects a model of the part by the errors of the dose, in void and part alternately.",
-          "Rackson et al., Object-space optimization of tomographic reconstructions, 2021",
-          30,
-          false,
-          {"--max-intensity"},
-          make<Osmo>};
+  return {.name = "osmo",
+          .summary = "Corrects a model of the part by the errors of the dose, in void and part alternately.",
+          .iterations = 30,
+          .grey = false,
+          .options = {"--max-intensity"},
+          .make = make<Osmo>};
 }
 
 }  // namespace vam::optimize

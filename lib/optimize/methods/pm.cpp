@@ -30,13 +30,12 @@ class Pm final : public Descent {
 }  // namespace
 
 MethodEntry pm_method() {
-  return {"pm",
-          "Minimises the penalty on doses on the wrong side of LOW and HIGH, to the power P.",
-          "Bhattacharya et al., High fidelity volumetric additive manufacturing, 2021",
-          60,
-          true,
-          {"--power", "--max-intensity"},
-          make<Pm>};
+  return {.name = "pm",
+          .summary = "Minimises the penalty on doses on the wrong side of LOW and HIGH, to the power P.",
+          .iterations = 60,
+          .grey = true,
+          .options = {"--power", "--max-intensity"},
+          .make = make<Pm>};
 }
 
 }  // namespace vam::optimize
