@@ -35,7 +35,7 @@ struct Options {
 std::vector<std::string> device_texts() {
   std::vector<std::string> texts;
   const auto add = [&](const std::string& kind, const auto& schemes) {
-    texts.push_back("Options of a " + kind + ", after a question mark and separated by &:");
+    texts.push_back("Options of a " + kind + ":");
     for (std::string& line : model::options_of(schemes)) texts.push_back(std::move(line));
   };
   add("stage", model::stage_schemes);

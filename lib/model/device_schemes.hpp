@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace vam::model {
@@ -17,7 +18,7 @@ namespace vam::model {
 struct DeviceOption {
   std::string_view name;
   std::string_view value;
-  std::string_view text;
+  std::string_view text = {};  // empty: it is explained elsewhere
 };
 
 struct DeviceScheme {
@@ -45,19 +46,19 @@ inline constexpr DeviceOption zaber_options[] = {
     {"axis", "N", "axis of the device, 1 to 9; default: 1"},
     {"steps_per_deg", "N", "microsteps per degree; default: as stored in the device"}};
 inline constexpr DeviceOption sim_stage_options[] = {  // those of vam-sim(1)
-    {"acceleration", "DEG/S2", "acceleration of ramps and smooth stops; default: 60"},
-    {"speed_error", "FRACTION", "relative; default: 0"},
-    {"ripple", "FRACTION", "amplitude of a speed ripple of 30 degrees; default: 0"},
-    {"max_speed", "DEG/S", "maximum speed; default: 90"},
-    {"min_angle", "DEG", "lower limit of travel; default: -36000"},
-    {"max_angle", "DEG", "upper limit of travel; default: 36000"},
-    {"start_angle", "DEG", "angle at power-on, from the reference; default: 17"},
-    {"reply_delay", "MS", "delay of replies; default: 0.5"},
-    {"jitter", "MS", "additional random delay; default: 0"},
-    {"address", "N", "address in a daisy chain; default: 1"},
-    {"fault", "FAULTS", "faults to inject, as KIND@COMMAND:N, separated by commas"},
-    {"seed", "N", "of the random numbers; default: 1"},
-    {"log", "FILE", "the simulator's own log"}};
+    {"acceleration", "DEG/S2"},
+    {"speed_error", "FRACTION"},
+    {"ripple", "FRACTION"},
+    {"max_speed", "DEG/S"},
+    {"min_angle", "DEG"},
+    {"max_angle", "DEG"},
+    {"start_angle", "DEG"},
+    {"reply_delay", "MS"},
+    {"jitter", "MS"},
+    {"address", "N"},
+    {"fault", "FAULTS"},
+    {"seed", "N"},
+    {"log", "FILE"}};
 inline constexpr DeviceOption aravis_options[] = {
     {"packet_size", "BYTES", "of GigE Vision, 576 to 9000; default: as the camera has it"},
     {"buffers", "N", "frames that can wait in memory, 10 to 1000; default: 20"}};
@@ -66,36 +67,36 @@ inline constexpr DeviceOption v4l2_options[] = {
 inline constexpr DeviceOption replay_options[] = {
     {"pace", "real|virtual", "wait for the recorded times, or do not; default: virtual"}};
 inline constexpr DeviceOption sim_camera_options[] = {  // those of vam-sim(1), and some of the sensor
-    {"part", "BODIES", "shape of the print"},
-    {"lit", "S", "exposed time that completes the print"},
-    {"follow", "FILE", "stage angle, from this log of vam-sim stage"},
-    {"speed", "DEG/S", "stage speed without follow"},
-    {"flips", "FILE", "log of vam-project"},
-    {"axis_offset", "PX", "rotation axis from the middle of the sensor"},
-    {"tilt", "DEG", "tilt of the axis"},
-    {"centre", "PX", "vial from projector.axis_column, in projector columns"},
-    {"wobble", "MM", "vial's axis from the rotation axis"},
-    {"wobble_phase", "DEG", "stage angle of its largest column"},
-    {"beam", "MM", "width of a pixel's beam in focus"},
-    {"focus", "MM", "place of the focus along the beam"},
-    {"divergence", "DEG", "increase of the beam's width"},
-    {"projector_gamma", "N", "gamma of the projector"},
-    {"vignetting", "FRACTION", "loss of intensity in the corners"},
-    {"glow", "FRACTION", "fluorescence of the resin"},
-    {"card", "1", "uniform card in place of the vial"},
-    {"columns", "PX", "sensor columns"},
-    {"rows", "PX", "sensor rows"},
+    {"part", "BODIES"},
+    {"lit", "S"},
+    {"follow", "FILE"},
+    {"speed", "DEG/S"},
+    {"flips", "FILE"},
+    {"axis_offset", "PX"},
+    {"tilt", "DEG"},
+    {"centre", "PX"},
+    {"wobble", "MM"},
+    {"wobble_phase", "DEG"},
+    {"beam", "MM"},
+    {"focus", "MM"},
+    {"divergence", "DEG"},
+    {"projector_gamma", "N"},
+    {"vignetting", "FRACTION"},
+    {"glow", "FRACTION"},
+    {"card", "1"},
+    {"columns", "PX"},
+    {"rows", "PX"},
     {"bits", "N", "depth of grey levels, 8 to 16; default: 8"},
-    {"background", "FRACTION", "background light"},
-    {"noise", "FRACTION", "standard deviation of noise"},
-    {"lag", "MS", "delay of the time stamps"},
-    {"drop", "FRAMES", "frames that are dropped"},
-    {"incomplete", "FRAMES", "frames that arrive incomplete"},
-    {"unplug", "N", "disconnect before this frame"},
-    {"shrink", "N", "from this frame on, half the agreed height"},
+    {"background", "FRACTION"},
+    {"noise", "FRACTION"},
+    {"lag", "MS"},
+    {"drop", "FRAMES"},
+    {"incomplete", "FRAMES"},
+    {"unplug", "N"},
+    {"shrink", "N"},
     {"pace", "real|virtual", "wait for the frame period, or do not; default: real"},
-    {"seed", "N", "of the random numbers"},
-    {"log", "FILE", "the simulator's own log"}};
+    {"seed", "N"},
+    {"log", "FILE"}};
 inline constexpr DeviceOption drm_options[] = {
     {"mode", "COLUMNSxROWS@HZ", "mode of the display, the rate may be omitted; default: the preferred one"},
     {"bpc", "N", "maximum bits per colour on the cable, 6 to 16; default: unchanged"}};
@@ -106,12 +107,14 @@ inline constexpr DeviceOption light_options[] = {
     {"current_percent", "N", "LED current, in per cent of full; default: unchanged"},
     {"max_current_percent", "N", "limit, if below projector.max_led_current_percent"},
     {"leds", "LETTERS", "LEDs in use, of r, g and b; default: b"}};
-inline constexpr DeviceOption sim_light_options[] = {
-    light_options[0], light_options[1], light_options[2], {"log", "FILE", "the simulator's own log"}};
+inline constexpr DeviceOption sim_light_options[] = {  // those of the others
+    {"current_percent", "N"},
+    {"max_current_percent", "N"},
+    {"leds", "LETTERS"},
+    {"log", "FILE"}};
 inline constexpr DeviceOption relay_options[] = {{"baud", "N", "rate of the port; default: 115200"}};
 inline constexpr DeviceOption sim_relay_options[] = {
-    {"fault", "FAULTS", "faults to inject, as KIND@COMMAND:N, separated by commas"},
-    {"log", "FILE", "the simulator's own log"}};
+    {"fault", "FAULTS", "faults to inject, as KIND@COMMAND:N, separated by commas"}, {"log", "FILE"}};
 
 inline constexpr std::array stage_schemes{
     DeviceScheme{"gcs", "PATH", gcs_options}, DeviceScheme{"tic", "SERIAL", tic_options},
@@ -138,17 +141,19 @@ inline constexpr std::array relay_schemes{DeviceScheme{"relay", "PATH", relay_op
   return forms;
 }
 
-/// "sim: baud=N (rate of the port); ...": a line for each scheme that has options.
+/// "sim: baud=N (rate of the port); ...": a line for the options of each scheme, or of several in turn that share them.
 [[nodiscard]] std::vector<std::string> options_of(const auto& table) {
   std::vector<std::string> lines;
-  for (const DeviceScheme& row : table) {
-    if (row.options.empty()) continue;
-    std::string line = std::string(row.scheme) + ":";
-    for (const auto& option : row.options) {
-      line += (&option == row.options.data() ? " " : "; ") + std::string(option.name) + "=" +
-              std::string(option.value) + " (" + std::string(option.text) + ")";
+  std::string schemes;
+  for (auto row = std::begin(table); row != std::end(table); ++row) {
+    schemes += (schemes.empty() ? "" : ": or ") + std::string(row->scheme);
+    if (row + 1 != std::end(table) && row->options.data() == row[1].options.data()) continue;
+    std::string line = std::exchange(schemes, "") + ":";
+    for (const auto& [name, value, text] : row->options) {
+      line += (line.back() == ':' ? " " : "; ") + std::string(name) + "=" + std::string(value) +
+              (text.empty() ? "" : " (" + std::string(text) + ")");
     }
-    lines.push_back(line + ".");
+    if (!row->options.empty()) lines.push_back(line + ".");
   }
   return lines;
 }
