@@ -8,7 +8,7 @@ the like stand in the paper's entry. Whatever is in brackets and begins like one
 the kind is cited in another form. vam:name is an attribute of vam-formats.7. Keys of the printer file, schemas of
 reports and every literal key of the JSON that the tools write are defined in vam-formats.7. Every equation that the
 pages take from a paper is cited somewhere in lib, every paper of the references is cited, and comments cite papers in
-no other form. Source paths in these pages and in CONTRIBUTING.md exist, and source files that comments name; the
+no other form. Sections of these pages that pages name exist. Source paths in these pages and in CONTRIBUTING.md exist, and source files that comments name; the
 changes that its recipes show apply, and its diagram has every folder of lib/layers.txt."""
 import pathlib
 import re
@@ -175,6 +175,11 @@ for name in ('physics', 'formats', 'devices'):
     for path in re.findall(r'(?:lib|tools|tests|scripts)/[\w/.-]*\w/?', page(name)):
         if not (root / path).exists():
             faults.append(f'man/vam-{name}.7: there is no {path}')
+for file in sorted((root / 'man').iterdir()):
+    text = ' '.join(file.read_text().split()) if file.suffix in ('.1', '.7') else ''
+    for name, numbers in re.findall(r'vam-(physics|devices)(?:\(7\)| 7) ?,(?: No)? section( \d+(?:\.\d+)?|s [\d., and]+)', text):
+        faults.extend(f'man/{file.name}: vam-{name}(7) has no section {number}'
+                      for number in re.findall(r'\d+(?:\.\d+)?', numbers) if number not in sections[name])
 guide = re.sub(r'```diff.*?```', '', (root / 'CONTRIBUTING.md').read_text(), flags=re.S)
 for path in re.findall(r'(?:lib|tools|tests|scripts)/[\w/.-]*\w/?(?=[`,. ])', guide):
     if not (root / path).exists():

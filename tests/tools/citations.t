@@ -68,11 +68,13 @@ finds '"Kelvin et al" is to be cited by its key' '// cells of even faces, Kelvin
 all_found
 sed -i 's/^MethodEntry minimax_method();/MethodEntry minimax();/' tree/lib/optimize/methods/methods.cpp
 rm -r tree/lib/resin tree/lib/base/cited.hpp tree/scripts/update-man
+printf '(vam-physics(7), sections 4 and 99)\n.Xr vam-devices 7 ,\nsection 98\n' >>tree/man/vam-dose.1
 check tree >faults
 grep -q 'nothing in lib cites .CURE19 eq 5.' faults
 report $? 'found: an equation that no source cites'
 grep -q 'a recipe changes "MethodEntry minimax_method();"' faults
 report $? 'found: a recipe that does not apply'
+is 'found: sections that are not there, named by a page' "$(grep -Ec 'man/vam-dose.1: vam-(physics|devices)\(7\) has no section 9[89]$' faults)" 2
 grep -q 'CONTRIBUTING.md: there is no scripts/update-man' faults
 report $? 'found: a path that is not there'
 done_testing

@@ -60,6 +60,25 @@ for script in vam-batch vam-print vam-calibrate-all; do
   same "$script: --man shows a compressed page" "$page" "$script.1"
 done
 
+# A page of a tool is short beside its options; theory, measured figures and protocols stand in section 7. What is longer
+# yet is named here with its words, and may only shrink.
+longer='vam-calibrate 1321
+vam-calibrate-all 1126
+vam-convert 1407
+vam-curethrough 1184'
+words() { awk '/^\.\\" <options>/ { options = 1 } /^\.\\" <\/options>/ { options = 0 } !options { n += NF } END { print n }' "$1"; }
+printf '.Sh A\n.\\" <options>\n.It Fl x\n.\\" </options>\none two\n' >counted.1
+is 'words are counted beside the options' "$(words counted.1)" 6
+for page in "$VAM_SOURCE"/man/*.1; do
+  name=$(basename "$page" .1)
+  most=$(echo "$longer" | sed -n "s/^$name //p")
+  holds "$name: words beside its options" "$(words "$page") <= ${most:-900}"
+  [ -z "$most" ] || holds "$name: is longer than others may be, else it is not named" "$(words "$page") > 900"
+done
+for script in vam-batch vam-renew vam-print vam-calibrate-all; do
+  is "$script: only options are marked as such" "$(sed -n '/^\.\\" <options>/,/^\.\\" <\/options>/p' "$VAM_SOURCE/man/$script.1" | grep '^\.It' | grep -v '^\.It Fl')" ''
+done
+
 for page in "$VAM_SOURCE"/man/*.7; do
   name=$(basename "$page" .7)
   is "$name: mandoc -Tlint is silent" "$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')" ""
