@@ -71,7 +71,7 @@ void check(const Options& options) {
   const long count = std::ssize(options.files);
   Progress progress("checking", count);
   for (long done = 0; done < count; ++done) {
-    progress.stand(done, count, {});
+    progress.set_progress(done, count, {});
     const std::string& path = options.files[done];
     try {
       found[path] = io::inspect(path, options.fast);

@@ -56,7 +56,7 @@ constexpr Kind kinds[] = {
     Kind{"display", "connect the projector and switch it on; null: is a dry run"},
     Kind{"light", "check the USB cable, or use a projector without one; sim: is a simulated one"}};
 
-void print(const std::vector<device::Found>& found) {
+void print(const std::vector<device::DeviceListing>& found) {
   std::size_t width = 0;
   for (const auto& one : found) width = std::max(width, one.device.size());
   const auto column = [](std::string text, std::size_t to) { return text.append(to - std::min(to, text.size()), ' '); };
@@ -74,7 +74,7 @@ void print(const std::vector<device::Found>& found) {
 }
 
 void run(const Options& options) {
-  std::vector<device::Found> found = device::find_devices(options.ports);
+  std::vector<device::DeviceListing> found = device::find_devices(options.ports);
   for (auto& one : found) {
     if (options.probe && one.kind == "stage") device::ask_stage(one);
   }

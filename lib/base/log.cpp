@@ -12,7 +12,7 @@ namespace vam {
 
 namespace {
 std::string program = "vam";  // NOLINT: one per process
-Talk settings;                // NOLINT: likewise
+LogOptions settings;          // NOLINT: likewise
 
 // What a damaged file holds may be quoted in it; the cause and the remedy stand at the ends.
 void put(const std::string& line) {
@@ -27,8 +27,8 @@ void put(const std::string& line) {
 void set_program_name(const std::string& name) { program = name; }
 const std::string& program_name() { return program; }
 
-void set_talk(const Talk& talk) { settings = talk; }
-const Talk& talk() { return settings; }
+void set_talk(const LogOptions& talk) { settings = talk; }
+const LogOptions& talk() { return settings; }
 
 void say(const std::string& line) { put(program + ": " + line); }
 

@@ -13,14 +13,14 @@ void set_program_name(const std::string& name);
 enum class ProgressStyle : int { line, json, none };
 
 /// What is said beside errors.
-struct Talk {
+struct LogOptions {
   bool quiet = false;                            // nothing
   bool verbose = false;                          // notes also where stderr is no terminal; what each task took
   ProgressStyle progress = ProgressStyle::line;  // of base/progress.hpp
 };
 /// Set once by cli::App, before there are threads.
-void set_talk(const Talk& talk);
-[[nodiscard]] const Talk& talk();
+void set_talk(const LogOptions& talk);
+[[nodiscard]] const LogOptions& talk();
 
 /// "<program>: <line>" on stderr, whatever the settings.
 void say(const std::string& line);

@@ -52,7 +52,7 @@ int threads_to_have(int wanted) {
 }
 
 // oneTBB ends the process when it is refused a thread; so it is not to ask for one that it will not get.
-void ask_for_no_more_than_there_are() {
+void limit_tbb_to_available_threads() {
   static std::once_flag read;
   std::call_once(read, [] {
     const int wanted = threads() - 1;
@@ -88,7 +88,7 @@ void take_over(char&) {}
 }  // namespace
 
 void parallel_for(int count, const std::function<void(int)>& work) {
-  ask_for_no_more_than_there_are();
+  limit_tbb_to_available_threads();
   char begun = 0;
   char done = 0;
   hand_over(begun);

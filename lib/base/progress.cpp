@@ -57,19 +57,19 @@ Progress::~Progress() {
 
 double Progress::elapsed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-void Progress::tick(long steps) { look(done_ += steps); }
+void Progress::tick(long steps) { refresh(done_ += steps); }
 
-void Progress::stand(long done, long total, std::vector<Figure> figures) {
+void Progress::set_progress(long done, long total, std::vector<Figure> figures) {
   {
     const std::scoped_lock one(drawing_);
     figures_ = std::move(figures);
   }
   total_ = total;
   done_ = done;
-  look(done);
+  refresh(done);
 }
 
-void Progress::look(long done) {
+void Progress::refresh(long done) {
   const bool json = shown_as(ProgressStyle::json);
   if (!json && !shown_as(ProgressStyle::line)) return;
   const auto now_ms = static_cast<long>(1000 * elapsed_s());

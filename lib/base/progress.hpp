@@ -28,12 +28,12 @@ class Progress {
   /// From any thread.
   void tick(long steps = 1);
   /// From one thread: steps done, of how many as far as is known now.
-  void stand(long done, long total, std::vector<Figure> figures);
+  void set_progress(long done, long total, std::vector<Figure> figures);
 
  private:
   using Clock = std::chrono::steady_clock;
   [[nodiscard]] double elapsed_s() const;
-  void look(long done);
+  void refresh(long done);
   void draw(long done);
   [[nodiscard]] std::string line(long done, int width) const;
   void print_json(long done, std::optional<double> left_s, bool finished) const;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fuzz/fuzz.hpp"
-#include "io/stream/private/slots.hpp"
+#include "io/stream/private/shared_buffers.hpp"
 #include "io/vdb/private/passage.hpp"
 
 namespace {
@@ -21,7 +21,7 @@ struct Taker {
   vam::io::LeafRecord record{};
 };
 
-void receive(vam::io::Slots slots) {
+void receive(vam::io::SharedBuffers slots) {
   try {
     vam::io::Receiver in(slots);
     Taker taker{in};
@@ -40,8 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) abort();
   std::vector<char> memory(2 * vam::io::slot_bytes);
-  std::thread parent(receive, vam::io::Slots{memory.data(), ends[0]});
-  vam::io::Slots slots{memory.data(), ends[1]};
+  std::thread parent(receive, vam::io::SharedBuffers{memory.data(), ends[0]});
+  vam::io::SharedBuffers slots{memory.data(), ends[1]};
   fuzz::attempt_in_child([&] {
     vam::io::InputFile file(source.path);
     vam::io::Sender out(slots);

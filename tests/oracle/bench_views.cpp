@@ -199,7 +199,7 @@ std::vector<std::vector<float>> bench_views(const ViewBench& bench, const std::v
   return views;
 }
 
-void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<float>>& views) {
+void soil(const ViewBench& bench, const CleaningReport& dirt, std::vector<std::vector<float>>& views) {
   const auto peak = static_cast<double>(brightest(views));
   std::mt19937 random(dirt.draw);
   std::uniform_real_distribution<double> unit(0, 1);

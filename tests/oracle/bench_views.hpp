@@ -53,14 +53,14 @@ std::vector<std::vector<float>> bench_views(const ViewBench& bench, const std::v
                                             const std::vector<Bubble>& bubbles, int count);
 
 /// Shares of the brightest pixel, added to every view but for flicker.
-struct Dirt {
+struct CleaningReport {
   double noise = 0;       // deviation
   double background = 0;  // everywhere
   double flicker = 0;     // deviation of each view's light, of the view itself
   int specks = 0;         // bright or dark spots of 1 to 3 pixels that stay where they are
   unsigned draw = 3;      // of specks and noise
 };
-void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<float>>& views);
+void soil(const ViewBench& bench, const CleaningReport& dirt, std::vector<std::vector<float>>& views);
 
 /// So many bubbles of 0.15 to 0.4 mm that rise by 3 to 10 mm a turn, as bright as a print of 2 to 10 mm.
 std::vector<Bubble> bubbles(int count, double reach_mm, unsigned seed);

@@ -23,8 +23,8 @@ constexpr std::ptrdiff_t allowed_few = 3;  // in a small image
 constexpr double margin_s = 0.02;  // either side of an exposure: a vertical blank, and the light's own time
 
 // The image that was on from begin to end; nothing when it changed meanwhile or was black.
-int shown_between(const std::vector<Showing>& flips, double begin_s, double end_s) {
-  const auto later = [](double t_s, const Showing& showing) { return t_s < showing.t_s; };
+int shown_between(const std::vector<DisplayHistory>& flips, double begin_s, double end_s) {
+  const auto later = [](double t_s, const DisplayHistory& showing) { return t_s < showing.t_s; };
   const auto first = std::upper_bound(flips.begin(), flips.end(), begin_s, later);
   const auto last = std::upper_bound(flips.begin(), flips.end(), end_s, later);
   return first == flips.begin() || first != last ? -1 : (first - 1)->frame;
@@ -42,8 +42,8 @@ void refuse_over_exposed(const ScanOptions& options, const Image& image, const s
 
 }  // namespace
 
-std::vector<Showing> read_flips(const std::string& path) {
-  std::vector<Showing> flips;
+std::vector<DisplayHistory> read_flips(const std::string& path) {
+  std::vector<DisplayHistory> flips;
   io::FlipRules rules(io::FlipRules::Order::required);
   int number = 0;
   for (const auto& line : split(io::read_all(path), '\n')) {
@@ -57,7 +57,7 @@ std::vector<Showing> read_flips(const std::string& path) {
         continue;
       }
       const io::LoggedFlip flip = rules.take(event, place);
-      const Showing showing{flip.t_s, flip.frame};
+      const DisplayHistory showing{flip.t_s, flip.frame};
       if (flips.empty() || flips.back().frame != showing.frame) flips.push_back(showing);
     } catch (const Json::exception&) {
       throw Error{Fault::data, place + ": is not an event of a vam-project log"};
@@ -69,7 +69,8 @@ std::vector<Showing> read_flips(const std::string& path) {
 
 void each_frame(const ScanOptions& options, const model::Printer& printer, FrameKind wanted,
                 const std::function<void(const ScanFrame&)>& take) {
-  const std::vector<Showing> flips = options.flips.empty() ? std::vector<Showing>{} : read_flips(options.flips);
+  const std::vector<DisplayHistory> flips =
+      options.flips.empty() ? std::vector<DisplayHistory>{} : read_flips(options.flips);
   const double half_s = 0.5e-6 * printer.camera.exposure_us;
   const double latency_s = 1e-3 * printer.projector.latency_ms;
   // Where angles are not needed, frames without are at none.

@@ -108,12 +108,12 @@ void each_frame(const ScanOptions& options, const model::Printer& printer, Frame
                 const std::function<void(const ScanFrame&)>& take);
 
 /// A pattern frame and when it came on.
-struct Showing {
+struct DisplayHistory {
   double t_s = 0;
   int frame = -1;  // -1: black
 };
 /// The changes of pattern frame in a log of vam-project. Throws Error: no_input, data.
-[[nodiscard]] std::vector<Showing> read_flips(const std::string& path);
+[[nodiscard]] std::vector<DisplayHistory> read_flips(const std::string& path);
 
 /// Frames of something that turns with the stage.
 struct BeadTurn {

@@ -168,7 +168,7 @@ std::vector<double> shown_turns(const Options& options, const std::string& sinog
   }
   std::vector<double> turns(info.height);
   for (const std::string& run : options.shown) {
-    const io::Showing showing = io::read_showing(run, sinogram, options.before_s);
+    const io::DisplayHistory showing = io::read_showing(run, sinogram, options.before_s);
     double intensity = intensity_of(run, run == options.shown.front(), printer);
     if (full_scale && showing.full_scale > 0) intensity *= *full_scale / showing.full_scale;
     const auto of_run = io::turns_shown(showing.images, rows, printer.stage.speed_deg_s);
@@ -184,7 +184,7 @@ void require_all_sinograms(const Options& options) {
   for (const std::string& run : options.shown) {
     io::FlipLog log(run);
     log.read();
-    if (options.before_s) log.end_at(*options.before_s);
+    if (options.before_s) log.truncate_at(*options.before_s);
     for (const io::ShownSinogram& one : log.sinograms()) {
       if (one.sha256.empty() || given.contains("") || given.contains(one.sha256)) continue;
       const std::size_t images = log.shown_of(one.sha256).size();

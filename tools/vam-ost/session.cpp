@@ -46,7 +46,7 @@ void Session::Readings::add(const metrology::Exposure& exposure) {
 
 // Noise that is cut off below 0 leaves a background where nothing is, and none within the print. Without noise there
 // are readings of 0, too, but no background.
-bool Session::Readings::cut_noise(const metrology::Dirt& dirt) const {
+bool Session::Readings::cut_noise(const metrology::CleaningReport& dirt) const {
   constexpr double many = 0.1;
   constexpr double seen = 0.002;  // of the brightest reading: less moves surfaces by less than 0.02 pixels
   return zeros > many * all && dirt.has_background && dirt.background > seen * static_cast<double>(most);

@@ -58,7 +58,7 @@ class Session {
     double all = 0;
     float most = 0;
     void add(const metrology::Exposure& exposure);
-    [[nodiscard]] bool cut_noise(const metrology::Dirt& dirt) const;
+    [[nodiscard]] bool cut_noise(const metrology::CleaningReport& dirt) const;
   };
   void say_dirt() const;
   void say_axis() const;
@@ -76,7 +76,7 @@ class Session {
   metrology::CameraFields fields_;
   metrology::AxisEstimate axis_;
   metrology::RunOut run_out_;
-  metrology::Dirt dirt_;
+  metrology::CleaningReport dirt_;
   Readings readings_;
   std::unique_ptr<metrology::OstReconstructor> rig_;
   int width_ = 0;

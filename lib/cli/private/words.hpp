@@ -36,7 +36,7 @@ void fill_left_out(const Declaration& tool, std::vector<std::string>& words);
 /// The values of options_of_all().
 struct ForAll {
   std::optional<std::string> memory_gib;  // as given
-  Talk talk;
+  LogOptions talk;
 };
 inline constexpr const char* memory_flag = "--memory";
 

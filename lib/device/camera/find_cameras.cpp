@@ -17,7 +17,7 @@ namespace {
 
 std::string text(const char* value) { return value != nullptr ? value : ""; }
 
-void add_genicam(std::vector<Found>& found) {
+void add_genicam(std::vector<DeviceListing>& found) {
   const KeptSigpipe kept;
   arv_update_device_list();
   for (unsigned i = 0; i < arv_get_n_devices(); ++i) {
@@ -31,7 +31,7 @@ void add_genicam(std::vector<Found>& found) {
 }
 
 // A camera has several nodes; those that give no images are left out.
-void add_v4l2(const std::string& path, std::vector<Found>& found) {
+void add_v4l2(const std::string& path, std::vector<DeviceListing>& found) {
   const std::string obstacle = node_obstacle(path);
   if (!obstacle.empty()) return found.push_back({"camera", "v4l2:" + path, "", obstacle});
   const auto driver = kernel_v4l2();
@@ -44,8 +44,8 @@ void add_v4l2(const std::string& path, std::vector<Found>& found) {
 
 }  // namespace
 
-std::vector<Found> find_cameras() {
-  std::vector<Found> found;
+std::vector<DeviceListing> find_cameras() {
+  std::vector<DeviceListing> found;
   add_genicam(found);
   std::vector<std::string> nodes;
   std::error_code none;

@@ -29,15 +29,15 @@ std::string in_words(const Json& identity) {
 
 }  // namespace
 
-std::vector<Found> find_devices(const std::vector<std::string>& ports) {
-  std::vector<Found> all = find_serial_stages(ports);
+std::vector<DeviceListing> find_devices(const std::vector<std::string>& ports) {
+  std::vector<DeviceListing> all = find_serial_stages(ports);
   for (auto& some : {find_usb_devices(), find_cameras(), find_displays()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
 }
 
-void ask_stage(Found& stage) {
+void ask_stage(DeviceListing& stage) {
   const std::string path = stage.device.substr(stage.device.find(':') + 1);
   if (!path.starts_with('/') || !stage.obstacle.empty()) return;
   for (const auto& known : model::stage_schemes) {

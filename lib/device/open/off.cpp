@@ -158,7 +158,7 @@ bool ends_with_its_tool(const Switched& one) { return one.device.starts_with("si
 
 std::vector<Switched> find_lit() {
   std::vector<Switched> lit;
-  for (const Found& found : find_usb_devices()) {
+  for (const DeviceListing& found : find_usb_devices()) {
     if (found.kind == "light") lit.push_back({found.kind, found.device});
   }
   for (const char* kind : {"drm-", "sdl-"}) {

@@ -32,12 +32,12 @@ std::string word(const Json& entry, const char* key) {
   return found != entry.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-Found serial_stage(const Json& entry) {
+DeviceListing serial_stage(const Json& entry) {
   const std::string path = word(entry, "path");
   const std::string ids = word(entry, "usb_id");
   const auto* maker =
       std::find_if(vendors.begin(), vendors.end(), [&](const Vendor& vendor) { return ids.starts_with(vendor.id); });
-  Found found{"stage", "gcs:" + path, word(entry, "description"), node_obstacle(path)};
+  DeviceListing found{"stage", "gcs:" + path, word(entry, "description"), node_obstacle(path)};
   if (maker != vendors.end()) found.device = maker->scheme + (":" + path);
   for (const char* key : {"manufacturer", "serial"}) {
     if (const std::string more = word(entry, key); !more.empty())
@@ -67,7 +67,7 @@ std::string usb_obstacle(int status, int vendor) {
          "\", TAG+=\"uaccess\" to /etc/udev/rules.d/70-vam.rules and plug it in again";
 }
 
-void look_at(libusb_device* device, std::vector<Found>& found) {
+void look_at(libusb_device* device, std::vector<DeviceListing>& found) {
   libusb_device_descriptor about{};
   if (libusb_get_device_descriptor(device, &about) != 0) return;
   const UsbKind* kind = usb_kind(about.idVendor, about.idProduct);
@@ -100,15 +100,15 @@ std::string named_obstacle(const std::string& path) {
 
 }  // namespace
 
-std::vector<Found> find_serial_stages(const std::vector<std::string>& ports) {
-  std::vector<Found> found;
+std::vector<DeviceListing> find_serial_stages(const std::vector<std::string>& ports) {
+  std::vector<DeviceListing> found;
   for (const Json& entry : list_serial_ports()) found.push_back(serial_stage(entry));
   for (const std::string& path : ports) found.push_back({"stage", "gcs:" + path, "", named_obstacle(path)});
   return found;
 }
 
-std::vector<Found> find_usb_devices() {
-  std::vector<Found> found;
+std::vector<DeviceListing> find_usb_devices() {
+  std::vector<DeviceListing> found;
   libusb_context* context = nullptr;
   if (libusb_init(&context) != 0) return found;
   libusb_device** list = nullptr;

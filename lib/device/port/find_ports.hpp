@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "device/os/found.hpp"
+#include "device/os/device_listing.hpp"
 
 namespace vam::device {
 
 /// The serial ports of this machine, each as the stage that its USB identity speaks for (gcs: where none does), and
 /// those of `ports` besides.
-[[nodiscard]] std::vector<Found> find_serial_stages(const std::vector<std::string>& ports);
+[[nodiscard]] std::vector<DeviceListing> find_serial_stages(const std::vector<std::string>& ports);
 
 /// Tic stages, DLPC light engines, and USB3 Vision cameras that this user may not open and a camera library therefore
 /// does not see.
-[[nodiscard]] std::vector<Found> find_usb_devices();
+[[nodiscard]] std::vector<DeviceListing> find_usb_devices();
 
 }  // namespace vam::device

@@ -31,7 +31,7 @@ std::string card_obstacle(int card) {
   return "another program is master of the graphics card, as a desktop is; log out of it, or use sdl:";
 }
 
-void add_drm(std::vector<Found>& found) {
+void add_drm(std::vector<DeviceListing>& found) {
   for (const std::string& path : drm_cards()) {
     const int card = open(path.c_str(), O_RDWR | O_CLOEXEC);
     if (card < 0) {
@@ -48,7 +48,7 @@ void add_drm(std::vector<Found>& found) {
 }
 
 // Without a desktop SDL would count an invisible screen.
-void add_sdl(std::vector<Found>& found) {
+void add_sdl(std::vector<DeviceListing>& found) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   sdl::api().SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   if (sdl::api().SDL_Init(SDL_INIT_VIDEO) != 0) {
@@ -70,8 +70,8 @@ void add_sdl(std::vector<Found>& found) {
 
 }  // namespace
 
-std::vector<Found> find_displays() {
-  std::vector<Found> found;
+std::vector<DeviceListing> find_displays() {
+  std::vector<DeviceListing> found;
   add_drm(found);
   try {
     add_sdl(found);

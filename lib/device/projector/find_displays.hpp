@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "device/os/found.hpp"
+#include "device/os/device_listing.hpp"
 
 namespace vam::device {
 
 /// The connectors of the graphics cards that have a screen, and the screens of the desktop, if there is one. Nothing is
 /// shown on them.
-[[nodiscard]] std::vector<Found> find_displays();
+[[nodiscard]] std::vector<DeviceListing> find_displays();
 
 }  // namespace vam::device

@@ -17,8 +17,8 @@
 #include "io/array/private/nrrd_head.hpp"
 #include "io/hdf5/hdf5_array.hpp"
 #include "io/image/tiff_pages.hpp"
-#include "io/stream/apart.hpp"
 #include "io/stream/passage.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
@@ -80,7 +80,7 @@ void pass(const Pass& member, Views& views) {
 
 void send(arrays::Parser parser, Sender& out, const StatedViews& views = {}) {
   for (const std::size_t size : parser.size()) out.put(std::uint64_t{size});
-  pass(Put{out}, views);
+  pass(Writer{out}, views);
   out.put(std::uint64_t{views.angles_deg.size()});
   for (const double angle : views.angles_deg) out.put(angle);
   out.put(std::uint64_t{views.voxel_mm.size()});
@@ -172,7 +172,7 @@ struct ArrayReader::State {
     if (product(size.rows, size.columns) > arrays::most_image) {
       throw Error{Fault::data, file.name() + ": is damaged: its reader failed"};
     }
-    pass(Get{in}, views);
+    pass(Reader{in}, views);
     for (auto left = in.get_count(most_angles); left > 0; --left) views.angles_deg.push_back(in.get<double>());
     for (auto left = in.get_count(3); left > 0; --left) views.voxel_mm.push_back(in.get<double>());
   }
@@ -180,7 +180,7 @@ struct ArrayReader::State {
   InputFile file;
   Format format = Format::npy;
   std::string bytes;
-  std::optional<Apart> apart;
+  std::optional<SandboxedReader> apart;
   std::uint64_t images_memory = 0;  // for those that are held at a time
   ArraySize size;
   StatedViews views;

@@ -46,23 +46,23 @@ void pass_facts(const Pass& pass, ImageInfo& about) {
 template <class Facts>
 void send_all(std::vector<Facts> list, Sender& out) {
   out.put(std::uint64_t{list.size()});
-  for (Facts& facts : list) pass_facts(Put{out}, facts);
+  for (Facts& facts : list) pass_facts(Writer{out}, facts);
 }
 
 template <class Facts>
 std::vector<Facts> receive_all(Receiver& in) {
   std::vector<Facts> list;
-  for (auto left = in.get_count(most_parts); left > 0; --left) pass_facts(Get{in}, list.emplace_back());
+  for (auto left = in.get_count(most_parts); left > 0; --left) pass_facts(Reader{in}, list.emplace_back());
   return list;
 }
 
-enum class Follows : std::uint8_t { nothing, stack };
+enum class MessageKind : std::uint8_t { nothing, stack };
 
 void send_stack(StackParser& parser, Sender& out) {
   parser.read_head();
   StackInfo info = parser.info();
-  out.put(Follows::stack);
-  pass_facts(Put{out}, info);
+  out.put(MessageKind::stack);
+  pass_facts(Writer{out}, info);
   send_all(info.poses, out);
   send_all(parser.about(), out);
   out.put(std::uint8_t{parser.seals().sealed()});
@@ -79,7 +79,7 @@ void send_stacks(StackParser& parser, Sender& out) {
   do {
     send_stack(parser, out);
   } while (parser.next_stack());
-  out.put(Follows::nothing);
+  out.put(MessageKind::nothing);
 }
 
 // What a child sends is not believed.
@@ -105,19 +105,19 @@ ForeignStacks::ForeignStacks(StackParser& parser)
 }
 
 bool ForeignStacks::next_stack() {
-  Follows follows = Follows::nothing;
+  MessageKind follows = MessageKind::nothing;
   apart_.take([&](Receiver& in) {
-    follows = in.get<Follows>();
-    if (follows != Follows::stack) return;
+    follows = in.get<MessageKind>();
+    if (follows != MessageKind::stack) return;
     info_ = {};
-    pass_facts(Get{in}, info_);
+    pass_facts(Reader{in}, info_);
     info_.poses = receive_all<model::Pose>(in);
     about_ = receive_all<ImageInfo>(in);
     sealed_ = in.get<std::uint8_t>() != 0;
     seal_ = chained_seal(in.get_text());
   });
   done_ = 0;
-  if (follows != Follows::stack) {
+  if (follows != MessageKind::stack) {
     apart_.finish();
     return false;
   }

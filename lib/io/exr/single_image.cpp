@@ -7,8 +7,8 @@
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "io/exr/private/format.hpp"
-#include "io/stream/apart.hpp"
 #include "io/stream/finite.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -10,8 +10,8 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "io/image/private/decoders.hpp"
-#include "io/stream/apart.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -93,7 +93,7 @@ struct ImageBatch::State {
         }) {}
   int count;
   int taken = 0;
-  Apart apart;
+  SandboxedReader apart;
 };
 
 // The child has the bytes, too, so that they end here.

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t max_points = std::uint64_t{1} << 26;
 constexpr std::uint64_t point_bytes = 24;
 constexpr std::uint64_t triangle_bytes = 68;                    // as a face of a soup and as a triangle
-constexpr std::uint64_t room_bytes = std::uint64_t{160} << 20;  // of what the child may take: apart.hpp
+constexpr std::uint64_t room_bytes = std::uint64_t{160} << 20;  // of what the child may take: sandboxed_reader.hpp
 constexpr std::uint64_t room_ratio = 48;
 constexpr std::uint64_t plenty = std::uint64_t{1} << 40;  // sums end here, before they overflow
 constexpr int max_depth = 64;

@@ -12,8 +12,8 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
-#include "io/stream/apart.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 

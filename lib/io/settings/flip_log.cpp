@@ -138,12 +138,12 @@ std::vector<ShownImage> FlipLog::images(const Counts& counts) const {
     if (end_s_) seconds = std::min(seconds, *end_s_ - flips_[i].t_s);
     if (counts(flips_[i])) shown.push_back({flips_[i].angle_deg, seconds});
   }
-  if (end_s_ && !flips_.empty() && !flips_.back().last && counts(flips_.back())) go_on(before_s, shown);
+  if (end_s_ && !flips_.empty() && !flips_.back().last && counts(flips_.back())) extrapolate(before_s, shown);
   return shown;
 }
 
 // As a print that shows its last image does: from angle to angle at the pace that it had.
-void FlipLog::go_on(double image_s, std::vector<ShownImage>& shown) const {
+void FlipLog::extrapolate(double image_s, std::vector<ShownImage>& shown) const {
   if (flips_.size() < 2 || flips_.back().frame < 0 || flips_[flips_.size() - 2].frame < 0 || !(image_s > 0)) return;
   const double step_deg = flips_.back().angle_deg - flips_[flips_.size() - 2].angle_deg;
   double angle_deg = flips_.back().angle_deg;
@@ -173,7 +173,7 @@ std::string FlipLog::seals_text() const {
 
 std::string FlipLog::sha256() const { return Sha256(hash_).digest(); }
 
-void FlipLog::end_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }
+void FlipLog::truncate_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }
 
 std::vector<ShownImage> FlipLog::shown() const {
   return images([](const RunFlip&) { return true; });
@@ -194,14 +194,14 @@ std::vector<ShownImage> read_shown(const std::string& run) {
   return log.shown();
 }
 
-std::optional<StatedFlips> stated_flips(const std::string& run) {
+std::optional<FlipSummary> stated_flips(const std::string& run) {
   const std::filesystem::path log(log_of(run));
   const std::string file = (log.parent_path() / "summary.json").string();
   if (log.filename() != "flips.jsonl" || !has_regular_file(file)) return std::nullopt;
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
   const Json summary = parse_distinct(read_all(file, Content::text, most_bytes), file);
   if (!is_of(summary, "vam-print")) return std::nullopt;  // being written
-  StatedFlips stated;
+  FlipSummary stated;
   const Json reached = summary.value("reached", Json());
   if (reached.is_object() && reached.value("lit_flips", Json()).is_number_integer()) stated.lit = reached["lit_flips"];
   if (const Json hash = summary.value("flips_sha256", Json()); hash.is_string()) stated.sha256 = hash;
@@ -219,7 +219,7 @@ std::optional<std::string> logged_outcome(const std::string& run) {
   return outcome;
 }
 
-void require_stated_flips(const std::string& run, const std::optional<StatedFlips>& stated, long lit,
+void require_stated_flips(const std::string& run, const std::optional<FlipSummary>& stated, long lit,
                           const std::string& sha256) {
   if (!stated) return;
   constexpr const char* remedy = "; it was cut or changed; restore it";
@@ -243,15 +243,15 @@ void require_stated_flips(const std::string& run) {
   require_stated_flips(run, stated, log.lit(), log.sha256());
 }
 
-Showing read_showing(const std::string& run, const std::string& sinogram, std::optional<double> before_s) {
+DisplayHistory read_showing(const std::string& run, const std::string& sinogram, std::optional<double> before_s) {
   require_sinogram_of(run, sinogram);
   const auto stated_log = stated_flips(run);
   FlipLog log(run);
   log.read();
   require_stated_flips(run, stated_log, log.lit(), log.sha256());
-  if (before_s) log.end_at(*before_s);
+  if (before_s) log.truncate_at(*before_s);
   const std::string given = sinogram == "-" ? "" : sha256_of(sinogram);
-  Showing showing{sinogram == "-" ? log.shown() : log.shown_of(given)};
+  DisplayHistory showing{sinogram == "-" ? log.shown() : log.shown_of(given)};
   const std::vector<ShownSinogram>& all = log.sinograms();
   const bool stated = !given.empty() && std::any_of(all.begin(), all.end(),
                                                     [&](const ShownSinogram& one) { return one.sha256 == given; });

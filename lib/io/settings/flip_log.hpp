@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/sha256.hpp"
-#include "io/settings/flip_proof.hpp"
 #include "io/settings/flip_rules.hpp"
+#include "io/settings/log_cross_check.hpp"
 #include "io/stream/log_lines.hpp"
 
 namespace vam::io {
@@ -34,7 +34,7 @@ class FlipLog {
 
   /// Takes in the whole lines that were added since the last call. Throws Fault::data for another kind of file, for
   /// lines that no print leaves (FlipRules), and, of a run folder without a summary, to whose hash its lines are held,
-  /// where other logs prove that lines are missing or were changed (FlipProof).
+  /// where other logs prove that lines are missing or were changed (LogCrossCheck).
   void read();
 
   /// The lit images so far, in order.
@@ -43,7 +43,7 @@ class FlipLog {
   [[nodiscard]] std::vector<ShownImage> shown_of(const std::string& sha256) const;
   /// From now on all that is shown is what was shown before this time; where the log of a print that goes on has not
   /// reached it, the light goes on as it was last.
-  void end_at(double t_monotonic_s);
+  void truncate_at(double t_monotonic_s);
   /// The sinograms that were shown, one after the other; the first of a print, and those that took its place.
   [[nodiscard]] const std::vector<ShownSinogram>& sinograms() const { return sinograms_; }
   /// The turn at which the print ends, as the last sinogram that took the place of another states it; that may be
@@ -70,12 +70,12 @@ class FlipLog {
   template <class Counts>
   [[nodiscard]] std::vector<ShownImage> images(const Counts& counts) const;
 
-  void go_on(double image_s, std::vector<ShownImage>& shown) const;
+  void extrapolate(double image_s, std::vector<ShownImage>& shown) const;
 
   std::string file_;
   LogLines lines_;
   FlipRules rules_;
-  std::optional<FlipProof> proof_;
+  std::optional<LogCrossCheck> proof_;
   Sha256 hash_;
   std::uint64_t bytes_ = 0;
   int line_ = 0;
@@ -94,32 +94,32 @@ class FlipLog {
 [[nodiscard]] std::vector<ShownImage> read_shown(const std::string& run);
 
 /// What the summary.json of a run states of its log of flips, which vam-print writes when it ends.
-struct StatedFlips {
+struct FlipSummary {
   std::optional<long> lit;  // flips with light
   std::string sha256;       // of its whole lines; empty: not stated
 };
 /// None where no summary is there yet. Read it before the log, which it closes.
-[[nodiscard]] std::optional<StatedFlips> stated_flips(const std::string& run);
+[[nodiscard]] std::optional<FlipSummary> stated_flips(const std::string& run);
 /// How a print ended, by the last of the events that vam-print writes before the summary; none while it goes on, or of
 /// one that was killed.
 [[nodiscard]] std::optional<std::string> logged_outcome(const std::string& run);
 /// Throws Fault::data where a log differs from what was stated: a number of lit flips with both numbers, other lines by
 /// the beginnings of both hashes. A log that is gone has neither.
-void require_stated_flips(const std::string& run, const std::optional<StatedFlips>& stated, long lit,
+void require_stated_flips(const std::string& run, const std::optional<FlipSummary>& stated, long lit,
                           const std::string& sha256);
 /// Throws as stated_flips(), FlipLog and require_stated_flips(); of a run folder also where flips.jsonl is gone, and
 /// its other logs prove that there was light.
 void require_stated_flips(const std::string& run);
 
 /// What a run showed of a sinogram.
-struct Showing {
+struct DisplayHistory {
   std::vector<ShownImage> images;
   double full_scale = 0;  // 0: not stated
 };
 /// Throws as read_shown(), require_sinogram_of() and require_stated_flips(), and Fault::data for a log in which its
 /// full scale changes. before_s: as FlipLog::end_at().
-[[nodiscard]] Showing read_showing(const std::string& run, const std::string& sinogram,
-                                   std::optional<double> before_s = {});
+[[nodiscard]] DisplayHistory read_showing(const std::string& run, const std::string& sinogram,
+                                          std::optional<double> before_s = {});
 
 /// Does a run state the hash of its sinogram?
 [[nodiscard]] bool states_sinogram(const std::string& run);

@@ -9,14 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include "io/stream/apart.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 
 namespace vam::io {
 
 inline constexpr std::uint64_t most_lines = 1 << 20;  // of a list
 
 /// To the parent. Throws as Sender does.
-struct Put {
+struct Writer {
   Sender& out;
   void operator()(const std::string& text) const { out.put(text); }
   void operator()(const std::vector<std::string>& lines) const {
@@ -37,7 +37,7 @@ struct Put {
 };
 
 /// From the child. Throws Fault::data for more than most_lines and for a child that ended, as Receiver does.
-struct Get {
+struct Reader {
   Receiver& in;
   void operator()(std::string& text) const { text = in.get_text(); }
   void operator()(std::vector<std::string>& lines) const {

@@ -23,7 +23,7 @@ constexpr double least_mm = 0.1;
 constexpr double most_mm = 2000;
 
 // What the values of a grid may be.
-struct Promise {
+struct ValueRange {
   float low;
   float high;
   std::string words;
@@ -31,17 +31,17 @@ struct Promise {
 
 bool is_shape(const std::string& name) { return name == "target" || name == "insert"; }
 
-std::optional<Promise> promise_of(const std::string& name, TargetKind target) {
+std::optional<ValueRange> promise_of(const std::string& name, TargetKind target) {
   constexpr float most = 1e9F;
   if (name == "target" && target == TargetKind::grey) {
-    return Promise{-slack, most, "a grey target is a dose, 0 and more; make it again"};
+    return ValueRange{-slack, most, "a grey target is a dose, 0 and more; make it again"};
   }
   if (is_shape(name)) {
-    return Promise{-slack, 1 + slack,
-                   "this is coverage, 0 to 1; make it with vam-slice, or scale it (vam-convert --full-scale)"};
+    return ValueRange{-slack, 1 + slack,
+                      "this is coverage, 0 to 1; make it with vam-slice, or scale it (vam-convert --full-scale)"};
   }
   if (name == "weight" || name == "tolerance" || name == "dose") {
-    return Promise{0, most, "a " + name + " is 0 and more, below 1e9; make it again"};
+    return ValueRange{0, most, "a " + name + " is 0 and more, below 1e9; make it again"};
   }
   return std::nullopt;
 }
@@ -72,14 +72,14 @@ void require_facts(const std::string& path, const VolumeFacts& facts) {
 }
 
 [[noreturn]] void refuse_voxel(const std::string& path, const std::string& name, const openvdb::Coord& at, float value,
-                               const Promise& promise) {
+                               const ValueRange& promise) {
   refuse(path, name,
          "has " + format_number(value) + " in voxel (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
              std::to_string(at.z()) + "); " + promise.words);
 }
 
 // The first value of a leaf outside what is promised, as its place; 512 when there is none.
-int first_outside(const float* values, const Promise& promise) {
+int first_outside(const float* values, const ValueRange& promise) {
   constexpr int count = 512;
   float low = values[0];
   float high = values[0];
@@ -94,7 +94,7 @@ int first_outside(const float* values, const Promise& promise) {
 
 openvdb::Coord in_block(int place) { return {place >> 6, place >> 3 & 7, place & 7}; }
 
-void require_values(const std::string& path, const SparseVolume& volume, const Promise& promise) {
+void require_values(const std::string& path, const SparseVolume& volume, const ValueRange& promise) {
   const Tree& tree = volume.state().sparse->constTree();
   const openvdb::Coord& first = volume.state().first;
   auto tile = tree.cbeginValueAll();

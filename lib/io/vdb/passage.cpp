@@ -29,12 +29,12 @@ void pass_head(const Pass& pass, GridHead& head) {
 
 void send_head(GridHead head, Sender& out) {
   out.put(Record::grid);
-  pass_head(Put{out}, head);
+  pass_head(Writer{out}, head);
 }
 
 GridHead receive_head(Receiver& in) {
   GridHead head;
-  pass_head(Get{in}, head);
+  pass_head(Reader{in}, head);
   return head;
 }
 

@@ -110,7 +110,7 @@ std::vector<SparseVolume> read_volumes(const std::string& path) {
 namespace {
 
 // Looks at the heads and lets the voxels go.
-struct Heads {
+struct HeaderCollector {
   Receiver& in;
   std::vector<VolumeFacts> facts;
   LeafRecord passed{};
@@ -137,7 +137,7 @@ std::vector<VolumeFacts> check_volumes(const std::string& path, bool fast) {
         send_archives(file, {std::nullopt, fast}, out);
       },
       [&](Receiver& in) {
-        Heads heads{in, {}, {}};
+        HeaderCollector heads{in, {}, {}};
         receive_records(in, heads);
         facts = std::move(heads.facts);
       });

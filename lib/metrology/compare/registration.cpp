@@ -37,12 +37,12 @@ std::vector<std::size_t> parts_of(const std::vector<solid::SurfaceSample>& point
 
 /// By what share of its way a turn about the axis, or a shift along it, moves the surface along its normals: 0 where it
 /// slides on itself. The facets of a round surface leave some 0.001.
-struct Grip {
+struct Observability {
   double turn = 0;
   double shift = 0;
 };
 
-Grip grip_of(const std::vector<solid::SurfaceSample>& points, const Vector3& middle) {
+Observability grip_of(const std::vector<solid::SurfaceSample>& points, const Vector3& middle) {
   double moved = 0;
   double way = 0;
   double lifted = 0;
@@ -160,7 +160,7 @@ Registration registration(const model::TriangleSoup& print, const solid::Surface
   result.outside_mm = motion[outside];
   result.rms_mm = found.rms_mm;
   constexpr double least_grip = 0.01;
-  const Grip grip = grip_of(points, middle);
+  const Observability grip = grip_of(points, middle);
   if (!found.converged) {
     result.failure = "the print was not brought onto the design in " + std::to_string(found.iterations) + " iterations";
   } else if (grip.turn < least_grip) {

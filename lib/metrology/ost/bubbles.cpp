@@ -129,7 +129,7 @@ void add(const std::vector<RayMask>& more, std::vector<RayMask>& masks) {
 std::vector<RayMask> suspect_rays(const std::vector<RayMask>& marked, const RayMask& specks, int width, int heights) {
   std::vector<RayMask> suspect = surroundings(marked, width, heights);
   if (share_of(specks) > 0) {
-    spread_behind(specks, width, suspect);
+    propagate_mask(specks, width, suspect);
     add(std::vector<RayMask>(marked.size(), specks), suspect);
   }
   const std::vector<RayMask> far = mirrored(suspect, width);

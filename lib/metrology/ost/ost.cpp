@@ -142,7 +142,7 @@ ClimbingRays OstReconstructor::State::rays(int angles) const {
 
 // Specks and bubbles; `part` of the volume is made from these heights, and their shares count by it.
 void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part,
-                                    Dirt& found) const {
+                                    CleaningReport& found) const {
   const RayMask specks = speck_rays(sinograms);
   replace_specks(specks, sinograms);
   found.speck_percent += 100 * part * share_of(specks);
@@ -178,7 +178,7 @@ void OstReconstructor::State::refine_slices(std::span<const Image> sinograms, in
   }
 }
 
-model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, Dirt* found) const {
+model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, CleaningReport* found) const {
   const State& s = *state_;
   std::vector<double> angles_deg;
   for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
@@ -189,7 +189,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   const RowOfHeight map(s.eye);
   const tomo::Filter filter(s.detector.columns, {.window = tomo::window_from_name(s.options.window),
                                                  .alpha_per_px = s.absorption_per_mm * s.grid.voxel_mm});
-  Dirt dirt;
+  CleaningReport dirt;
   Flicker light;
   if (s.options.clean) {
     const Image mean = mean_view(views);

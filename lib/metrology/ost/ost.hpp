@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "metrology/ost/axis.hpp"
-#include "metrology/ost/dirt.hpp"
+#include "metrology/ost/cleaning_report.hpp"
 #include "metrology/ost/run_out.hpp"
 #include "metrology/ost/surface_uncertainty.hpp"
 #include "metrology/ost/views.hpp"
@@ -53,7 +53,7 @@ class OstReconstructor {
   /// mm. Frames missing, repeated or uneven are weighted; three turns or more, frames in the order of time, are
   /// combined by their median (Turns). Throws Fault::data when the turn is incomplete. An even background, flicker,
   /// specks and bubbles are taken out; `found` says what.
-  [[nodiscard]] model::Volume reconstruct(std::span<const CameraView> views, Dirt* found = nullptr) const;
+  [[nodiscard]] model::Volume reconstruct(std::span<const CameraView> views, CleaningReport* found = nullptr) const;
 
   /// Standard deviation of each voxel of that volume by the noise of the views, their angles counted: the RMS of two
   /// drawn reconstructions of nothing but such noise, over 9 x 9 x 9 voxels of the circle that is seen. Without what

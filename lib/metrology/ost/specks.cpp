@@ -45,15 +45,15 @@ float middle_of(std::array<float, parts> values) {
 
 /// What stays at a pixel over the turn: medians of the parts', so that what passes in up to three of them does not
 /// count.
-struct Steady {
+struct StaticComponent {
   Image mean;        // as symmetric about the axis as the means are
   Image difference;  // from the other ends of the lines
 };
 
-Steady steady(const PartMeans& means) {
+StaticComponent steady(const PartMeans& means) {
   const int width = means.front().width;
   const int heights = means.front().height;
-  Steady out{Image(width, heights), Image(width, heights)};
+  StaticComponent out{Image(width, heights), Image(width, heights)};
   parallel_for(heights, [&](int k) {
     for (int t = 0; t < width; ++t) {
       std::array<float, parts> here{};
@@ -93,7 +93,7 @@ Image departures(const Image& difference) {
 
 // Does a column differ from the other end of its lines at a third of the angles, always with the same sign? What passes
 // does so for less of a turn.
-bool stays(const Image& s, int t, float least) {
+bool is_static(const Image& s, int t, float least) {
   int above = 0;
   int below = 0;
   for (int a = 0; a < s.height; ++a) {
@@ -180,7 +180,7 @@ void fill(const RayMask& specks, std::vector<Image>& sinograms) {
 }  // namespace
 
 RayMask speck_rays(const std::vector<Image>& sinograms) {
-  const Steady views = steady(part_means(sinograms));
+  const StaticComponent views = steady(part_means(sinograms));
   const int width = views.mean.width;
   const double most = *std::max_element(views.mean.values.begin(), views.mean.values.end());
   RayMask marked(views.mean.size());
@@ -195,7 +195,7 @@ RayMask speck_rays(const std::vector<Image>& sinograms) {
   };
   for (int k = 0; k < departing.height; ++k) {
     for (int t = 0; t < width; ++t) {
-      if (departing(t, k) <= least || !stays(sinograms[k], t, 0.5F * least) || !departs_here(t, k)) continue;
+      if (departing(t, k) <= least || !is_static(sinograms[k], t, 0.5F * least) || !departs_here(t, k)) continue;
       marked[departing.index(t, k)] = 1;
     }
   }
@@ -216,7 +216,7 @@ void replace_specks(const RayMask& specks, std::vector<Image>& sinograms) {
   fill(specks, sinograms);
 }
 
-void spread_behind(const RayMask& specks, int width, std::vector<RayMask>& marked) {
+void propagate_mask(const RayMask& specks, int width, std::vector<RayMask>& marked) {
   const int heights = count_of(specks) / width;
   const RayMask hidden = ends_behind(specks, width, std::bit_or<>());
   struct Ray {

@@ -56,7 +56,7 @@ class Apg final : public Method {
       const float now = iterate.g[s].values[i];
       return now + beta[s][i % lanes] * (now - before_.g[s].values[i]);
     };
-    bounds_.hold(update_, peak, ahead);
+    bounds_.fix_active_bounds(update_, peak, ahead);
     light.precondition(update_);
     for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {

@@ -49,7 +49,7 @@ class Cal final : public Method {
     });
     light.forward(before_.dose, update_);
     const float peak = largest_light(options_, light);
-    bounds_.hold(update_, peak, [&](std::size_t s, std::size_t i) { return iterate.g[s].values[i]; });
+    bounds_.fix_active_bounds(update_, peak, [&](std::size_t s, std::size_t i) { return iterate.g[s].values[i]; });
     light.precondition(update_);
     for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {

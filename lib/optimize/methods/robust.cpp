@@ -83,7 +83,7 @@ class Robust final : public Method {
     if (!surface_) surface_.emplace(problem);
     std::vector<Slab> ahead = look_ahead(iterate, beta);
     std::vector<Slab> update = gradient(problem, light, iterate, beta, ahead);
-    bounds_.hold(update, peak, [&](std::size_t s, std::size_t i) { return ahead[s].values[i]; });
+    bounds_.fix_active_bounds(update, peak, [&](std::size_t s, std::size_t i) { return ahead[s].values[i]; });
     light.precondition(update);
     std::swap(iterate.g, before_.g);
     for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {

@@ -24,8 +24,8 @@ void show(const RunState& run, const Pass& pass, int iteration, const model::Dos
     all += one.jobs();
     if (one.first < pass.first) before += one.jobs();
   }
-  progress.stand(before * most + static_cast<long>(pass.jobs()) * iteration, all * most,
-                 {{"iteration", static_cast<double>(iteration)}, {"VER", figures.ver}, {"PW", figures.pw}});
+  progress.set_progress(before * most + static_cast<long>(pass.jobs()) * iteration, all * most,
+                        {{"iteration", static_cast<double>(iteration)}, {"VER", figures.ver}, {"PW", figures.pw}});
 }
 
 /// The pass has its share of the time that is left.

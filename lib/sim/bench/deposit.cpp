@@ -6,7 +6,7 @@
 
 #include "base/index.hpp"
 #include "sim/bench/private/beams.hpp"
-#include "sim/bench/private/passage.hpp"
+#include "sim/bench/private/ray_segment.hpp"
 
 namespace vam::sim {
 
@@ -70,7 +70,7 @@ Deposit::Deposit(const model::Printer& printer, const model::Grid& grid, double 
 void Deposit::leave(const ClimbingRay& ray, double phase, double dose, std::vector<float>& absorbed) const {
   const int low[3] = {0, 0, 0};
   const int high[3] = {grid_.nx, grid_.ny, grid_.nz};
-  const Passage way = passage(ray, grid_, low, high);
+  const RaySegment way = passage(ray, grid_, low, high);
   const double step_mm = apart * grid_.voxel_mm;
   const double first_mm = way.from_mm + phase * step_mm;
   const int steps = way.to_mm > first_mm ? ceil_int((way.to_mm - first_mm) / step_mm) : 0;

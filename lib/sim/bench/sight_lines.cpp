@@ -7,7 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/index.hpp"
-#include "sim/bench/private/passage.hpp"
+#include "sim/bench/private/ray_segment.hpp"
 
 namespace vam::sim {
 
@@ -30,7 +30,7 @@ float between(const float* values, std::size_t row, std::size_t slice, float x, 
 }
 
 // The sum of values times voxels along a passage.
-double sum_along(const model::Volume& volume, const Passage& way) {
+double sum_along(const model::Volume& volume, const RaySegment& way) {
   const model::Grid& g = volume.grid;
   const double length = (way.to_mm - way.from_mm) / g.voxel_mm;
   if (!(length > 0)) return 0;
@@ -82,7 +82,7 @@ Image SightLines::view(const Photoresin& resin, double part_rad) const {
   const double sine = std::sin(part_rad + azimuth_rad_);
   for (std::size_t p = 0; p < rays_.size(); ++p) {
     if (!rays_[p].enters) continue;
-    const Passage way = passage(turned(rays_[p], cosine, sine), scatter.grid, low, high);
+    const RaySegment way = passage(turned(rays_[p], cosine, sine), scatter.grid, low, high);
     image.values[p] = static_cast<float>(rays_[p].transmittance * sum_along(scatter, way));
   }
   return image;

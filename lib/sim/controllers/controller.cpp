@@ -21,7 +21,7 @@ void SimController::receive(std::string_view bytes, double now_s) {
   advance(now_s);
   for (const char c : bytes) {
     if (silent()) return;
-    hear(c);
+    on_byte(c);
   }
 }
 
@@ -62,7 +62,7 @@ void SimController::note(const std::string& event, const Json& facts) {
 
 double SimController::jitter() { return settings_.jitter_s * std::uniform_real_distribution<double>(0, 1)(random_); }
 
-std::string SimController::arrive(const std::string& line, const std::string& command) {
+std::string SimController::record_command(const std::string& line, const std::string& command) {
   advance(now_s_ + settings_.latency_s / 2 + jitter());
   note("command", {{"text", line}});
   const int now = ++seen_[command];
@@ -81,7 +81,7 @@ void SimController::answer(const std::string& text, double extra_s) {
   answers_.emplace(std::max(now_s_ + settings_.latency_s / 2 + jitter() + extra_s, queued_until_s), text);
 }
 
-void SimController::answer_spoilt(const std::string& fault, const std::string& text, const std::string& sender) {
+void SimController::reply_with_fault(const std::string& fault, const std::string& text, const std::string& sender) {
   if (fault == "silent") return;
   if (fault == "garbage") {
     std::string noise = text;

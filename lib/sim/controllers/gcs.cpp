@@ -77,7 +77,7 @@ class SimGcs final : public SimController {
 
  private:
   // 8.2 and 8.3: an address may precede single bytes, too; they need no LF.
-  void hear(char c) override {
+  void on_byte(char c) override {
     if (c == 5 || c == 7 || c == 24) {
       const bool for_someone = line_.find_first_not_of("0123456789 ") == std::string::npos;
       handle((for_someone ? std::exchange(line_, "") : "") + "#" + std::to_string(static_cast<int>(c)));
@@ -111,7 +111,7 @@ class SimGcs final : public SimController {
     }
     const std::string command = words.front();
     words.erase(words.begin());
-    const std::string fault = arrive(line, command);
+    const std::string fault = record_command(line, command);
     if (silent()) return;
     if (fault == "error") {
       error_ = parameter_out_of_range;
@@ -119,7 +119,7 @@ class SimGcs final : public SimController {
     }
     const std::string text = reply(command, words);
     if (text.empty()) return;
-    answer_spoilt(fault, text, addressed_ ? "0 " + std::to_string(settings_.address) + " " : "");
+    reply_with_fault(fault, text, addressed_ ? "0 " + std::to_string(settings_.address) + " " : "");
   }
 
   // The whole answer with its LF; empty for an order (8.4: only questions are answered). #5: a bit for each axis that

@@ -30,7 +30,7 @@ class SimGrbl final : public SimController {
 
  private:
   // Commands, "Real-Time Commands": single bytes, acted on at once, anywhere in a line, without an "ok".
-  void hear(char c) override {
+  void on_byte(char c) override {
     if (c == '?') {
       asked_while_homing_ = homing_;  // reports pause: limits.c, limits_go_home, looks at reset and door only
       if (!homing_) reply("?", "?", status());
@@ -50,24 +50,24 @@ class SimGrbl final : public SimController {
     homing_ = alarm_ = false;  // Commands, "$H": it also unlocks
     unknown_deg_ = 0;
     if (std::exchange(asked_while_homing_, false)) answer(status());
-    answer_spoilt(homing_fault_, homing_fault_ == "error" ? "ALARM:9\r\n" : "ok\r\n", "");
+    reply_with_fault(homing_fault_, homing_fault_ == "error" ? "ALARM:9\r\n" : "ok\r\n", "");
   }
 
   void reply(const std::string& line, const std::string& command, const std::string& text) {
-    const std::string fault = arrive(line, command);
+    const std::string fault = record_command(line, command);
     if (silent()) return;
-    answer_spoilt(fault, fault == "error" ? "error:9\r\n" : text, "");
+    reply_with_fault(fault, fault == "error" ? "error:9\r\n" : text, "");
   }
 
   // Commands, "0x85": decelerates and leaves the state of jogging; without effect in another one.
   void cancel() {
-    arrive("0x85", "0x85");
+    record_command("0x85", "0x85");
     if (motor_.moving() && !homing_) motor_.halt();
   }
 
   // Commands, "0x18": during motion it is an alarm, since the position may be lost; the greeting follows.
   void reset() {
-    arrive("0x18", "0x18");
+    record_command("0x18", "0x18");
     alarm_ = motor_.moving();
     if (motor_.moving()) motor_.brake();
     homing_ = false;
@@ -111,7 +111,7 @@ class SimGrbl final : public SimController {
     if (command == "$H") {
       // Configuration, $22, and Interface, error 5: "Homing cycle is not enabled via settings."
       if (settings_.no_switches) return reply(line, command, "error:5\r\n");
-      homing_fault_ = arrive(line, command);
+      homing_fault_ = record_command(line, command);
       if (silent()) return;
       homing_ = true;
       constexpr double homing_speed_deg_s = 30;

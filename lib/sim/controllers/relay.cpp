@@ -28,9 +28,9 @@ class SimRelay final : public SimController {
     if (std::exchange(closed_, false)) note("open", {{"reason", why}});
   }
 
-  void hear(char command) override {
+  void on_byte(char command) override {
     const std::string name(1, command);
-    const std::string fault = arrive(name, name);
+    const std::string fault = record_command(name, name);
     if (silent()) return;
     if (command == 'A') {
       if (!std::exchange(closed_, fault != "error")) note("closed", Json::object());
@@ -40,7 +40,7 @@ class SimRelay final : public SimController {
       return;
     }
     if (command == 'A' || command == 'H') last_s_ = now_s_;
-    answer_spoilt(fault, command == '?' ? "vam-relay 1 300 simulated\r\n" : closed_ ? "closed\r\n" : "open\r\n", "");
+    reply_with_fault(fault, command == '?' ? "vam-relay 1 300 simulated\r\n" : closed_ ? "closed\r\n" : "open\r\n", "");
   }
 
   double last_s_ = 0;

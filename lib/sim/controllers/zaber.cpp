@@ -34,7 +34,7 @@ class SimZaber final : public SimController {
 
  private:
   // Manual, "Command": a command ends with CR, LF or both.
-  void hear(char c) override {
+  void on_byte(char c) override {
     if (c != '\n' && c != '\r') {
       line_ += c;
     } else if (!line_.empty()) {
@@ -83,18 +83,18 @@ class SimZaber final : public SimController {
         !words.empty() && (words[0] == "get" || words[0] == "set" || words[0] == "move") && words.size() > 1;
     const std::string command = two ? words[0] + " " + words[1] : words.empty() ? "" : words[0];
     words.erase(words.begin(), words.begin() + std::min<long>(two ? 2 : 1, static_cast<long>(words.size())));
-    const std::string fault = arrive(line, command);
+    const std::string fault = record_command(line, command);
     if (silent()) return;
     if (fault == "stall") stall();
     const std::string data = fault == "error" ? "!BADDATA" : axis > 1 ? "!BADAXIS" : reply(command, words);
     const bool refused = data.front() == '!';
     const int sender = fault == "wrong-sender" ? 7 : settings_.address;
     // Manual, "Reply": "@01 1 07 OK IDLE -- 0": BUSY while the axis moves; the message number only where one was given.
-    answer_spoilt(fault == "wrong-sender" ? "" : fault,
-                  "@" + two_digits(sender) + " " + std::to_string(axis) + " " +
-                      (numbers.size() > 2 ? two_digits(numbers[2]) + " " : "") + (refused ? "RJ " : "OK ") +
-                      (motor_.moving() ? "BUSY " : "IDLE ") + worst() + " " + data.substr(refused ? 1 : 0) + "\r\n",
-                  "");
+    reply_with_fault(fault == "wrong-sender" ? "" : fault,
+                     "@" + two_digits(sender) + " " + std::to_string(axis) + " " +
+                         (numbers.size() > 2 ? two_digits(numbers[2]) + " " : "") + (refused ? "RJ " : "OK ") +
+                         (motor_.moving() ? "BUSY " : "IDLE ") + worst() + " " + data.substr(refused ? 1 : 0) + "\r\n",
+                     "");
   }
 
   // The data of the answer, with "!" before the reason of a refusal (manual, "Reply flags").

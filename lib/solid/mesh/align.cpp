@@ -153,14 +153,14 @@ double matching(const Pairs& pairs, double within_mm) {
 
 // The other pose in which most samples match, if nine tenths as many do as in the best: how much of a part is broken
 // off, and matches nothing, is not known so well.
-std::optional<Rival> rival_of(const Task& task, const std::vector<Start>& starts) {
+std::optional<AmbiguousPose> rival_of(const Task& task, const std::vector<Start>& starts) {
   constexpr double as_well = 0.9;
   constexpr double another = 0.02;  // of the size, that samples lie apart
   const Motion& best = starts.front().pose;
   const Pairs pairs = pair_up(task.some, best, task.reference);
   const double within_mm = std::max(4 * deviation_of(pairs), 2e-3 * task.size());
   std::vector<Motion> symmetric;
-  Rival rival;
+  AmbiguousPose rival;
   rival.best_match = matching(pairs, within_mm);
   for (const Start& start : starts) {
     const double apart_mm = apart(task, best, start.pose);

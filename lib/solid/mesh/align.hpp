@@ -31,7 +31,7 @@ struct AlignOptions {
 };
 
 /// Another pose of a part of a print that fits as well as the best.
-struct Rival {
+struct AmbiguousPose {
   Similarity transform;
   double match = 0;       // share of the samples that lie on the reference, within 4 deviations of the best pose
   double best_match = 0;  // in the best pose
@@ -43,9 +43,9 @@ struct Alignment {
   double rms_mm = 0;   // distance of the samples to the reference after alignment
   int iterations = 0;  // of the final ICP
   bool converged = false;
-  double overlap = 1;          // share of the reference's surface that has the print within 4 % of the size
-  bool as_part = false;        // so little that the print was taken for a part
-  std::optional<Rival> rival;  // of a part of a print, where there is one
+  double overlap = 1;                  // share of the reference's surface that has the print within 4 % of the size
+  bool as_part = false;                // so little that the print was taken for a part
+  std::optional<AmbiguousPose> rival;  // of a part of a print, where there is one
 };
 
 /// Only ICP, from where the print is.

@@ -92,7 +92,7 @@ TEST_CASE("progress as JSON: a line when the work ends, with its figures") {
   set_talk({.progress = ProgressStyle::json});
   const std::string text = written_to(stderr, [] {
     Progress progress("optimising", 8);
-    progress.stand(3, 9, {{"iteration", 3}, {"VER", 0.25}});
+    progress.set_progress(3, 9, {{"iteration", 3}, {"VER", 0.25}});
   });
   CHECK(text.find(R"("task":"optimising","done":3,"total":9,)") != std::string::npos);
   CHECK(text.find(R"("left_s":0.0,"finished":true,"iteration":3.0,"ver":0.25})") != std::string::npos);

@@ -17,7 +17,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "device/os/found.hpp"
+#include "device/os/device_listing.hpp"
 #include "fault_of.hpp"
 
 using namespace vam;

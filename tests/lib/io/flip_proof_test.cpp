@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/settings/flip_proof.hpp"
-
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -9,6 +7,7 @@
 #include "base/sha256.hpp"
 #include "fault_of.hpp"
 #include "io/settings/flip_log.hpp"
+#include "io/settings/log_cross_check.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::Fault;

@@ -253,7 +253,7 @@ TEST_CASE("A working curve by planned doses and reconstructed views has the crit
       }
       views.push_back({image, seen.angle_deg});
     }
-    metrology::Dirt dirt;
+    metrology::CleaningReport dirt;
     const model::Volume scatter = rig.reconstruct(views, &dirt);
     CHECK(dirt.flicker_percent < 10);  // 60 by growth from nothing
     const auto of_turn =

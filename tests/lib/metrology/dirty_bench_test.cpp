@@ -12,7 +12,7 @@
 #include "base/stats/median.hpp"
 #include "lib/metrology/bench_printer.hpp"
 #include "metrology/cure/bodies.hpp"
-#include "metrology/ost/dirt.hpp"
+#include "metrology/ost/cleaning_report.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/private/specks.hpp"
 #include "model/magnification.hpp"
@@ -115,7 +115,7 @@ Figures reconstructed(const oracle::ViewBench& bench, const std::vector<CameraVi
                       const std::vector<oracle::Body>& bodies, double level = 0.5, int statistical = 0) {
   const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
                              {.mlem_iterations = statistical, .axis_row = bench.axis_row});
-  Dirt dirt;
+  CleaningReport dirt;
   model::Volume volume = rig.reconstruct(views, &dirt);
   const BodyCount count = keep_bodies(volume, level, {});
   MESSAGE("bubbles_exceed_limit ", dirt.bubbles_exceed_limit, " background ", dirt.background, ", specks ",
@@ -193,7 +193,7 @@ TEST_CASE("noise, background, flicker and specks") {
   const auto bodies = post(soiled_mm());
   const oracle::ViewBench bench = soiled_bench();
   const auto clean = oracle::bench_views(bench, bodies, {}, 180);
-  const auto soiled = [&](const oracle::Dirt& dirt) {
+  const auto soiled = [&](const oracle::CleaningReport& dirt) {
     auto views = clean;
     oracle::soil(bench, dirt, views);
     return reconstructed(bench, views_of(bench, views), bodies);
@@ -263,7 +263,7 @@ TEST_CASE("bubbles with specks before them, and bubbles in noise, are removed") 
   const auto count = std::min(static_cast<std::size_t>(trials_or(2)), draws.size());
   for (const unsigned draw : std::span(draws).first(count)) {
     const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, draw), 180);
-    const auto soiled = [&](const oracle::Dirt& dirt) {
+    const auto soiled = [&](const oracle::CleaningReport& dirt) {
       auto views = bubbly;
       oracle::soil(bench, dirt, views);
       return reconstructed(bench, views_of(bench, views), bodies);
@@ -305,7 +305,7 @@ TEST_CASE("flicker is measured; steady light, bubbles and a print that leaves th
   const auto measured = [&](const std::vector<std::vector<float>>& pixels) {
     const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
                                {.axis_row = bench.axis_row});
-    Dirt dirt;
+    CleaningReport dirt;
     (void)rig.reconstruct(views_of(bench, pixels), &dirt);
     return dirt.flicker_percent;
   };

@@ -101,11 +101,11 @@ TEST_CASE("what is near a bubble beside a speck is near it behind, too") {
   }
   std::vector<RayMask> marked(2, RayMask(columns * heights, 0));
   marked[0][product(12, columns) + 75] = 1;
-  spread_behind(specks, columns, marked);
+  propagate_mask(specks, columns, marked);
   CHECK(marked[0][product(12, columns) + 70] == 1);
   CHECK(marked[0][product(11, columns) + 70] == 0);
   CHECK(share_of(marked[1]) == 0);
   marked[1][product(12, columns) + columns - 1 - 75] = 1;  // beside the other ends of its lines
-  spread_behind(specks, columns, marked);
+  propagate_mask(specks, columns, marked);
   CHECK(marked[1][product(12, columns) + columns - 1 - 70] == 1);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/exr/private/stack_parser.hpp"
-#include "io/stream/apart.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 
 namespace vam::io::exr {
 
@@ -24,7 +24,7 @@ class ForeignStacks {
   [[nodiscard]] bool is_sealed() const { return sealed_; }
 
  private:
-  Apart apart_;
+  SandboxedReader apart_;
   std::string name_;
   model::StackInfo info_;
   std::vector<model::ImageInfo> about_;

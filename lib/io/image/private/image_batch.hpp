@@ -14,7 +14,7 @@ namespace vam::io {
 class ImageBatch {
  public:
   /// Takes the first path and those after it that can be read, up to 128 files of together 64 MiB. Throws what
-  /// read_all() throws of the first, and what Apart does.
+  /// read_all() throws of the first, and what SandboxedReader does.
   explicit ImageBatch(std::span<const std::string> paths);
   ~ImageBatch();
   [[nodiscard]] int count() const;

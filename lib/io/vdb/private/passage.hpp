@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "io/stream/apart.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 

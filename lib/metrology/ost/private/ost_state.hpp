@@ -52,7 +52,8 @@ struct OstReconstructor::State {
   [[nodiscard]] std::vector<double> lean_rad() const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
   [[nodiscard]] int half_width(double voxel_mm) const;
-  void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part, Dirt& found) const;
+  void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part,
+             CleaningReport& found) const;
   void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
   void refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const;
 };

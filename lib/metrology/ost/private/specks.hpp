@@ -20,6 +20,6 @@ namespace vam::metrology {
 void replace_specks(const RayMask& specks, std::vector<Image>& sinograms);
 
 /// Marks, in one mask an angle, the lines that specks hide at either end where a ray beside these is marked.
-void spread_behind(const RayMask& specks, int width, std::vector<RayMask>& marked);
+void propagate_mask(const RayMask& specks, int width, std::vector<RayMask>& marked);
 
 }  // namespace vam::metrology

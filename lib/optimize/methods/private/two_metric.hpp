@@ -17,7 +17,7 @@ class TwoMetric {
   /// Notes which values of g are held, and takes them out of d, which is then ready for the preconditioner. at(s, i):
   /// g.
   template <class At>
-  void hold(std::vector<Slab>& d, float peak, const At& at) {
+  void fix_active_bounds(std::vector<Slab>& d, float peak, const At& at) {
     held_.resize(d.size(), std::vector<std::uint16_t>(d[0].values.size() / lanes));
     for_values(d, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; i += lanes) {

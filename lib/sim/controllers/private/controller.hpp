@@ -21,17 +21,17 @@ class SimController : public SimDevice {
 
  protected:
   /// A byte has come; none after the cable was pulled.
-  virtual void hear(char c) = 0;
+  virtual void on_byte(char c) = 0;
   /// The stage has come to rest.
   virtual void on_standing() {}
   void note(const std::string& event, const Json& facts);
   /// A command has arrived: lets the first half of the latency pass, logs it, and returns the fault that it has coming
   /// ("" for none). unplug, power-loss and block have happened by then; after the first two nothing may be answered.
-  std::string arrive(const std::string& line, const std::string& command);
+  std::string record_command(const std::string& line, const std::string& command);
   /// Puts bytes on the line, the second half of the latency later.
   void answer(const std::string& text, double extra_s = 0);
   /// The same, spoilt; sender is what a right answer of a daisy chain begins with.
-  void answer_spoilt(const std::string& fault, const std::string& text, const std::string& sender);
+  void reply_with_fault(const std::string& fault, const std::string& text, const std::string& sender);
   void go(double target_deg, double speed_deg_s);
   [[nodiscard]] bool silent() const { return unplugged_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "metrology/ost/dirt.hpp"
+#include "metrology/ost/cleaning_report.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -8,7 +8,7 @@
 
 namespace vam::metrology {
 
-Dirt even_background(const Image& mean_view) {
+CleaningReport even_background(const Image& mean_view) {
   std::vector<float> sorted = mean_view.values;
   std::sort(sorted.begin(), sorted.end());
   const std::size_t n = sorted.size();
@@ -30,13 +30,13 @@ Dirt even_background(const Image& mean_view) {
     const auto high = std::upper_bound(low, sorted.end(), static_cast<float>(level + 1.5 * sigma));
     level = std::accumulate(low, high, 0.0) / static_cast<double>(high - low);
   }
-  Dirt found;
+  CleaningReport found;
   found.background = level;
   found.has_background = true;
   return found;
 }
 
-Json to_json(const Dirt& dirt) {
+Json to_json(const CleaningReport& dirt) {
   Json json{{"flicker_percent", dirt.flicker_percent},
             {"speck_percent", dirt.speck_percent},
             {"bubble_percent", dirt.bubble_percent},

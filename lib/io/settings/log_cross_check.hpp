@@ -26,9 +26,9 @@ struct FlipsEnd {
 /// events.jsonl states how many bytes of whole lines there were, and their hash (vam-project --log-seals); and
 /// angles.jsonl how long the stage went on turning. What vam-print armed (events.jsonl) is what vam-project began, and
 /// no light of it is without angles.
-class FlipProof {
+class LogCrossCheck {
  public:
-  explicit FlipProof(const std::string& log);
+  explicit LogCrossCheck(const std::string& log);
   /// Takes in what was added to both. Before the log itself is read, which may go on. Throws Fault::data for whole
   /// lines that no print leaves in them.
   void read();

@@ -13,16 +13,16 @@ namespace vam::sim {
 
 /// A ray in units of voxels, the lower corner of voxel 0 at 0, and from where to where (mm) it is between the voxels
 /// `low` and `high` (one behind the last) of a grid, on its way through the resin. Empty: to <= from.
-struct Passage {
+struct RaySegment {
   std::array<float, 3> at{};
   std::array<float, 3> along{};
   double from_mm = 0;
   double to_mm = 0;
 };
 
-[[nodiscard]] inline Passage passage(const ClimbingRay& ray, const model::Grid& grid, const int (&low)[3],
-                                     const int (&high)[3]) {
-  Passage way;
+[[nodiscard]] inline RaySegment passage(const ClimbingRay& ray, const model::Grid& grid, const int (&low)[3],
+                                        const int (&high)[3]) {
+  RaySegment way;
   way.to_mm = ray.length_mm;
   for (std::size_t a = 0; a < 3; ++a) {
     const double start = (ray.at[a] - grid.origin_mm[a]) / grid.voxel_mm + 0.5;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/os/log_keeper.hpp"
+#include "device/os/synced_log.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -44,13 +44,13 @@ void sync_folder_of(const std::string& path) {
 
 }  // namespace
 
-LogKeeper::LogKeeper(std::string log, const std::string& seals) : path_(std::move(log)), fd_(open_regular(path_)) {
+SyncedLog::SyncedLog(std::string log, const std::string& seals) : path_(std::move(log)), fd_(open_regular(path_)) {
   if (fd_ < 0) return;
   if (!seals.empty()) seals_ = std::make_unique<EventLog>(seals);
   thread_ = std::thread([this] { run(); });
 }
 
-LogKeeper::~LogKeeper() {
+SyncedLog::~SyncedLog() {
   if (fd_ < 0) return;
   {
     const std::lock_guard lock(access_);
@@ -61,7 +61,7 @@ LogKeeper::~LogKeeper() {
   close(fd_);
 }
 
-void LogKeeper::run() {
+void SyncedLog::run() {
   attempt([this] { seal(); });  // of nothing yet: a busy disk delays the next one, so that none would look like a cut
   sync_folder_of(path_);
   std::unique_lock lock(access_);
@@ -75,7 +75,7 @@ void LogKeeper::run() {
 }
 
 // Takes in the whole lines that were added.
-bool LogKeeper::read_on() {
+bool SyncedLog::read_on() {
   const std::uint64_t before = bytes_;
   std::array<char, 65536> room{};
   for (;;) {
@@ -92,7 +92,7 @@ bool LogKeeper::read_on() {
 }
 
 // The seal comes after the lines: what it states is on the disk.
-void LogKeeper::keep() {
+void SyncedLog::keep() {
   if (!read_on()) return;
   if (fdatasync(fd_) != 0 && errno != EINVAL && errno != EROFS)
     throw Error{Fault::io, path_ + ": cannot be brought to the disk (" + std::strerror(errno) + ")"};
@@ -100,7 +100,7 @@ void LogKeeper::keep() {
   if (seals_) seals_->sync();
 }
 
-void LogKeeper::seal() {
+void SyncedLog::seal() {
   if (!seals_) return;
   (*seals_)("sealed", {{"log", std::filesystem::path(path_).filename().string()},
                        {"bytes", bytes_},
@@ -108,7 +108,7 @@ void LogKeeper::seal() {
 }
 
 template <class Step>
-void LogKeeper::attempt(const Step& step) {
+void SyncedLog::attempt(const Step& step) {
   try {
     step();
   } catch (const std::exception& error) {
@@ -116,7 +116,7 @@ void LogKeeper::attempt(const Step& step) {
   }
 }
 
-void LogKeeper::warn_once(const std::string& problem) {
+void SyncedLog::warn_once(const std::string& problem) {
   if (!std::exchange(warned_, true)) warn(problem + "; a power failure may lose its last lines");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The child that parses foreign bytes: what it sends arrives, and whatever happens to it is one line and status 65.
-#include "io/stream/apart.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>

@@ -14,12 +14,12 @@ namespace vam::io {
 
 /// Memory that parent and child share: two slots, of which one is filled while the other is read. Words on a socket
 /// say whose turn it is.
-struct Slots;
+struct SharedBuffers;
 
 /// The child's end. What is put in comes out of Receiver::get() in the same order.
 class Sender {
  public:
-  explicit Sender(Slots& slots) : slots_(slots) {}
+  explicit Sender(SharedBuffers& slots) : slots_(slots) {}
   void put(const void* bytes, std::size_t size);
   template <class Value>
   void put(const Value& value) {
@@ -33,14 +33,14 @@ class Sender {
  private:
   void acquire();
   void submit();
-  Slots& slots_;
+  SharedBuffers& slots_;
   std::size_t filled_ = 0;
 };
 
 /// The parent's end. The child may send anything, so what is received is examined like a file.
 class Receiver {
  public:
-  explicit Receiver(Slots& slots) : slots_(slots) {}
+  explicit Receiver(SharedBuffers& slots) : slots_(slots) {}
   /// Throws what read_apart() makes an Error of when the child has ended before.
   void get(void* to, std::size_t size);
   template <class Value>
@@ -59,7 +59,7 @@ class Receiver {
 
  private:
   void next_slot();
-  Slots& slots_;
+  SharedBuffers& slots_;
   const char* slot_ = nullptr;
   std::size_t left_ = 0;
   bool holds_ = false;   // a slot that the child waits for
@@ -77,14 +77,14 @@ struct Foreign {
 /// A reading in a child, taken piece by piece. The child has no file but that descriptor, no network, no other process,
 /// at most 256 MiB, 64 times the file and `unpacked` more memory than this process, at most 10 s and 1 s for 64 MiB of
 /// that of processor time (a pipe: the memory that is left, 10 min), and dies with this thread.
-class Apart {
+class SandboxedReader {
  public:
   /// Starts parse() there. It must not call parallel_for, nor destroy what does. Throws Fault::memory when no process
   /// can be made, or less than 16 MiB are left.
-  Apart(Foreign source, const std::function<void(Sender&)>& parse);
-  ~Apart();
-  Apart(const Apart&) = delete;
-  Apart& operator=(const Apart&) = delete;
+  SandboxedReader(Foreign source, const std::function<void(Sender&)>& parse);
+  ~SandboxedReader();
+  SandboxedReader(const SandboxedReader&) = delete;
+  SandboxedReader& operator=(const SandboxedReader&) = delete;
   /// Runs take() here. Throws the child's Error; with one line when the child crashed or met a bound Fault::data, or
   /// Fault::memory where this process has less left than the file may take; what take() throws.
   void take(const std::function<void(Receiver&)>& take);

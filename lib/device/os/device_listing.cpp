@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/os/found.hpp"
+#include "device/os/device_listing.hpp"
 
 #include <grp.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/os/log_keeper.hpp"
+#include "device/os/synced_log.hpp"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -95,7 +95,7 @@ TEST_CASE("A log is sealed by its whole lines, at the latest when its keeper end
   const Folder folder;
   std::ofstream(folder / "flips.jsonl") << "one\ntwo\n";
   {
-    const LogKeeper keeper(folder / "flips.jsonl", folder / "events.jsonl");
+    const SyncedLog keeper(folder / "flips.jsonl", folder / "events.jsonl");
     for (int tries = 0; tries < 500 && lines_of(folder / "events.jsonl").size() < 2; ++tries)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     std::ofstream(folder / "flips.jsonl", std::ios::app) << "three\nfou";
@@ -114,12 +114,12 @@ TEST_CASE("A log is sealed by its whole lines, at the latest when its keeper end
 
 TEST_CASE("A keeper leaves alone what is no file, and states once that a log has nothing") {
   const Folder folder;
-  { const LogKeeper keeper("", folder / "events.jsonl"); }
-  { const LogKeeper keeper("-", folder / "events.jsonl"); }
-  { const LogKeeper keeper("/dev/null", folder / "events.jsonl"); }
+  { const SyncedLog keeper("", folder / "events.jsonl"); }
+  { const SyncedLog keeper("-", folder / "events.jsonl"); }
+  { const SyncedLog keeper("/dev/null", folder / "events.jsonl"); }
   CHECK_FALSE(std::filesystem::exists(folder / "events.jsonl"));
   std::ofstream(folder / "log") << "";
-  { const LogKeeper keeper(folder / "log", folder / "events.jsonl"); }
+  { const SyncedLog keeper(folder / "log", folder / "events.jsonl"); }
   const auto seals = lines_of(folder / "events.jsonl");
   REQUIRE(seals.size() == 1);
   CHECK(seals[0]["bytes"] == 0);

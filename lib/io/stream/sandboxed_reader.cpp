@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/stream/apart.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -20,7 +20,7 @@
 #include "base/memory.hpp"
 #include "base/system_error.hpp"
 #include "io/stream/private/confine.hpp"
-#include "io/stream/private/slots.hpp"
+#include "io/stream/private/shared_buffers.hpp"
 
 namespace vam::io {
 
@@ -89,7 +89,7 @@ class Child {
     return ended;
   }
 
-  Slots slots;
+  SharedBuffers slots;
   int childs_end = -1;
   pid_t process = -1;
 };
@@ -100,7 +100,7 @@ void send_verdict(int socket, int fault, const std::string& line) {
   if (write_fully(socket, head.data(), sizeof head)) (void)write_fully(socket, line.data(), size);
 }
 
-[[noreturn]] void run_child(Slots slots, const ResourceBounds& bounds, const Foreign& source,
+[[noreturn]] void run_child(SharedBuffers slots, const ResourceBounds& bounds, const Foreign& source,
                             const std::function<void(Sender&)>& parse, int parent) {
   int fault = 0;
   std::string line;
@@ -149,14 +149,14 @@ void take_verdict(Child& child) {
 
 }  // namespace
 
-struct Apart::State {
+struct SandboxedReader::State {
   State(Foreign what, const std::function<void(Sender&)>& parse)
       : source(std::move(what)), bounds(bounds_of(source.bytes, source.unpacked)) {
     require_memory(least_bytes, source.name, remedy);
     const int parent = getpid();
     child.start();
     if (child.process == 0) {
-      Slots slots = child.slots;
+      SharedBuffers slots = child.slots;
       slots.socket = child.childs_end;
       run_child(slots, bounds, source, parse, parent);
     }
@@ -183,12 +183,12 @@ struct Apart::State {
   Receiver receiver{child.slots};
 };
 
-Apart::Apart(Foreign source, const std::function<void(Sender&)>& parse)
+SandboxedReader::SandboxedReader(Foreign source, const std::function<void(Sender&)>& parse)
     : state_(std::make_unique<State>(std::move(source), parse)) {}
 
-Apart::~Apart() = default;
+SandboxedReader::~SandboxedReader() = default;
 
-void Apart::take(const std::function<void(Receiver&)>& take) {
+void SandboxedReader::take(const std::function<void(Receiver&)>& take) {
   try {
     take(state_->receiver);
   } catch (const ChildEnded&) {
@@ -196,7 +196,7 @@ void Apart::take(const std::function<void(Receiver&)>& take) {
   }
 }
 
-void Apart::finish() {
+void SandboxedReader::finish() {
   try {
     if (!state_->receiver.drain()) throw ChildEnded{};
     take_verdict(state_->child);
@@ -208,7 +208,7 @@ void Apart::finish() {
 
 void read_apart(const Foreign& source, const std::function<void(Sender&)>& parse,
                 const std::function<void(Receiver&)>& take) {
-  Apart apart(source, parse);
+  SandboxedReader apart(source, parse);
   apart.take(take);
   apart.finish();
 }

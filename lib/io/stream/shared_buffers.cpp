@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The two ends of what a child sends.
-#include "io/stream/private/slots.hpp"
+#include "io/stream/private/shared_buffers.hpp"
 
 #include <sys/socket.h>
 #include <unistd.h>

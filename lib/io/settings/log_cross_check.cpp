@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/settings/flip_proof.hpp"
+#include "io/settings/log_cross_check.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -65,19 +65,19 @@ bool is_hash(const std::string& text) {
 
 }  // namespace
 
-FlipProof::FlipProof(const std::string& log) : log_(log) {
+LogCrossCheck::LogCrossCheck(const std::string& log) : log_(log) {
   if (std::filesystem::path(log).filename() != "flips.jsonl" || !has_regular_file(beside(log, "events.jsonl"))) return;
   events_.emplace(beside(log, "events.jsonl"));
   angles_.emplace(beside(log, "angles.jsonl"));
 }
 
-void FlipProof::read() {
+void LogCrossCheck::read() {
   if (!events_) return;
   read_events();
   read_angles();
 }
 
-void FlipProof::read_events() {
+void LogCrossCheck::read_events() {
   for (std::string text; events_->next(text);) {
     const std::string place = beside(log_, "events.jsonl") + ":" + std::to_string(++event_);
     const Json event = entry_of(text, place);
@@ -86,13 +86,13 @@ void FlipProof::read_events() {
   }
 }
 
-void FlipProof::take_armed(const Json& event, const std::string& place) {
+void LogCrossCheck::take_armed(const Json& event, const std::string& place) {
   turns_ = number_of(event, "turns", 1, FlipRules::most_turns, place);
   from_deg_ = number_of(event, "from_deg", 0, 360 * turns_, place);
   sinogram_sha256_ = text_at(event, "sinogram_sha256");
 }
 
-void FlipProof::require_armed(const Json& sinogram) const {
+void LogCrossCheck::require_armed(const Json& sinogram) const {
   if (!from_deg_) return;
   const auto differ = [this](const std::string& armed, const std::string& began) {
     throw Error{Fault::data, beside(log_, "events.jsonl") + ": states " + armed + ", but flips.jsonl " + began +
@@ -108,7 +108,7 @@ void FlipProof::require_armed(const Json& sinogram) const {
   differ("a sinogram whose SHA-256 begins " + sinogram_sha256_.substr(0, 8), hash.substr(0, 8));
 }
 
-void FlipProof::take_seal(const Json& event, const std::string& place) {
+void LogCrossCheck::take_seal(const Json& event, const std::string& place) {
   const double bytes = number_of(event, "bytes", static_cast<double>(sealed_), most_sealed_bytes, place);
   Seal seal{static_cast<std::uint64_t>(bytes), text_at(event, "sha256"), text_at(event, "utc")};
   if (!is_hash(seal.sha256)) throw Error{Fault::data, place + ": sha256 is not 64 hexadecimal digits" + changed};
@@ -117,7 +117,7 @@ void FlipProof::take_seal(const Json& event, const std::string& place) {
   if (seal.bytes > reached_) seals_.push_back(std::move(seal));  // else these lines were read before
 }
 
-void FlipProof::read_angles() {
+void LogCrossCheck::read_angles() {
   for (std::string text; angles_->next(text);) {
     const std::string place = beside(log_, "angles.jsonl") + ":" + std::to_string(++angle_);
     const Json line = entry_of(text, place);
@@ -127,7 +127,7 @@ void FlipProof::read_angles() {
   }
 }
 
-bool FlipProof::check(std::uint64_t bytes, const Sha256& hash) {
+bool LogCrossCheck::check(std::uint64_t bytes, const Sha256& hash) {
   reached_ = bytes;
   bool is_sealed = false;
   while (problem_.empty() && !seals_.empty() && seals_.front().bytes <= bytes) {
@@ -146,11 +146,11 @@ bool FlipProof::check(std::uint64_t bytes, const Sha256& hash) {
   return is_sealed;
 }
 
-std::string FlipProof::last_angle() const {
+std::string LogCrossCheck::last_angle() const {
   return "angles.jsonl, in which the stage turned on to " + format_number(last_deg_, 6) + " deg";
 }
 
-void FlipProof::require_all(std::uint64_t bytes, const FlipsEnd& end) const {
+void LogCrossCheck::require_all(std::uint64_t bytes, const FlipsEnd& end) const {
   const auto require = [this](const std::string& problem) {
     if (!problem.empty()) throw Error{Fault::data, log_ + ": " + problem};
   };
@@ -178,7 +178,7 @@ void FlipProof::require_all(std::uint64_t bytes, const FlipsEnd& end) const {
 }
 
 // A print that goes on has both logs longer than when the angles were read.
-void FlipProof::require_angles(const FlipsEnd& end) const {
+void LogCrossCheck::require_angles(const FlipsEnd& end) const {
   if (!from_deg_ || !end.lit_s || *end.lit_s - last_s_ <= most_unwatched_s) return;
   const std::string angles = beside(log_, "angles.jsonl");
   const std::optional<double> until_s = last_time(angles);
@@ -190,7 +190,7 @@ void FlipProof::require_angles(const FlipsEnd& end) const {
               angles + ": " + problem + " light in flips.jsonl, which follows the angles; it was cut; restore it"};
 }
 
-void FlipProof::require_none() const {
+void LogCrossCheck::require_none() const {
   const auto gone = [this](const std::string& proof) {
     throw Error{Fault::data, log_ + ": is gone, but " + proof + "; restore it"};
   };
@@ -200,7 +200,7 @@ void FlipProof::require_none() const {
 }
 
 void require_no_flips(const std::string& log) {
-  FlipProof proof(log);
+  LogCrossCheck proof(log);
   proof.read();
   proof.require_none();
 }

@@ -9,7 +9,7 @@
 namespace vam::metrology {
 
 /// What was found in the views of one turn and taken out.
-struct Dirt {
+struct CleaningReport {
   double background = 0;        // even, in view units
   bool has_background = false;  // false: no part of the image is empty, nothing was subtracted
   double flicker_percent = 0;   // RMS of the views' intensities; removed where it exceeds 0.5
@@ -19,9 +19,9 @@ struct Dirt {
 };
 
 /// The level of the emptiest tenth of a mean view, when hardly a pixel is darker: the shortest interval that holds a
-/// tenth of the pixels, refined to a mean. Dirt::has_background is false where there is no such plateau.
-[[nodiscard]] Dirt even_background(const Image& mean_view);
+/// tenth of the pixels, refined to a mean. CleaningReport::has_background is false where there is no such plateau.
+[[nodiscard]] CleaningReport even_background(const Image& mean_view);
 
-[[nodiscard]] Json to_json(const Dirt& dirt);
+[[nodiscard]] Json to_json(const CleaningReport& dirt);
 
 }  // namespace vam::metrology

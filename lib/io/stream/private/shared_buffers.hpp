@@ -5,14 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "io/stream/apart.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 
 namespace vam::io {
 
 inline constexpr std::size_t slot_bytes = std::size_t{1} << 19;
 inline constexpr std::uint32_t last_word = 0xffffffff;  // in place of a slot's size: the child's verdict follows
 
-struct Slots {
+struct SharedBuffers {
   char* memory = nullptr;  // two slots
   int socket = -1;  // up: a 32-bit size for each slot that is handed over, in turn; down: a byte for each one read
   std::uint32_t turn = 0;  // slots handed over (child) or received (parent)

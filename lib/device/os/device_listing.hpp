@@ -7,7 +7,7 @@
 
 namespace vam::device {
 
-struct Found {
+struct DeviceListing {
   std::string kind;      // stage, camera, display or light
   std::string device;    // the device string
   std::string about;     // maker, model, serial number, size: what is known without using it

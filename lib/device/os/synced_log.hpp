@@ -19,13 +19,13 @@ class EventLog;
 /// one is given, {"event": "sealed", "log": its name, "bytes": of its whole lines, "sha256": of these}, the first of
 /// none, before the disk is waited for. So a log that was cut later, or lost lines, is found out. What is no regular
 /// file is left alone. Warns once of a disk that fails.
-class LogKeeper {
+class SyncedLog {
  public:
-  explicit LogKeeper(std::string log, const std::string& seals = "");
+  explicit SyncedLog(std::string log, const std::string& seals = "");
   /// After a last time.
-  ~LogKeeper();
-  LogKeeper(const LogKeeper&) = delete;
-  LogKeeper& operator=(const LogKeeper&) = delete;
+  ~SyncedLog();
+  SyncedLog(const SyncedLog&) = delete;
+  SyncedLog& operator=(const SyncedLog&) = delete;
 
  private:
   void run();
