@@ -25,7 +25,6 @@
 #include "vam-optimize/beginning.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/options.hpp"
-#include "vam-optimize/preview.hpp"
 #include "vam-optimize/publish.hpp"
 #include "vam-optimize/sink.hpp"
 #include "vam-optimize/task.hpp"
@@ -68,7 +67,6 @@ void run(const cli::App& app, Options& options) {
   settle_angles(app, options);
 
   const session::JobVolumes in = session::read(options);
-  if (options.preview) return preview(printer, in, options);
   const session::Scene scene = session::make_scene(in.target.front(), printer, options);
   session::warn_of(scene, in.target.front(), options);
   const model::StackInfo whole = stack_info(scene, in.target.front(), app, options);

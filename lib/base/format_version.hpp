@@ -33,7 +33,6 @@ inline constexpr FormatVersion format_versions[] = {
     {"vam-dose", 1},
     {"vam-log", 1},
     {"vam-optimize", 1},
-    {"vam-optimize-preview", 1},
     {"vam-ost", 1},
     {"vam-photodiode", 1},
     {"vam-plan", 1},

@@ -144,10 +144,10 @@ void add_to(Json& figures, const PrintPieces& pieces) {
   figures["firm_holes"] = pieces.firm_holes;
 }
 
-std::string words(const Verdict& verdict) {
+std::string words(const Verdict& verdict, const std::string& instead) {
   const std::int64_t cut = voxels(verdict.with_cut) - voxels(verdict.whole);
   const Answer judged = answer(verdict);
-  std::string line = beginning(judged);
+  std::string line = instead.empty() ? beginning(judged) : instead;
   if (!holds_threshold(verdict)) {
     line += " at the threshold of " + format_number(*verdict.threshold, 3) + " (void up to " +
             format_number(verdict.whole.max_void, 3) + ", part at least " + format_number(verdict.whole.min_part, 3) +

@@ -44,8 +44,8 @@ void add_to(Json& figures, const PrintPieces& pieces);
 
 /// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
 /// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will not
-/// print", "will not print as designed", "may print" or "will print".
-[[nodiscard]] std::string words(const Verdict& verdict);
+/// print", "will not print as designed", "may print" or "will print"; or with what is said in its place.
+[[nodiscard]] std::string words(const Verdict& verdict, const std::string& instead = "");
 
 /// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), threshold_margin where
 /// the threshold is given and both have a dose (below_part and above_void, relative; negative outside the window), and

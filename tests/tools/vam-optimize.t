@@ -285,36 +285,6 @@ is 'the help fits on a screen, with a dozen options' \
 fails 64 'certify: does not apply to --grey-target' vam-optimize --grey-target --certify p.vdb part.vdb -o out.exr
 fails 64 'p.exr' vam-optimize --certify p.exr part.vdb -o out.exr
 
-# The verdict before the work.
-vam-optimize --preview $resin --report seen.json boat.vdb >seen.txt
-is "it will print" "$(value seen.json prints) $(head -n 1 seen.txt)" 'yes verdict         will print'
-holds "so long, and no better than the bound" "$(value seen.json duration_s) > 0 && 1 - $(value seen.json pw) >= $(value seen.json least_void_over_part) - 1e-3"
-holds "from coarser voxels" "$(value seen.json voxel_mm) >= 0.2"
-vam-slice --shape hollow-cylinder:outer=12,inner=11.9,height=10 --voxel 0.05 -o foil.vdb
-vam-optimize --preview --report foil.json foil.vdb >foil.txt
-is "walls too thin to be seen are no silent yes" "$(value foil.json prints)" unsure
-holds "their share is reported" "$(value foil.json unresolved_part) > 0.9"
-ok "and the reason is stated" grep -q '^verdict .*may not print: .* walls or gaps too thin' foil.txt
-vam-slice --shape ladder --voxel 0.3 -o rungs.vdb 2>.log/rungs
-vam-optimize --preview --angles 60 --report rungs.json rungs.vdb >rungs.txt
-is "nor are walls too thin for the target's own voxels" "$(value rungs.json prints) $(grep -c 'may not print: .* too thin for the target.s voxels' rungs.txt)" 'unsure 1'
-# An oblique wall of two voxels, whose full run tells whether it is pierced.
-awk 'BEGIN { print "OFF\n8 12 0"; c = cos(0.6); s = sin(0.6)
-  for (i = 0; i < 8; i++) { x = i % 2 ? 3 : -3; y = int(i / 2) % 2 ? 0.21 : -0.21; z = i > 3 ? 2 : -2; print c * x - s * y, s * x + c * y, z + 0.3 * x }
-  print "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5" }' >wall.off
-vam-slice wall.off --voxel 0.2 -o wall.vdb
-vam-optimize --preview --angles 60 --report wall.json wall.vdb >wall.txt
-is "an oblique wall of two voxels may have holes" "$(value wall.json prints) $(grep -c '^verdict .*may have holes' wall.txt)" 'unsure 1'
-is "and the plan is not sure either" "$(vam-plan wall.off --set projector.pixel_mm=0.2 | grep -c '^will it print  *perhaps: ')" 1
-vam-slice --shape box:x=2,y=2,z=8 -o tall.vdb
-vam-optimize --preview --report tall.json tall.vdb >tall.txt
-holds "of a thin part, too, where the resin around it is large" "$(value tall.json voxel_mm) >= 0.2"
-vam-optimize --preview --set resin.psf_mm=1 --report blurred.json boat.vdb >blurred.txt
-is "what the beam blurs away does not print" "$(value blurred.json prints)" no
-ok "and where" grep -q '^wrong voxels  *z = ' blurred.txt
-fails 64 '--preview: does not apply to --output; omit it' vam-optimize --preview boat.vdb -o out.exr
-fails 64 '--preview: does not apply to --robust; omit it' vam-optimize --preview --robust lamp=3% boat.vdb
-
 # A budget of time.
 quiet "in three seconds" vam-optimize --angles 60 --budget 3 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json coarse.vdb -o out.exr
 is "time stops the run" "$(value budget.json stopped_by)" time

@@ -127,10 +127,6 @@ void declare_stopping(cli::App& app, Options& options) {
                  "figures of merit and report are those of both doses together. Several doses add up.")
       .reads()
       .needs({"--init"});
-  app.flag(
-      "--preview", options.preview,
-      "Instead of projections write a verdict to standard output, within seconds: whether the part will print, how "
-      "long that takes, and at which heights it has wrong voxels.");
   app.option("--budget", "SECONDS", options.budget_s, cli::positive,
              "Time for the computation as a whole: no iteration begins that would not leave enough of it for the rest. "
              "The coarser levels of auto take at most half. The result depends on the speed of the machine.");
@@ -303,8 +299,7 @@ void declare(cli::App& app, Options& options) {
       "similar shares as I/N, which begin at multiples of 64. vam-convert join makes of such pieces the stack "
       "of the whole part, with the same images and attributes. "
       "For level rays (projector.telecentric, --geometry parallel): rays that climb couple all slices (IMPLEMENTATION "
-      "NOTES). The report describes these slices. Does not apply to options that need the whole part: --preview, "
-      "--budget, "
+      "NOTES). The report describes these slices. Does not apply to options that need the whole part: --budget, "
       "--robust, --tradeoff, --certify, --bits, --poses, --helix, --wobble-record.");
   cli::add_report(app, options.report);
   cli::add_stack_output(app, options.stack.half, options.stack.compression);

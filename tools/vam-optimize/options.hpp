@@ -32,7 +32,6 @@ struct Options : session::JobOptions {
   bool shortest = false;
   std::string tradeoff;
   std::string certify;
-  bool preview = false;
   std::optional<double> budget_s;
   optimize::IntensityLimit limit;
   optimize::Raising raising;

@@ -105,18 +105,11 @@ void refuse_dither(const Options& options) {
                                 "vam-project --dither"};
 }
 
-/// What a verdict leaves out, and what needs time of its own.
-void refuse_beside_preview(const cli::App& app, const Options& options) {
+void refuse_beside_budget(const cli::App& app, const Options& options) {
   if (options.budget_s && (app.given("--checkpoint") || app.given("--tradeoff"))) {
     throw Error{Fault::usage,
                 "--budget: does not apply to --checkpoint and --tradeoff, whose results are the same on "
                 "any machine; omit it"};
-  }
-  if (!options.preview) return;
-  for (const char* flag :
-       {"--output", "--init", "--poses", "--helix", "--wobble-record", "--grey-target", "--robust", "--checkpoint",
-        "--trace", "--tradeoff", "--certify", "--bits", "--budget", "--half", "--compression"}) {
-    if (app.given(flag)) throw Error{Fault::usage, std::string("--preview: does not apply to ") + flag + "; omit it"};
   }
 }
 
@@ -136,8 +129,8 @@ void refuse_beside_delivered(const cli::App& app, const Options& options) {
 void settle_slices(const cli::App& app, Options& options) {
   if (options.slices.empty()) return;
   (void)session::slices_named(options.slices);
-  for (const char* flag : {"--preview", "--budget", "--robust", "--tradeoff", "--certify", "--bits", "--poses",
-                           "--helix", "--wobble-record"}) {
+  for (const char* flag :
+       {"--budget", "--robust", "--tradeoff", "--certify", "--bits", "--poses", "--helix", "--wobble-record"}) {
     if (app.given(flag)) {
       throw Error{Fault::usage, std::string("--slices: does not apply to ") + flag +
                                     ", which needs the whole part; omit one of them"};
@@ -152,7 +145,7 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
   refuse_unread(app, options, method);
   refuse_poses(options);
   refuse_dither(options);
-  refuse_beside_preview(app, options);
+  refuse_beside_budget(app, options);
   refuse_beside_delivered(app, options);
   if (options.in_vial() && options.bins) {
     throw Error{Fault::usage,

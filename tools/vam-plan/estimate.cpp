@@ -1,90 +1,185 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "vam-plan/estimate.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "base/text.hpp"
 #include "model/coarser.hpp"
-#include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
 #include "optics/writable_radius.hpp"
+#include "optimize/run/preview.hpp"
+#include "resin/absolute_dose.hpp"
+#include "solid/voxel/size_doubt.hpp"
 #include "vam-plan/filled.hpp"
-#include "vam-plan/steps.hpp"
 
 namespace vam::plan_tool {
 
 namespace {
 
-double million_voxels(const model::Grid& grid, int coarseness) {
-  return 1e-6 * static_cast<double>(grid.size()) / std::pow(coarseness, 3);
-}
+constexpr int usual_coarseness = 4;
+constexpr double most_coarse_voxels = 2e6;   // of the part, on the coarsest voxels
+constexpr double most_finer_voxels = 0.7e6;  // on those that are taken where coarser ones do not tell
+constexpr double sure_window = 0.03;         // of the largest dose: what finer voxels and more iterations may cost
+constexpr double hopeless = -0.1;            // a window that neither will open
 
-/// The part on the voxels of an estimate.
-struct Coarse {
+bool is_lost(const verdict::Unresolved& some) { return some.loses_walls() || some.shuts_gaps(); }
+
+/// The part on voxels of some size, and the bench with pixels as large.
+struct Level {
   model::Printer printer;
   Filled part;
+  int coarseness = 1;  // of the print's voxels, for one of these
 
   [[nodiscard]] const verdict::Unresolved& unresolved() const { return part.content.unresolved; }
-  /// Whether some voxel is wholly inside the part.
-  [[nodiscard]] bool is_judged() const {
-    const std::vector<float>& values = part.volume.values;
-    return std::any_of(values.begin(), values.end(),
-                       [](float coverage) { return model::label_of(coverage) == model::Label::part; });
-  }
-  /// Whether walls and gaps are as thick as the voxels, but for edges: hardly any is lost, little is not resolved.
-  [[nodiscard]] bool is_all_judged() const {
+  [[nodiscard]] double voxel_mm() const { return part.volume.grid.voxel_mm; }
+  [[nodiscard]] bool is_final() const { return coarseness == 1; }
+  [[nodiscard]] bool is_judged() const { return part.content.solid_voxels > 0; }
+  /// Whether walls and gaps are as thick as the voxels, by their coverage and by the part's own surface: hardly any is
+  /// lost, little is not resolved.
+  [[nodiscard]] bool shows_all() const {
     constexpr double most_lost = 0.001;
-    const double lost = unresolved().lost_walls.voxels + unresolved().lost_gaps.voxels;
-    return is_judged() && lost <= most_lost * unresolved().whole && !unresolved().is_much();
+    const verdict::Unresolved& un = unresolved();
+    return is_judged() && !un.leaves_doubt() && !un.is_much() &&
+           un.lost_walls.voxels + un.lost_gaps.voxels <= most_lost * un.whole;
   }
 };
 
-Coarse coarse(const solid::Part& part, const model::Printer& printer, int coarseness) {
-  Coarse made{printer, {}};
-  for (int by = 1; by < coarseness; by *= 2) made.printer = model::coarser(made.printer);
-  made.part = filled(part, made.printer.projector.pixel_mm);
-  return made;
+Level level_of(const Wanted& wanted, int coarseness) {
+  constexpr double rounding = 1e-9;
+  Level level{wanted.printer, filled(wanted.part, coarseness * wanted.grid.voxel_mm), coarseness};
+  while (2 * level.printer.projector.pixel_mm < (1 + rounding) * level.voxel_mm())
+    level.printer = model::coarser(level.printer);
+  return level;
 }
 
-optimize::Preview preview_of(Coarse coarse, int coarseness) {
+optimize::Preview preview_of(const Level& level, const model::Projector& projector) {
   optimize::PreviewTask task;
-  task.printer = std::move(coarse.printer);
-  task.part = model::covered_box(coarse.part.volume, model::coverage_rounding);
-  task.radius_mm = optics::judged_radius_mm(task.printer, coarse.part.content.radius_mm);
-  task.target = std::move(coarse.part.volume);
+  task.printer = level.printer;
+  task.part = model::covered_box(level.part.volume, model::coverage_rounding);
+  task.radius_mm = optics::judged_radius_mm(task.printer, level.part.content.radius_mm);
+  task.target = level.part.volume;
   task.tolerances = model::parse_tolerances(deviations);
-  task.tolerances[static_cast<std::size_t>(model::Deviating::axis)] /= coarseness;  // of the printer's pixels
+  task.tolerances[static_cast<std::size_t>(model::Deviating::axis)] *=  // of the printer's pixels
+      projector.pixel_mm / level.printer.projector.pixel_mm;
   return optimize::preview(task);
 }
 
-void estimate(Plan& plan, Coarse judged) {
-  const model::Grid& grid = judged.part.volume.grid;
-  plan.unjudged = judged.unresolved();
-  plan.all_judged = judged.is_all_judged();
-  plan.unjudged_low_mm = grid.z_mm(judged.unresolved().first - 0.5) / plan.stretch_z;
-  plan.unjudged_high_mm = grid.z_mm(judged.unresolved().end - 0.5) / plan.stretch_z;
-  if (!judged.is_judged()) return;
-  plan.preview = preview_of(std::move(judged), plan.coarseness);
-  plan.pieces = plan.preview->outcome.pieces;
-  if (!plan.pieces) return;
-  plan.pieces->set_solids(plan.surface);
-  plan.pieces->set_places(plan.preview->grid, plan.stretch_z);
+/// What the voxels of the print lose is lost whatever these show.
+verdict::Verdict verdict_of(const Level& level, const Wanted& wanted, const optimize::VolumeOutcome& outcome) {
+  verdict::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
+  verdict.unresolved = is_lost(wanted.unresolved) ? wanted.unresolved : level.unresolved();
+  set_pieces(verdict, outcome.pieces);
+  return verdict;
+}
+
+/// Whether what these voxels show is all of the part: no edge tapers, and no neck is narrower, than they resolve.
+bool may_tell(const Level& level, const Wanted& wanted) {
+  return level.is_final() || (level.shows_all() && !wanted.sharp_edges &&
+                              wanted.thinnest_voxels >= model::narrow_voxels * level.coarseness);
+}
+
+/// What the print of these voxels shows of that of the final ones.
+std::optional<bool> prints(const Level& level, const verdict::Verdict& verdict, const Wanted& wanted) {
+  const verdict::Unresolved& final = wanted.unresolved;
+  switch (answer(verdict)) {
+    case verdict::Answer::no:
+      if (level.is_final() || is_lost(final) || (may_tell(level, wanted) && verdict.whole.pw < hopeless)) return false;
+      break;
+    case verdict::Answer::not_as_designed:
+      if (level.is_final() || is_lost(final)) return false;
+      break;
+    case verdict::Answer::yes:
+      if (may_tell(level, wanted) && !final.leaves_doubt() && verdict.whole.pw >= sure_window) return true;
+      break;
+    case verdict::Answer::not_judged:
+    case verdict::Answer::unsure:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// What tells where an estimate does not.
+std::string told_by(const Level& level, const verdict::Verdict& verdict, const Wanted& wanted) {
+  const auto voxel = [](double mm) { return "--voxel " + format_number(mm, 2); };
+  if (wanted.unresolved.leaves_doubt()) return voxel(solid::telling_voxel_mm(wanted.unresolved, wanted.grid.voxel_mm));
+  if (!level.is_final()) return voxel(wanted.grid.voxel_mm);
+  if (verdict.pieces && !verdict.pieces->knows_pieces()) return voxel(0.5 * wanted.grid.voxel_mm);
+  return level.is_judged() ? "vam-optimize" : voxel(solid::resolving_voxel_mm(level.part.content, wanted.grid));
+}
+
+std::optional<WrongHeights> wrong_of(const optimize::Preview& preview, double stretch_z) {
+  const std::vector<std::int64_t>& wrong = preview.outcome.wrong;
+  const auto is_wrong = [](std::int64_t voxels) { return voxels > 0; };
+  const auto first = std::find_if(wrong.begin(), wrong.end(), is_wrong);
+  if (first == wrong.end()) return std::nullopt;
+  const auto last = std::find_if(wrong.rbegin(), wrong.rend(), is_wrong).base() - 1;
+  const auto mm = [&](auto at) { return preview.grid.z_mm(static_cast<double>(at - wrong.begin())) / stretch_z; };
+  return WrongHeights{mm(first), mm(last), mm(std::max_element(wrong.begin(), wrong.end()))};
+}
+
+void expose(Estimate& estimate, const optimize::VolumeOutcome& outcome, const model::Printer& printer) {
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
+  estimate.resin_known = per_radian.has_value();
+  if (!per_radian || outcome.peak_intensity <= 0 || score::window_middle(outcome.metrics) <= 0) return;
+  estimate.exposure = score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,
+                                           optimize::DoseWindow{}.threshold());
+}
+
+void judge(Estimate& made, const Level& level, const Wanted& wanted) {
+  const optimize::Preview preview = preview_of(level, wanted.printer.projector);
+  made.angles = optimize::PreviewTask{}.angles;
+  made.iterations = preview.outcome.iterations;
+  made.verdict = verdict_of(level, wanted, preview.outcome);
+  if (made.verdict.pieces) made.verdict.pieces->set_places(preview.grid, wanted.stretch_z);
+  made.prints = prints(level, made.verdict, wanted);
+  for (const optimize::VolumeOutcome& other : preview.beside)
+    made.dose_decides |= prints(level, verdict_of(level, wanted, other), wanted) != made.prints;
+  if (made.dose_decides) made.prints.reset();
+  made.wrong = wrong_of(preview, wanted.stretch_z);
+  made.trials = preview.trials;
+  expose(made, preview.outcome, wanted.printer);
+}
+
+Estimate estimate_on(const Level& level, const Wanted& wanted) {
+  Estimate made;
+  made.voxel_mm = level.voxel_mm();
+  made.verdict.unresolved = level.unresolved();
+  if (level.is_judged()) judge(made, level, wanted);
+  made.told_by = told_by(level, made.verdict, wanted);
+  if (!made.prints && !level.is_final()) {
+    made.too_coarse = solid::resolution_doubts("at " + format_number(made.voxel_mm, 3) + " mm", level.unresolved(),
+                                               level.part.volume.grid, wanted.stretch_z);
+  }
+  return made;
 }
 
 }  // namespace
 
-void add_preview(Plan& plan, const solid::Part& part, const model::Printer& printer) {
-  int& by = plan.coarseness = usual_coarseness;
-  while (million_voxels(plan.grid, by) > most_estimated) by *= 2;
-  const auto can_be_finer = [&] { return by > 1 && million_voxels(plan.grid, by / 2) <= most_finer; };
-  const solid::Part body = without_surface(part);
-  Coarse judged = coarse(body, printer, by);
-  while (!judged.is_all_judged() && can_be_finer()) judged = coarse(body, printer, by /= 2);
-  estimate(plan, std::move(judged));
-  const auto is_torn = [&] {  // where it prints at all
-    return plan.preview && plan.preview->outcome.metrics.pw > 0 && plan.pieces && !plan.pieces->is_surely_as_part();
-  };
-  while (is_torn() && can_be_finer()) estimate(plan, coarse(body, printer, by /= 2));
+Estimate estimated(const Wanted& wanted) {
+  const auto voxels = [&](int coarseness) { return static_cast<double>(wanted.grid.size()) / std::pow(coarseness, 3); };
+  int by = wanted.on_these_voxels ? 1 : usual_coarseness;
+  while (!wanted.on_these_voxels && voxels(by) > most_coarse_voxels) by *= 2;
+  while (true) {
+    const Level level = level_of(wanted, by);
+    const bool is_last = by == 1 || voxels(by / 2) > most_finer_voxels;
+    if (is_last || may_tell(level, wanted)) {
+      Estimate made = estimate_on(level, wanted);
+      if (is_last || made.prints) return made;
+    }
+    by /= 2;
+  }
+}
+
+std::string words(const Estimate& estimate) {
+  const std::string why =
+      estimate.dose_decides ? ", as " + format_number(100 * optimize::unsure_dose) + " % of the dose decide" : "";
+  const std::string unknown =
+      "unknown at " + format_number(estimate.voxel_mm, 3) + " mm" + why + "; " + estimate.told_by + " tells";
+  if (estimate.iterations == 0) return unknown + ": no voxel is wholly inside the part";
+  return estimate.prints ? words(estimate.verdict) : words(estimate.verdict, unknown);
 }
 
 }  // namespace vam::plan_tool

@@ -16,11 +16,15 @@ void declare(cli::App& app, Options& options) {
   app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"}, "Axis of the file that points upwards.");
   app.option("--scale", "FACTOR", options.scale, cli::positive, "Scale factor.");
   app.group("Output and performance");
+  app.option(
+      "--voxel", "MM", options.voxel_mm, cli::positive,
+      "Size of the voxels, as in vam-slice, and of those of the estimate, however long it takes. Default: a pixel "
+      "of the projector, and as much larger in the estimate as takes seconds.");
   app.flag("--no-preview", options.no_preview, "Omit the estimate of the print.");
   cli::add_report(app, options.report);
   cli::add_printer(app, options.printer);
   cli::add_threads(app);
-  app.usual({"--shape", "--unit", "--up", "--scale", "--no-preview", "--report", "--printer", "--set"});
+  app.usual({"--shape", "--unit", "--up", "--scale", "--voxel", "--no-preview", "--report", "--printer", "--set"});
 }
 
 }  // namespace vam::plan_tool

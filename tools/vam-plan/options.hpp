@@ -2,6 +2,7 @@
 // Options of vam-plan.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "cli/app.hpp"
@@ -15,6 +16,7 @@ struct Options {
   std::string unit = "mm";
   std::string up = "z";
   double scale = 1;
+  std::optional<double> voxel_mm;  // none: a pixel
   bool unit_given = false;
   bool unit_known = false;  // it or the scale is given
   bool no_preview = false;

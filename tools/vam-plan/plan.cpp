@@ -12,16 +12,17 @@
 #include "model/dose_spread.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
-#include "resin/absolute_dose.hpp"
-#include "score/exposure.hpp"
 #include "session/surface.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
-#include "vam-plan/steps.hpp"
 
 namespace vam::plan_tool {
 
 namespace {
+
+double voxel_of(const Options& options, const model::Printer& printer) {
+  return options.voxel_mm.value_or(printer.projector.pixel_mm);
+}
 
 constexpr double bath_of_radius = 1.5;  // the window of a bath that is not there yet, from the axis
 
@@ -34,7 +35,7 @@ solid::Placement placement_of(const Options& options, const model::Printer& prin
   placement.axes = solid::upright(options.up);
   placement.scale = options.scale * solid::mm_per(options.unit) * factor;
   placement.stretch_z = 1 / model::vertical_magnification(printer);
-  placement.voxel_mm = printer.projector.pixel_mm;
+  placement.voxel_mm = voxel_of(options, printer);
   return placement;
 }
 
@@ -51,7 +52,7 @@ class Source {
         options_.shape.empty()
             ? solid::mesh_part(mesh_, subject_, map(printer, factor), solid::FillMode::automatic)
             : solid::shape_part(options_.shape, placement_of(options_, printer, factor), room_of(printer));
-    made.lattice = solid::row_lattice(printer.projector, printer.projector.pixel_mm);
+    made.lattice = solid::row_lattice(printer.projector, voxel_of(options_, printer));
     return made;
   }
   /// At the scale of the options.
@@ -72,7 +73,7 @@ class Source {
   model::TriangleSoup mesh_;
 };
 
-Fit fit_of(const Source& source, const model::Printer& printer) {
+Fit fit_of(const Source& source, const model::Printer& printer, double voxel_mm) {
   const solid::PlacedExtent extent = source.extent(printer);
   const solid::Writable room = room_of(printer);
   const double stretch = 1 / model::vertical_magnification(printer);
@@ -81,7 +82,7 @@ Fit fit_of(const Source& source, const model::Printer& printer) {
   fit.size_mm[2] /= stretch;
   fit.writable_radius_mm = room.radius_mm;
   fit.writable_height_mm = (room.high_mm - room.low_mm) / stretch;
-  fit.factor = solid::fitting_factor(extent, room, printer.projector.pixel_mm);
+  fit.factor = solid::fitting_factor(extent, room, voxel_mm);
   return fit;
 }
 
@@ -125,36 +126,35 @@ solid::Part within_rows(solid::Part part, const solid::Writable& room, double vo
 Plan plan(const Options& options, const model::Printer& printer) {
   if (!options.shape.empty() && options.input != "-") throw Error{Fault::usage, "PART, --shape: give only one of them"};
   const Source source(options);
+  const double voxel = voxel_of(options, printer);
   Plan made;
-  made.now = fit_of(source, printer);
+  made.now = fit_of(source, printer, voxel);
   if (printer.bath.index != printer.resin.index) {
     model::Printer matched = printer;
     matched.bath.index = printer.resin.index;
     if (matched.bath.window_mm == 0) matched.bath.window_mm = bath_of_radius * printer.vial.radius_mm;
-    made.bath = fit_of(source, matched);
+    made.bath = fit_of(source, matched, voxel);
   }
   require_plausible(made.now, printer, source.subject());
   warn_of_unit(made.now, options, room_of(printer), source.subject());
   made.given_scale = options.scale;
   made.scale = made.now.fits() ? options.scale : solid::three_digits(options.scale * made.now.factor);
-  const solid::Part part =
-      within_rows(source.part(printer, made.scale / options.scale), room_of(printer), printer.projector.pixel_mm);
+  const solid::Part part = within_rows(source.part(printer, made.scale / options.scale), room_of(printer), voxel);
   solid::warn_of_repairs(part);
   made.subject = part.subject;
-  made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
+  made.grid = solid::grid_around(part.extent, voxel, 0, part.lattice, part.subject);
   made.stretch_z = 1 / model::vertical_magnification(printer);
   add_walls(made, part);
   if (options.no_preview) return made;
   model::warn_of_diffusion(printer.resin, model::seconds_of(printer.stage, printer.stage.turns));
-  add_preview(made, part, printer);
-  if (!made.preview) return made;
-  const optimize::VolumeOutcome& outcome = made.preview->outcome;
-  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
-  made.resin_known = per_radian.has_value();
-  if (per_radian && outcome.peak_intensity > 0 && score::window_middle(outcome.metrics) > 0) {
-    made.exposure = score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,
-                                         optimize::DoseWindow{}.threshold());
-  }
+  made.estimate = estimated({.part = part,
+                             .printer = printer,
+                             .grid = made.grid,
+                             .unresolved = made.unresolved,
+                             .thinnest_voxels = made.thinnest_voxels(),
+                             .sharp_edges = made.sharp_edges,
+                             .stretch_z = made.stretch_z,
+                             .on_these_voxels = options.voxel_mm.has_value()});
   return made;
 }
 

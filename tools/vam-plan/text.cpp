@@ -11,7 +11,6 @@
 #include "solid/voxel/trapped_resin.hpp"
 #include "solid/voxel/wall.hpp"
 #include "vam-plan/plan.hpp"
-#include "verdict/verdict.hpp"
 
 namespace vam::plan_tool {
 
@@ -47,53 +46,49 @@ std::string deviation_name(std::size_t tolerance) {
 
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
 
-/// "12 % of the part, and gaps of 3 % of its volume"
-std::string unjudged_share(const verdict::Unresolved& unjudged) {
-  const auto percent = [](double share) { return format_number(100 * share, 2) + " % of "; };
-  std::vector<std::string> shares;
-  if (unjudged.part > 0) shares.push_back(percent(unjudged.part_share()) + "the part");
-  if (unjudged.gaps > 0) shares.push_back("gaps of " + percent(unjudged.gap_share()) + "its volume");
-  return join(shares, " and ");
+std::string duration_words(const Estimate& estimate) {
+  if (!estimate.resin_known) return "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
+  if (!estimate.exposure) return "not known: the part gets no light in the estimate";
+  return number(estimate.exposure->seconds) + " s in " + std::to_string(estimate.exposure->turns) +
+         (estimate.exposure->turns == 1 ? " turn" : " turns") + ", brightest pixel " +
+         number(estimate.exposure->peak_intensity_mw_cm2) + " mW/cm2";
 }
 
-/// Whether the estimate speaks of the part as it is.
-bool is_sure(const Plan& plan) {
-  const auto is_thin = [](double voxels) { return voxels < model::narrow_voxels; };
-  const bool is_whole = !plan.pieces || plan.pieces->is_surely_as_part();
-  return plan.all_judged && is_whole && !plan.in_doubt && !(plan.wall_voxels && is_thin(*plan.wall_voxels)) &&
-         !(plan.thinnest_place && is_thin(plan.thinnest_place->voxels));
-}
-
-std::string print_rows(const Plan& plan) {
-  if (!plan.preview) {
-    return row("will it print", "not known: no voxel of " + number(plan.coarseness * plan.grid.voxel_mm) +
-                                    " mm is wholly inside the part");
+std::string estimate_rows(const Estimate& estimate) {
+  std::string text = row("verdict", words(estimate));
+  for (const std::string& doubt : estimate.too_coarse) text += row("  too coarse", doubt);
+  if (estimate.iterations == 0) return text;
+  text += row("estimate", "voxels of " + number(estimate.voxel_mm) + " mm, " + std::to_string(estimate.angles) +
+                              " angles, " + std::to_string(estimate.iterations) + " iterations");
+  if (const auto& wrong = estimate.wrong) {
+    text += row("  wrong voxels", "z = " + number(wrong->low_mm) + " to " + number(wrong->high_mm) + " mm, most at " +
+                                      number(wrong->worst_mm) + " mm");
   }
-  const optimize::Printed& nominal = plan.preview->trials.nominal;
-  const char* answer = nominal.figures.pw <= 0 ? "not everywhere" : is_sure(plan) ? "yes" : "perhaps";
-  std::string text =
-      row("will it print", std::string(answer) + ": process window " + signed_number(window(nominal)) +
-                               " of the largest dose, VER " + number(nominal.figures.ver) + " (estimate on voxels of " +
-                               std::to_string(plan.coarseness) + (plan.coarseness == 1 ? " pixel)" : " pixels)"));
-  constexpr double negligible = 0.001;
-  if (!plan.all_judged || plan.unjudged.share() > negligible) {
-    text += row("  not judged", unjudged_share(plan.unjudged) + ", too thin for these voxels, most between z = " +
-                                    number(plan.unjudged_low_mm) + " and " + number(plan.unjudged_high_mm) + " mm; " +
-                                    (plan.coarseness > 1 ? "vam-slice states which the printer's voxels resolve"
-                                                         : "smaller pixels, or thicker walls, resolve them"));
-  }
-  const std::string torn = plan.pieces && nominal.figures.pw > 0 ? verdict::words(*plan.pieces) : "";
-  if (!torn.empty()) text += row("  pieces", torn);
-  for (const auto& single : plan.preview->trials.singles)
+  for (const auto& single : estimate.trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
-  if (!plan.exposure) {
-    return text + row("duration", plan.resin_known
-                                      ? "not known: the part gets no light in the estimate"
-                                      : "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
+  return text + row("duration", duration_words(estimate));
+}
+
+void add_to(Json& json, const Estimate& estimate) {
+  json["estimate_voxel_mm"] = estimate.voxel_mm;
+  json["unresolved_part"] = estimate.verdict.unresolved.part_share();
+  json["unresolved_gaps"] = estimate.verdict.unresolved.gap_share();
+  if (estimate.iterations > 0) {
+    json["iterations"] = estimate.iterations;
+    json["angles"] = estimate.angles;
+    json["ver"] = estimate.verdict.whole.ver;
+    json["pw"] = estimate.verdict.whole.pw;
+    add_to(json, estimate.verdict);
   }
-  return text + row("duration", number(plan.exposure->seconds) + " s in " + std::to_string(plan.exposure->turns) +
-                                    (plan.exposure->turns == 1 ? " turn" : " turns") + ", brightest pixel " +
-                                    number(plan.exposure->peak_intensity_mw_cm2) + " mW/cm2");
+  json["verdict"] = words(estimate);
+  json["prints"] = estimate.prints ? Json(*estimate.prints ? 1 : 0) : Json(nullptr);
+  if (const auto& wrong = estimate.wrong)
+    json["wrong"] = {{"low_mm", wrong->low_mm}, {"high_mm", wrong->high_mm}, {"worst_mm", wrong->worst_mm}};
+  for (const auto& single : estimate.trials.singles) {
+    const std::string name(model::tolerance_table[single.tolerance].name);
+    json["pw_deviating"][name] = worst_window(single);
+  }
+  if (estimate.exposure) score::add_to(json, *estimate.exposure);
 }
 
 std::string wall_words(const Plan& plan) {
@@ -152,7 +147,7 @@ std::string table(const Plan& plan) {
   if (!trapped.empty()) text += row("trapped resin", trapped);
   if (plan.sharp_edges)
     text += row("sharp edges", "some, or tips, taper to less than 3 voxels, and may not print there");
-  return plan.coarseness > 0 ? text + print_rows(plan) : text;
+  return plan.estimate ? text + estimate_rows(*plan.estimate) : text;
 }
 
 Json report(const Plan& plan) {
@@ -173,22 +168,7 @@ Json report(const Plan& plan) {
   }
   json["sharp_edges"] = plan.sharp_edges;
   json["trapped_resin"] = solid::trapped_resin_figures(plan.cavities, cavity_voxel_mm(plan), plan.stretch_z);
-  if (plan.coarseness > 0) {
-    json["estimate_voxel_mm"] = plan.coarseness * plan.grid.voxel_mm;
-    json["all_judged"] = is_sure(plan);
-    json["unresolved_part"] = plan.unjudged.part_share();
-    json["unresolved_gaps"] = plan.unjudged.gap_share();
-  }
-  if (plan.preview) {
-    json["ver"] = plan.preview->trials.nominal.figures.ver;
-    json["pw"] = window(plan.preview->trials.nominal);
-    if (plan.pieces) verdict::add_to(json, *plan.pieces);
-    for (const auto& single : plan.preview->trials.singles) {
-      const std::string name(model::tolerance_table[single.tolerance].name);
-      json["pw_deviating"][name] = worst_window(single);
-    }
-  }
-  if (plan.exposure) score::add_to(json, *plan.exposure);
+  if (plan.estimate) add_to(json, *plan.estimate);
   return json;
 }
 

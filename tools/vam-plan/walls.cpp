@@ -6,7 +6,7 @@
 #include "solid/voxel/size_doubt.hpp"
 #include "solid/voxel/wall.hpp"
 #include "vam-plan/filled.hpp"
-#include "vam-plan/steps.hpp"
+#include "vam-plan/plan.hpp"
 
 namespace vam::plan_tool {
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double most_voxels = 16e6;  // of the grid on which walls are measured
 
-/// Of walls and gaps that no voxel of the printer resolves.
+/// Of walls and gaps that no voxel resolves.
 void warn_of_resolution(const std::string& subject, const Filled& fine, double stretch_z) {
   for (const std::string& doubt :
        solid::resolution_doubts(subject, fine.content.unresolved, fine.volume.grid, stretch_z))
@@ -27,18 +27,13 @@ bool has_walls_below_a_voxel(const verdict::Unresolved& unresolved, const solid:
   return unresolved.loses_walls() || (thin && unresolved.is_much());
 }
 
-bool doubts(const verdict::Unresolved& unresolved) {
-  return unresolved.loses_walls() || unresolved.shuts_gaps() || unresolved.leaves_doubt() ||
-         (unresolved.surface && unresolved.surface->may_be_pierced());
-}
-
 solid::Walls::Place place_of(const model::ThinPlaces& walls, const Plan& plan) {
   const auto& [x, y, z] = walls.at_mm;
   return {walls.mm / plan.grid.voxel_mm, walls.mm, {x, y, z / plan.stretch_z}};
 }
 
 /// Where walls are measured on larger voxels, what the part's own surface tells.
-verdict::Unresolved of_printers_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
+verdict::Unresolved of_prints_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
   if (plan.wall_resolution == 1) return fine.content.unresolved;
   verdict::Unresolved told;
   if (part.surface) told.surface = {part.surface(plan.grid), plan.grid.voxel_mm};
@@ -52,7 +47,7 @@ void add_walls(Plan& plan, const solid::Part& part) {
   plan.wall_resolution = std::max(1, static_cast<int>(by));
   const Filled fine =
       filled(plan.wall_resolution == 1 ? part : without_surface(part), plan.wall_resolution * plan.grid.voxel_mm);
-  const verdict::Unresolved unresolved = of_printers_voxels(plan, part, fine);
+  plan.unresolved = of_prints_voxels(plan, part, fine);
   if (plan.wall_resolution == 1 && fine.content.solid_voxels > 0)
     warn_of_resolution(part.subject, fine, plan.stretch_z);
   const solid::Walls walls = solid::walls(fine.volume, plan.stretch_z);
@@ -60,14 +55,13 @@ void add_walls(Plan& plan, const solid::Part& part) {
   plan.cavities = fine.content.cavities;
   plan.wall_voxels = walls.thinnest_voxels;
   plan.wall_mm = walls.thinnest_mm;
-  plan.in_doubt = doubts(unresolved);
   if (has_walls_below_a_voxel(fine.content.unresolved, walls)) plan.wall_voxels.reset();
-  if (unresolved.surface) plan.surface = unresolved.surface->places;
   if (!plan.wall_voxels) return;
   *plan.wall_voxels *= plan.wall_resolution;
   plan.thinnest_place = walls.thinnest_place;
   if (plan.thinnest_place) plan.thinnest_place->voxels *= plan.wall_resolution;
-  const model::ThinPlaces& thin = plan.surface.walls;
+  if (!plan.unresolved.surface) return;
+  const model::ThinPlaces& thin = plan.unresolved.surface->places.walls;
   if (!thin.are_below(model::lost_voxels, plan.grid.voxel_mm)) return;
   const solid::Walls::Place place = place_of(thin, plan);
   if (!plan.thinnest_place || place.voxels < plan.thinnest_place->voxels) plan.thinnest_place = place;

@@ -7,13 +7,19 @@
 #include "light/grids/lit_grid.hpp"
 #include "light/operators/make_operator.hpp"
 #include "light/rays/vial_setup.hpp"
+#include "model/conditions.hpp"
 #include "model/dose_spread.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/methods/method.hpp"
+#include "optimize/run/shown.hpp"
+#include "optimize/run/slice_figures.hpp"
 
 namespace vam::optimize {
 
 namespace {
+
+constexpr int most_iterations = 60;
+constexpr double most_updates = 1e10;  // voxels x angles x iterations: a projection of 2e8 takes 0.1 s
 
 /// The target within the grid of all that its light reaches.
 model::Volume extended(const model::Volume& target, const light::Margin& margin) {
@@ -50,10 +56,15 @@ Preview preview(const PreviewTask& wanted) {
   };
   task.circle = model::writable_circle(lit.grid, wanted.radius_mm);
   task.part = light::moved(wanted.part, margin);
-  task.limits.iterations = wanted.iterations;
+  task.limits.at_least = wanted.iterations;
+  const double updates = static_cast<double>(lit.grid.size()) * wanted.angles;  // an iteration's
+  task.limits.iterations = std::clamp(static_cast<int>(most_updates / updates), wanted.iterations,
+                                      std::max(wanted.iterations, most_iterations));
+  task.limits.until = model::parse_conditions(automatic_until, SliceFigures::names());
   task.limits.patience = 0;
   task.count_pieces = true;
   task.limit.of_even = usual_of_even;
+  task.raising = usual_raising;
   const double seconds = model::seconds_of(wanted.printer.stage, wanted.printer.stage.turns);
   task.blur_px = model::spread_mm(wanted.printer.resin, seconds) / lit.grid.voxel_mm;
   task.make = [](double max_intensity) {
@@ -66,14 +77,21 @@ Preview preview(const PreviewTask& wanted) {
   task.around = [&](std::span<const Slab> inserts) { return light::make_operator(setup, inserts); };
   std::vector<Image> frames;
   task.write = [&](int, const Image& image) { frames.push_back(image); };
-  Preview made{lit.grid, optimise(task, *light::make_operator(setup)), {}};
+  const auto light = light::make_operator(setup);
+  Preview made{lit.grid, optimise(task, *light), {}, {}};
+  const double threshold = task.demands.window.threshold();
+  for (const int more : {0, 1}) {
+    const double dose = (1 + (more == 1 ? unsure_dose : -unsure_dose)) * threshold;
+    judge_shown(
+        task, *light, frames, [&](const model::DoseMetrics&) { return dose; }, made.beside[more]);
+  }
   Trial trial;
   trial.printer = wanted.printer;
   trial.tolerances = wanted.tolerances;
   trial.info = info_of(wanted.printer, lit.grid, wanted.angles);
   trial.grid = lit.grid;
   trial.seconds = seconds;
-  trial.threshold = task.demands.window.threshold();
+  trial.threshold = threshold;
   made.trials = run_trials(trial, task, frames);
   return made;
 }

@@ -2,6 +2,8 @@
 // A print in short: few iterations on coarse voxels, and what becomes of them in a printer off its settings.
 #pragma once
 
+#include <array>
+
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "model/tolerances.hpp"
@@ -10,19 +12,24 @@
 
 namespace vam::optimize {
 
+/// What the dose of a preview may be off that of more iterations on voxels as large: as much as the judge of a print
+/// allows for [verdict::firm_dose].
+inline constexpr double unsure_dose = 0.02;
+
 struct PreviewTask {
   model::Volume target;    // coverage, on the voxels of the preview
   model::Printer printer;  // with pixels as large (model::coarser)
   double radius_mm = 0;    // of the resin that is constrained (optics::judged_radius_mm)
   model::VoxelBox part;    // its box in the target
   int angles = 92;         // a multiple of 4: quarters of a turn share their rays
-  int iterations = 12;
+  int iterations = 12;     // and more, up to 60 in seconds, while it does not print with the margin of --method auto
   model::Tolerances tolerances{};
 };
 
 struct Preview {
   model::Grid grid;  // all that the light reaches: the voxels of the outcome
   VolumeOutcome outcome;
+  std::array<VolumeOutcome, 2> beside;  // if the resin set at a dose that is lower and higher by unsure_dose
   Trials trials;
 };
 

@@ -158,6 +158,19 @@ double resolving_voxel_mm(const FillSummary& content, const model::Grid& grid) {
   return 0.5 * grid.voxel_mm * static_cast<double>(content.most);
 }
 
+double telling_voxel_mm(const verdict::Unresolved& unresolved, double voxel_mm) {
+  double telling = 0.5 * voxel_mm;
+  if (!unresolved.surface) return telling;
+  const model::PartSurface& places = unresolved.surface->places;
+  for (const auto& [thin, voxels] : {std::pair{places.walls, model::lost_voxels},
+                                     {places.gaps, model::lost_voxels},
+                                     {places.blocked, model::free_voxels},
+                                     {places.relief, model::narrow_voxels}}) {
+    if (thin.are_below(voxels, voxel_mm)) telling = std::min(telling, resolving_mm(thin, voxels));
+  }
+  return telling;
+}
+
 std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
                        const Writable& room, bool unit_known) {
   const Point size = part.extent.box.size();

@@ -27,6 +27,10 @@ namespace vam::solid {
 /// level.
 [[nodiscard]] double resolving_voxel_mm(const FillSummary& content, const model::Grid& grid);
 
+/// Voxels, in two digits, that show whether all thin places of the part's own surface print; where it has or states
+/// none, half as large.
+[[nodiscard]] double telling_voxel_mm(const verdict::Unresolved& unresolved, double voxel_mm);
+
 /// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
 /// is less than a tenth as large as the writable width. `unit_known`: the user has stated what a unit of the file is,
 /// or how large the part.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the judge says of a print of few iterations, on voxels that are larger for large parts.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/printer.hpp"
+#include "optimize/run/yield.hpp"
+#include "score/exposure_plan.hpp"
+#include "solid/voxel/part.hpp"
+#include "verdict/verdict.hpp"
+
+namespace vam::plan_tool {
+
+inline constexpr const char* deviations = "axis=0.5px,index=0.005,angle=0.25deg";
+
+/// Heights in the print: slices with wrong voxels, and the one with most of them.
+struct WrongHeights {
+  double low_mm, high_mm, worst_mm;
+};
+
+struct Estimate {
+  double voxel_mm = 0;
+  int angles = 0, iterations = 0;  // 0: no voxel is wholly inside the part
+  verdict::Verdict verdict;
+  bool dose_decides = false;            // as far as it may be off: optimize::unsure_dose
+  std::optional<bool> prints;           // none: not known
+  std::string told_by;                  // then: "--voxel 0.1", or the tool
+  std::vector<std::string> too_coarse;  // and what voxels larger than those of the print do not resolve
+  std::optional<WrongHeights> wrong;
+  optimize::Trials trials;
+  bool resin_known = false;
+  std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
+};
+
+/// The part as it is sliced, and for whom.
+struct Wanted {
+  const solid::Part& part;
+  const model::Printer& printer;
+  model::Grid grid;                // of the final print
+  verdict::Unresolved unresolved;  // of its voxels
+  double thinnest_voxels = 0;      // the thinnest wall or place of it; 0: less than what is measured
+  bool sharp_edges = false;        // thinner than what prints
+  double stretch_z = 1;
+  bool on_these_voxels = false;  // however long it takes
+};
+
+/// On voxels four times as large as those of the print, or larger by another power of 2 where the part has more than 2
+/// million of these; on smaller ones while these do not tell, and are few.
+[[nodiscard]] Estimate estimated(const Wanted& wanted);
+
+/// "will print: ...", or "unknown at 0.26 mm; --voxel 0.1 tells: ...".
+[[nodiscard]] std::string words(const Estimate& estimate);
+
+}  // namespace vam::plan_tool
