@@ -34,7 +34,7 @@ void CavityFinder::add(int count, const float* slices) {
 }
 
 void CavityFinder::add(const std::vector<VoxelRun>& runs) {
-  open_.add(runs, by_faces_only);
+  open_.add(runs, Touching::faces);
   for (const VoxelRun& run : runs)
     rows_.push_back(
         {run.end - run.begin, {(run.begin + run.end) / 2, run.row, slices_}, run.begin < 0 || run.end > grid_.nx});

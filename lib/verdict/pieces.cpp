@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/index.hpp"
-#include "verdict/private/bit_slice.hpp"
 
 namespace vam::verdict {
 
@@ -41,28 +40,14 @@ void RunSets::join(std::size_t a, std::size_t b) {
   voxels_[a] += voxels_[b];
 }
 
-void RunSets::join_faces(const Lists& lists, int rows_apart) {
+void RunSets::join_near(const Lists& lists, int rows_apart, Touching touching) {
   for_near_runs(lists.of, lists.others, rows_apart, [&](std::size_t i, std::size_t j) {
-    if (lists.of[i].begin >= lists.others[j].end || lists.others[j].begin >= lists.of[i].end) return;
-    join(lists.first + i, lists.second + j);
+    const bool overlap = lists.of[i].begin < lists.others[j].end && lists.others[j].begin < lists.of[i].end;
+    if (overlap || touching == Touching::corners) join(lists.first + i, lists.second + j);
   });
 }
 
-void RunSets::join_edges(const Lists& lists, int rows_apart, const Joins& joins) {
-  for_near_runs(lists.of, lists.others, rows_apart, [&](std::size_t i, std::size_t j) {
-    if (set_of(lists.first + i) == set_of(lists.second + j)) return;
-    const VoxelRun& one = lists.of[i];
-    const VoxelRun& other = lists.others[j];
-    for (int dx = -1; dx <= 1; ++dx) {
-      const int end = std::min(one.end, other.end - dx);
-      for (int x = std::max(one.begin, other.begin - dx); x < end; ++x) {
-        if (joins({x, one.row, dx, rows_apart, lists.below})) return join(lists.first + i, lists.second + j);
-      }
-    }
-  });
-}
-
-void RunSets::add(const std::vector<VoxelRun>& slice, const Joins& joins) {
+void RunSets::add(const std::vector<VoxelRun>& slice, Touching touching) {
   const std::size_t first = parent_.size();
   for (const VoxelRun& run : slice) {
     parent_.push_back(parent_.size());
@@ -70,12 +55,14 @@ void RunSets::add(const std::vector<VoxelRun>& slice, const Joins& joins) {
     places_.push_back({(run.begin + run.end) / 2, run.row, slices_});
   }
   ++slices_;
-  const Lists level{slice, slice, first, first, false};
-  const Lists below{slice, last_, first, first - last_.size(), true};
-  join_faces(level, -1);
-  join_faces(below, 0);
-  join_edges(level, -1, joins);
-  for (const int rows_apart : {-1, 0, 1}) join_edges(below, rows_apart, joins);
+  const Lists level{slice, slice, first, first};
+  const Lists below{slice, last_, first, first - last_.size()};
+  join_near(level, -1, Touching::faces);
+  join_near(below, 0, Touching::faces);
+  if (touching == Touching::corners) {
+    join_near(level, -1, touching);
+    for (const int rows_apart : {-1, 0, 1}) join_near(below, rows_apart, touching);
+  }
   last_ = slice;
 }
 
@@ -103,45 +90,21 @@ std::vector<std::size_t> RunSets::forget(const std::function<void(std::size_t se
   return now;
 }
 
-void PieceCounter::add(const std::vector<VoxelRun>& slice, const Joins& joins) {
-  open_.add(slice, joins);
-  open_.forget([this](std::size_t set) { complete_ += open_.voxels(set) >= least_ ? 1 : 0; });
+void PieceCounter::add(const std::vector<VoxelRun>& slice, Touching touching, const JoinMore& join_more) {
+  const std::vector<VoxelRun> before = open_.last();
+  open_.add(slice, touching);
+  if (join_more) join_more(open_, before);
+  open_.forget([this](std::size_t set) {
+    ++complete_;
+    large_ += open_.voxels(set) >= least_ ? 1 : 0;
+  });
 }
 
-int PieceCounter::count() const {
-  int pieces = complete_;
-  for (std::size_t run = 0; run < open_.runs(); ++run) {
-    if (open_.set_of(run) == run && open_.voxels(run) >= least_) ++pieces;
-  }
+std::int64_t PieceCounter::counted(std::int64_t least) const {
+  std::int64_t pieces = least == 0 ? complete_ : large_;
+  for (std::size_t run = 0; run < open_.runs(); ++run)
+    pieces += open_.set_of(run) == run && open_.voxels(run) >= least ? 1 : 0;
   return pieces;
-}
-
-bool FieldPieces::joins(const VoxelPair& pair, const std::vector<float>& slice) const {
-  const auto value = [&](int x, int y, bool below) {
-    return static_cast<double>((below ? last_ : slice)[product(y, width_) + static_cast<std::size_t>(x)]);
-  };
-  const int x = pair.x + pair.dx;
-  const int y = pair.y + pair.dy;
-  if (pair.dx != 0 && pair.dy != 0 && pair.below) {  // the middle of the eight
-    double sum = 0;
-    for (const bool below : {false, true}) {
-      sum += value(pair.x, pair.y, below) + value(x, pair.y, below) + value(pair.x, y, below) + value(x, y, below);
-    }
-    return sum / 8 >= level_;
-  }
-  // Of the four, the saddle of their bilinear interpolation, as above the level: it lies on the best way.
-  const double a = value(pair.x, pair.y, false) - level_;
-  const double d = value(x, y, pair.below) - level_;
-  const bool flat = !pair.below;  // else the other two are those beside them in the same row or column
-  const double b = (flat ? value(x, pair.y, false) : value(x, y, false)) - level_;
-  const double c = (flat ? value(pair.x, y, false) : value(pair.x, pair.y, true)) - level_;
-  return b >= 0 || c >= 0 || a * d >= b * c;
-}
-
-void FieldPieces::add(std::vector<float> slice) {
-  counter_.add(reaching(width_, height_, slice.data(), level_).runs(),
-               [&](const VoxelPair& pair) { return joins(pair, slice); });
-  last_ = std::move(slice);
 }
 
 }  // namespace vam::verdict

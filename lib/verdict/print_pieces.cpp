@@ -10,10 +10,10 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "verdict/private/bit_slice.hpp"
+#include "verdict/private/field_shape.hpp"
 #include "verdict/private/pieces.hpp"
 #include "verdict/private/smooth_print.hpp"
 #include "verdict/private/torn.hpp"
-#include "verdict/private/tunnels.hpp"
 
 namespace vam::verdict {
 
@@ -52,9 +52,8 @@ class PrintPieceCounter::State {
   int width_, height_;
   double threshold_;
   PieceCounter part_;
-  FieldPieces part_at_half_, print_;
-  std::vector<FieldPieces> print_of_others_;  // of other doses
-  TunnelCounter of_part_, of_print_, of_smooth_, of_firm_;
+  FieldCounter of_part_, of_print_, of_smooth_, of_firm_;
+  std::vector<FieldCounter> of_others_;  // of other doses
   SmoothPrint smooth_;
   std::vector<Slice> last_;                        // up to two
   TornSets broken_{Torn::part}, shut_{Torn::gap};  // in all but the last slice
@@ -65,13 +64,11 @@ PrintPieceCounter::State::State(int width, int height, double threshold, const s
       height_(height),
       threshold_(threshold),
       part_(PrintPieces::least_voxels),
-      part_at_half_(width, height, model::half_surface, PrintPieces::least_voxels),
-      print_(width, height, threshold, PrintPieces::least_voxels),
-      print_of_others_(other_factors.size(), print_),
       of_part_(width, height, model::half_surface),
       of_print_(width, height, threshold),
       of_smooth_(width, height, threshold),
       of_firm_(width, height, threshold),
+      of_others_(other_factors.size(), of_print_),
       smooth_(width, height, threshold) {
   if (!circle) return;
   for (int y = 0; y < height; ++y) {
@@ -125,31 +122,23 @@ void PrintPieceCounter::State::add_judged(const float* dose, const float* covera
   of_print_.add(count, dose);
   of_smooth_.add(static_cast<int>(smoothed.size() / size), smoothed.data());
   of_firm_.add(count, firm.data());
-  const std::array<TunnelCounter*, 4> tunnels{&of_part_, &of_print_, &of_smooth_, &of_firm_};
-  const auto add_field = [&](FieldPieces& field, const auto& value_of) {
-    for (int k = 0; k < count; ++k) {
-      std::vector<float> slice(size);
-      for (std::size_t i = 0; i < size; ++i) slice[i] = value_of(product(k, size) + i);
-      field.add(std::move(slice));
-    }
-  };
-  std::vector<std::function<void()>> work;
-  work.emplace_back([&] {
+  std::vector<float> other(product(count, size));
+  for (std::size_t n = 0; n < other_factors.size(); ++n) {
+    parallel_for(count, [&](int k) {
+      for (std::size_t i = product(k, size); i < product(k + 1, size); ++i)
+        other[i] = other_dose(other_factors[n], coverage[i], dose[i], threshold_);
+    });
+    of_others_[n].add(count, other.data());
+  }
+  std::vector<FieldCounter*> fields{&of_part_, &of_print_, &of_smooth_, &of_firm_};
+  for (FieldCounter& field : of_others_) fields.push_back(&field);
+  parallel_for(count_of(fields) + 1, [&](int n) {
+    if (n > 0) return fields[n - 1]->connect();
     for (const Slice& slice : slices) {
       const auto has_trace = [&](std::size_t i) { return (slice[i] & printed::trace) != 0; };
-      part_.add(BitSlice(width_, height_, false, has_trace).runs(), at_corners);
+      part_.add(BitSlice(width_, height_, false, has_trace).runs(), Touching::corners);
     }
   });
-  work.emplace_back([&] { add_field(part_at_half_, [&](std::size_t i) { return coverage[i]; }); });
-  work.emplace_back([&] { add_field(print_, [&](std::size_t i) { return dose[i]; }); });
-  for (std::size_t n = 0; n < other_factors.size(); ++n) {
-    work.emplace_back([&, n] {
-      add_field(print_of_others_[n],
-                [&](std::size_t i) { return other_dose(other_factors[n], coverage[i], dose[i], threshold_); });
-    });
-  }
-  for (TunnelCounter* const tunnel : tunnels) work.emplace_back([tunnel] { tunnel->connect(); });
-  parallel_for(count_of(work), [&](int n) { work[n](); });
   std::vector<Slice> last;
   for (std::size_t k = all.size() - std::min<std::size_t>(all.size(), 2); k < all.size(); ++k) last.push_back(*all[k]);
   last_ = std::move(last);
@@ -163,31 +152,32 @@ PrintPieces PrintPieceCounter::State::found() const {
     broken.add(top.part);
     shut.add(top.gap);
   }
-  TunnelCounter of_smooth = of_smooth_;
+  FieldCounter of_smooth = of_smooth_;
   const std::vector<float> rest = smooth_.rest();
   of_smooth.add(static_cast<int>(rest.size() / product(width_, height_)), rest.data());
   of_smooth.connect();
   // A dose that is moved to void may open a hole that the print has not.
-  const auto beyond_part = [&](std::int64_t tunnels) {
-    return std::max(tunnels - of_part_.tunnels(), std::int64_t{0});
-  };
-  const std::int64_t holes = beyond_part(std::min(of_print_.tunnels(), of_smooth.tunnels()));
-  const int print = print_.count();
-  int least = print;
-  int most = print;
-  for (const FieldPieces& other : print_of_others_) {
-    least = std::min(least, other.count());
-    most = std::max(most, other.count());
+  const FieldShape part = of_part_.found();
+  const FieldShape print = of_print_.found();
+  const auto beyond_part = [&](std::int64_t tunnels) { return std::max(tunnels - part.tunnels, std::int64_t{0}); };
+  const std::int64_t holes = beyond_part(std::min(print.tunnels, of_smooth.found().tunnels));
+  std::int64_t least = print.pieces;
+  std::int64_t most = print.pieces;
+  for (const FieldCounter& other : of_others_) {
+    const std::int64_t pieces = other.found().pieces;
+    least = std::min(least, pieces);
+    most = std::max(most, pieces);
   }
-  return {.part = part_.count(),
-          .part_at_half = part_at_half_.count(),
-          .print = print,
-          .print_fewer = print - least,
-          .print_more = most - print,
+  const auto number = [](std::int64_t pieces) { return static_cast<int>(pieces); };
+  return {.part = number(part_.large()),
+          .part_at_half = number(part.pieces),
+          .print = number(print.pieces),
+          .print_fewer = number(print.pieces - least),
+          .print_more = number(most - print.pieces),
           .broken = broken.found(),
           .shut = shut.found(),
           .holes = holes,
-          .firm_holes = std::min(holes, beyond_part(of_firm_.tunnels()))};
+          .firm_holes = std::min(holes, beyond_part(of_firm_.found().tunnels))};
 }
 
 PrintPieceCounter::PrintPieceCounter(int width, int height, double threshold,

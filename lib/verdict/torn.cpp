@@ -181,9 +181,9 @@ void TornSets::note_touching(const std::vector<VoxelRun>& lost, std::size_t firs
 void TornSets::add(const TornSlice& slice) {
   const std::vector<VoxelRun> lost_below = lost_.last();
   const std::vector<VoxelRun> rim_below = rim_.last();
-  lost_.add(slice.lost, at_corners);
-  rim_.add(slice.rim, at_corners);
-  torn_.add(slice.torn, at_corners);
+  lost_.add(slice.lost, Touching::corners);
+  rim_.add(slice.rim, Touching::corners);
+  torn_.add(slice.torn, Touching::corners);
   apart_.insert(apart_.end(), slice.apart.begin(), slice.apart.end());
   torn_of_lost_.insert(torn_of_lost_.end(), slice.torn_of_lost.begin(), slice.torn_of_lost.end());
   counted_.resize(lost_.runs());

@@ -16,26 +16,19 @@ struct VoxelRun {
   int row, begin, end;
 };
 
-/// Two voxels of a row and its neighbour rows, or of neighbouring slices.
-struct VoxelPair {
-  int x, y;    // of the one, in the slice that is added
-  int dx, dy;  // to the other
-  bool below;  // the other is in the slice before
-};
-
-/// Whether two voxels that share an edge or a corner are of one piece.
-using Joins = std::function<bool(const VoxelPair& pair)>;
+/// What makes two voxels of one set: a face that they share, or a corner at least.
+enum class Touching { faces, corners };
 
 /// pair(i, j) of all runs of two lists that have columns in common or next to each other, the other `rows_apart` rows
 /// on. Both are in order.
 void for_near_runs(const std::vector<VoxelRun>& runs, const std::vector<VoxelRun>& others, int rows_apart,
                    const std::function<void(std::size_t i, std::size_t j)>& pair);
 
-/// Sets of runs. Voxels that share a face are of one set. Runs are numbered in the order in which they come.
+/// Sets of runs, which are numbered in the order in which they come.
 class RunSets {
  public:
   /// The next slice, as of BitSlice::runs().
-  void add(const std::vector<VoxelRun>& slice, const Joins& joins);
+  void add(const std::vector<VoxelRun>& slice, Touching touching);
   /// The last slice, and the number of its first run.
   [[nodiscard]] const std::vector<VoxelRun>& last() const { return last_; }
   [[nodiscard]] std::size_t first_of_last() const { return parent_.size() - last_.size(); }
@@ -54,14 +47,12 @@ class RunSets {
   void join(std::size_t a, std::size_t b);
 
  private:
-  /// Of the last slice and, where `below` is not set, itself, else the one before.
+  /// Of the last slice and of itself, or the one before.
   struct Lists {
     const std::vector<VoxelRun>&of, &others;
     std::size_t first, second;
-    bool below;
   };
-  void join_faces(const Lists& lists, int rows_apart);
-  void join_edges(const Lists& lists, int rows_apart, const Joins& joins);
+  void join_near(const Lists& lists, int rows_apart, Touching touching);
 
   mutable std::vector<std::size_t> parent_;  // of each run; paths are shortened when they are followed
   std::vector<std::int64_t> voxels_;         // of the set, at the run that stands for it
@@ -70,42 +61,23 @@ class RunSets {
   int slices_ = 0;  // so far
 };
 
-/// Voxels that touch, by a corner at least, are of one set.
-[[nodiscard]] inline bool at_corners(const VoxelPair& /*pair*/) { return true; }
-/// Only those that share a face are.
-[[nodiscard]] inline bool by_faces_only(const VoxelPair& /*pair*/) { return false; }
-
-/// Counts pieces of at least so many voxels. Memory: the runs of two slices.
+/// Counts pieces, and those of at least so many voxels. Memory: the runs of two slices.
 class PieceCounter {
  public:
   explicit PieceCounter(std::int64_t least_voxels) : least_(least_voxels) {}
+  /// Joins runs of a slice, RunSets::last(), and of the one before, numbered just before these.
+  using JoinMore = std::function<void(RunSets& sets, const std::vector<VoxelRun>& before)>;
   /// The next slice, as of BitSlice::runs().
-  void add(const std::vector<VoxelRun>& slice, const Joins& joins);
-  [[nodiscard]] int count() const;
+  void add(const std::vector<VoxelRun>& slice, Touching touching, const JoinMore& join_more = {});
+  [[nodiscard]] std::int64_t all() const { return counted(0); }
+  [[nodiscard]] std::int64_t large() const { return counted(least_); }
 
  private:
+  [[nodiscard]] std::int64_t counted(std::int64_t least) const;
+
   std::int64_t least_;
-  RunSets open_;      // that reach the last slice
-  int complete_ = 0;  // the others
-};
-
-/// Counts pieces of a field at a level > 0: its voxels that reach it, joined across an edge where the bilinear
-/// interpolation between them does, and across a corner where the mean of the eight voxels around it does.
-class FieldPieces {
- public:
-  FieldPieces(int width, int height, double level, std::int64_t least_voxels)
-      : width_(width), height_(height), level_(level), counter_(least_voxels) {}
-  /// The next slice, row-major.
-  void add(std::vector<float> slice);
-  [[nodiscard]] int count() const { return counter_.count(); }
-
- private:
-  [[nodiscard]] bool joins(const VoxelPair& pair, const std::vector<float>& slice) const;
-
-  int width_, height_;
-  double level_;
-  PieceCounter counter_;
-  std::vector<float> last_;
+  RunSets open_;                           // that reach the last slice
+  std::int64_t complete_ = 0, large_ = 0;  // the others
 };
 
 }  // namespace vam::verdict

@@ -14,20 +14,20 @@
 #include "lib/verdict/printed_volume.hpp"
 #include "verdict/defect_voxels.hpp"
 #include "verdict/private/bit_slice.hpp"
+#include "verdict/private/field_shape.hpp"
 
 using namespace vam;
 using namespace vam::test;
 
 namespace {
 
-int counted(const Solid& solid, std::int64_t least) {
+std::int64_t counted(const Solid& solid, std::int64_t least) {
   verdict::PieceCounter counter(least);
   for (int z = 0; z < solid.nz; ++z) {
     const auto is = [&](std::size_t i) { return solid.voxels[z * solid.nx * solid.ny + static_cast<int>(i)] != 0; };
-    counter.add(verdict::BitSlice(solid.nx, solid.ny, false, is).runs(),
-                [](const verdict::VoxelPair&) { return true; });
+    counter.add(verdict::BitSlice(solid.nx, solid.ny, false, is).runs(), verdict::Touching::corners);
   }
-  return counter.count();
+  return counter.large();
 }
 
 int flooded(Solid solid, std::int64_t least) {
@@ -317,11 +317,12 @@ TEST_CASE("a volume of one slice, and of one column") {
 }
 
 TEST_CASE("a field is joined across an edge or a corner where it is between them, by closed forms") {
-  const auto pieces = [](std::vector<float> below, std::vector<float> slice) {
-    verdict::FieldPieces counter(2, 2, 1, 1);
-    counter.add(std::move(below));
-    counter.add(std::move(slice));
-    return counter.count();
+  const auto pieces = [](const std::vector<float>& below, const std::vector<float>& slice) {
+    verdict::FieldCounter counter(2, 2, 1, 1);
+    counter.add(1, below.data());
+    counter.add(1, slice.data());
+    counter.connect();
+    return counter.found().pieces;
   };
   // The saddle of 2, b, b, 2 is their mean: 1 at b = 0.
   CHECK(pieces({0, 0, 0, 0}, {2, 0.01F, 0.01F, 2}) == 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tunnels against closed forms, and against pieces, cavities and cells of a whole volume counted one by one.
-#include "verdict/private/tunnels.hpp"
+#include "verdict/private/field_shape.hpp"
 
 #include <doctest/doctest.h>
 
@@ -36,13 +36,13 @@ Field field(int nx, int ny, int nz, const std::function<double(double x, double 
 }
 
 std::int64_t counted(const Field& of, double level, int a_pass) {
-  verdict::TunnelCounter counter(of.nx, of.ny, level);
+  verdict::FieldCounter counter(of.nx, of.ny, level);
   for (int z = 0; z < of.nz; z += a_pass) {
     counter.add(std::min(a_pass, of.nz - z), of.values.data() + z * of.nx * of.ny);
     if (a_pass > 2) counter.connect();  // at any time
   }
   counter.connect();
-  return counter.tunnels();
+  return counter.found().tunnels;
 }
 
 /// Distance inwards from a ring around z.
@@ -224,7 +224,7 @@ TEST_CASE("inside a cell: a channel between opposite corners, through the ring o
 }
 
 TEST_CASE("a volume of no slice, one slice, one column") {
-  CHECK(verdict::TunnelCounter(3, 3, 1).tunnels() == 0);
+  CHECK(verdict::FieldCounter(3, 3, 1).found().tunnels == 0);
   CHECK(counted(field(4, 3, 1, [](double, double, double) { return 2; }), 1, 1) == 0);
   CHECK(counted(field(5, 5, 1, [](double x, double y, double) { return std::hypot(x, y) < 1 ? 0 : 2; }), 1, 1) == 1);
   CHECK(counted(field(1, 1, 5, [](double, double, double z) { return z == 0 ? 0.5 : 2; }), 1, 2) == 0);

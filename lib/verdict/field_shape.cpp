@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verdict/private/tunnels.hpp"
+#include "verdict/private/field_shape.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -168,7 +168,7 @@ std::size_t run_of(const std::vector<VoxelRun>& runs, int x, int y) {
 
 /// The Euler characteristic is the sum of those of cells - faces + edges - corners: a cell brings those that it has at
 /// its low sides. Within a cell it is pieces - tunnels, which are what the rest joins inside.
-void TunnelCounter::add_cell(const std::array<float, 8>& values, double level, int x, int y, Layer& layer) {
+void FieldCounter::add_cell(const std::array<float, 8>& values, double level, int x, int y, Layer& layer) {
   Corners corners{};
   for (int n = 0; n < 8; ++n) corners[n] = static_cast<float>(static_cast<double>(values[n]) - level);
   const Parts edges = along_edges(corners);
@@ -193,7 +193,7 @@ void TunnelCounter::add_cell(const std::array<float, 8>& values, double level, i
 }
 
 /// Cells with a corner that is solid and one that is not. nullptr: beyond the volume.
-TunnelCounter::Layer TunnelCounter::layer(const float* below, const float* above) const {
+FieldCounter::Layer FieldCounter::layer(const float* below, const float* above) const {
   const auto bits = [this](const float* slice) {
     return slice == nullptr ? BitSlice(width_, height_) : reaching(width_, height_, slice, level_);
   };
@@ -219,7 +219,7 @@ TunnelCounter::Layer TunnelCounter::layer(const float* below, const float* above
   return made;
 }
 
-void TunnelCounter::add(int count, const float* slices) {
+void FieldCounter::add(int count, const float* slices) {
   if (count == 0) return;
   const std::size_t size = product(width_, height_);
   std::vector<Layer> layers(count, Layer{BitSlice(width_, height_), {}, 0});
@@ -232,45 +232,32 @@ void TunnelCounter::add(int count, const float* slices) {
   last_ = std::vector<float>(last, last + size);
 }
 
-/// The corners of joins lie in these runs and in those of the slice before.
-void TunnelCounter::Pieces::add(const std::vector<VoxelRun>& runs, const std::vector<Join>& joins, bool solid) {
-  const std::vector<VoxelRun> below = sets.last();
-  sets.add(runs, by_faces_only);
-  const std::size_t first = sets.first_of_last();
-  for (const Join& join : joins) {
-    if (join.solid != solid) continue;
-    const auto number = [&](const Corner& at) {
-      return at.above ? first + run_of(runs, at.x, at.y) : first - below.size() + run_of(below, at.x, at.y);
-    };
-    sets.join(number(join.from), number(join.to));
-  }
-  sets.forget([this](std::size_t) { ++complete; });
-}
-
-std::int64_t TunnelCounter::Pieces::count() const {
-  std::int64_t all = complete;
-  for (std::size_t run = 0; run < sets.runs(); ++run) all += sets.set_of(run) == run ? 1 : 0;
-  return all;
-}
-
-void TunnelCounter::connect(const Layer& layer) {
+void FieldCounter::connect(const Layer& layer) {
   euler_ += layer.euler;
-  solid_.add(layer.solid.runs(), layer.joins, true);
-  rest_.add(layer.solid.runs(false, true), layer.joins, false);
+  for (const bool solid : {true, false}) {
+    (solid ? solid_ : rest_)
+        .add(layer.solid.runs(solid, !solid), Touching::faces, [&](RunSets& sets, const std::vector<VoxelRun>& before) {
+          const std::size_t first = sets.first_of_last();
+          const auto number = [&](const Corner& at) {
+            return at.above ? first + run_of(sets.last(), at.x, at.y)
+                            : first - before.size() + run_of(before, at.x, at.y);
+          };
+          for (const Join& join : layer.joins)
+            if (join.solid == solid) sets.join(number(join.from), number(join.to));
+        });
+  }
 }
 
-void TunnelCounter::connect() {
-  if (rest_.sets.runs() == 0) {  // what lies below the volume
-    connect(Layer{BitSlice(width_, height_), {}, 0});
-  }
+void FieldCounter::connect() {
+  if (!std::exchange(begun_, true)) connect(Layer{BitSlice(width_, height_), {}, 0});
   for (const Layer& layer : std::exchange(added_, {})) connect(layer);
 }
 
-std::int64_t TunnelCounter::tunnels() const {
-  if (last_.empty()) return 0;
-  TunnelCounter all = *this;
+FieldShape FieldCounter::found() const {
+  if (last_.empty()) return {};
+  FieldCounter all = *this;
   all.connect(layer(last_.data(), nullptr));
-  return all.solid_.count() + all.rest_.count() - 1 - all.euler_;
+  return {all.solid_.large(), all.solid_.all() + all.rest_.all() - 1 - all.euler_};
 }
 
 }  // namespace vam::verdict
