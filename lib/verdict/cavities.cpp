@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verdict/cavities.hpp"
 
+#include <array>
 #include <utility>
+#include <vector>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "model/dose_metrics.hpp"
 #include "verdict/private/bit_slice.hpp"
+#include "verdict/private/pieces.hpp"
 
 namespace vam::verdict {
 
@@ -25,15 +28,35 @@ std::vector<VoxelRun> margin_runs(const model::Grid& grid) { return BitSlice(gri
 
 }  // namespace
 
-CavityFinder::CavityFinder(const model::Grid& grid) : grid_(grid) { add(margin_runs(grid_)); }
+class CavityFinder::State {
+ public:
+  explicit State(const model::Grid& grid) : grid_(grid) { add(margin_runs(grid_)); }
+  void add(int count, const float* slices);
+  [[nodiscard]] Cavities found() const;
 
-void CavityFinder::add(int count, const float* slices) {
+ private:
+  /// The longest row of a cavity.
+  struct Row {
+    int length = 0;
+    std::array<int, 3> at{};
+    bool outside = false;  // some row of this piece is on the margin
+  };
+  void add(const std::vector<VoxelRun>& runs);
+
+  model::Grid grid_;
+  RunSets open_;           // that reach the last slice
+  std::vector<Row> rows_;  // of each run
+  int slices_ = -1;        // so far, without the margin below
+  Cavities closed_;
+};
+
+void CavityFinder::State::add(int count, const float* slices) {
   std::vector<std::vector<VoxelRun>> runs(static_cast<std::size_t>(count));
   parallel_for(count, [&](int k) { runs[k] = free_runs(grid_, slices + product(k, grid_.slice_size())); });
   for (const auto& slice : runs) add(slice);
 }
 
-void CavityFinder::add(const std::vector<VoxelRun>& runs) {
+void CavityFinder::State::add(const std::vector<VoxelRun>& runs) {
   open_.add(runs, Touching::faces);
   for (const VoxelRun& run : runs)
     rows_.push_back(
@@ -64,10 +87,16 @@ void CavityFinder::add(const std::vector<VoxelRun>& runs) {
   rows_ = std::move(last);
 }
 
-Cavities CavityFinder::found() const {
-  CavityFinder all = *this;
+Cavities CavityFinder::State::found() const {
+  State all = *this;
   all.add(margin_runs(grid_));
   return all.closed_;
 }
+
+CavityFinder::CavityFinder(const model::Grid& grid) : state_(std::make_unique<State>(grid)) {}
+CavityFinder::~CavityFinder() = default;
+
+void CavityFinder::add(int count, const float* slices) { state_->add(count, slices); }
+Cavities CavityFinder::found() const { return state_->found(); }
 
 }  // namespace vam::verdict

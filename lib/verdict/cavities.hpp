@@ -4,10 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "model/grid.hpp"
-#include "verdict/private/pieces.hpp"
 
 namespace vam::verdict {
 
@@ -24,25 +23,15 @@ struct Cavities {
 class CavityFinder {
  public:
   explicit CavityFinder(const model::Grid& grid);
+  ~CavityFinder();
   /// The next slices of coverage 0...1, row-major, on all threads.
   void add(int count, const float* slices);
   /// In the volume, beyond which all is free. After the last slice.
   [[nodiscard]] Cavities found() const;
 
  private:
-  /// The longest row of a cavity.
-  struct Row {
-    int length = 0;
-    std::array<int, 3> at{};
-    bool outside = false;  // some row of this piece is on the margin
-  };
-  void add(const std::vector<VoxelRun>& runs);
-
-  model::Grid grid_;
-  RunSets open_;           // that reach the last slice
-  std::vector<Row> rows_;  // of each run
-  int slices_ = -1;        // so far, without the margin below
-  Cavities closed_;
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace vam::verdict
