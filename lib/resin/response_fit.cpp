@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/stats/isotonic.hpp"
 #include "base/text.hpp"
 
 namespace vam::resin {
@@ -60,29 +61,19 @@ void check(const std::vector<GreyLevel>& levels, double noise, const std::string
     throw Error{Fault::data, source + ": zero intensity at full grey; check the dark reading"};
 }
 
-// Pool adjacent violators: the non-decreasing means with the least weighted squared distance [AYER55; physics §14.3].
+/// Makes the means such as never fall; how many were pooled.
 int pool(std::vector<GreyLevel>& levels) {
-  struct Pool {
-    double sum;
-    double weight;
-    std::size_t size;
-    [[nodiscard]] double mean() const { return sum / weight; }
-  };
-  std::vector<Pool> blocks;
+  std::vector<double> means;
+  std::vector<double> counts;
   for (const GreyLevel& level : levels) {
-    blocks.push_back({level.mean * level.count, level.count, 1});
-    while (blocks.size() > 1 && blocks[blocks.size() - 2].mean() > blocks.back().mean()) {
-      const Pool last = blocks.back();
-      blocks.pop_back();
-      blocks.back() = {blocks.back().sum + last.sum, blocks.back().weight + last.weight,
-                       blocks.back().size + last.size};
-    }
+    means.push_back(level.mean);
+    counts.push_back(level.count);
   }
   std::size_t i = 0;
   int pooled = 0;
-  for (const Pool& block : blocks) {
-    if (block.size > 1) pooled += static_cast<int>(block.size);
-    for (std::size_t k = 0; k < block.size; ++k) levels[i++].mean = std::max(0.0, block.mean());
+  for (const stats::Pool& equal : stats::isotonic(means, counts)) {
+    if (equal.size > 1) pooled += static_cast<int>(equal.size);
+    for (std::size_t k = 0; k < equal.size; ++k) levels[i++].mean = std::max(0.0, equal.mean());
   }
   return pooled;
 }

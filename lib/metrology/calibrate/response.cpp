@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/stats/isotonic.hpp"
 #include "base/text.hpp"
 
 namespace vam::metrology {
@@ -43,31 +45,18 @@ stats::Measured mean_of(const std::vector<double>& readings) {
   return {mean, error * stats::few_readings_factor(count_of(readings) - 1), count_of(readings)};
 }
 
-// Neighbours that fall become their mean, again and again [AYER55]: the nearest curve that never falls.
+/// The nearest curve that never falls.
 std::vector<stats::Measured> monotone(const std::vector<stats::Measured>& levels) {
-  struct Block {
-    double sum = 0;
-    double variance = 0;
-    int count = 0;
-    [[nodiscard]] double mean() const { return sum / count; }
-  };
-  std::vector<Block> blocks;
-  for (const auto& level : levels) {
-    blocks.push_back({level.value, level.sigma * level.sigma, 1});
-    while (blocks.size() > 1 && blocks.back().mean() < blocks[blocks.size() - 2].mean()) {
-      const Block last = blocks.back();
-      blocks.pop_back();
-      blocks.back().sum += last.sum;
-      blocks.back().variance += last.variance;
-      blocks.back().count += last.count;
-    }
-  }
+  std::vector<double> values;
+  for (const stats::Measured& level : levels) values.push_back(level.value);
   std::vector<stats::Measured> out;
-  for (const auto& block : blocks) {
-    for (int i = 0; i < block.count; ++i) {
-      // Pooling assumes that the true levels are equal; what a single level could still be is not known any better.
-      out.push_back({block.mean(), std::sqrt(block.variance / block.count), levels[out.size()].n});
-    }
+  for (const stats::Pool& pool : stats::isotonic(values, std::vector<double>(values.size(), 1.0))) {
+    const std::span<const stats::Measured> pooled(levels.data() + out.size(), pool.size);
+    double variance = 0;
+    for (const stats::Measured& level : pooled) variance += level.sigma * level.sigma;
+    // Pooling assumes that the true levels are equal; what a single level could still be is not known any better.
+    const double sigma = std::sqrt(variance / static_cast<double>(pool.size));
+    for (const stats::Measured& level : pooled) out.push_back({pool.mean(), sigma, level.n});
   }
   return out;
 }
