@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/stats/curve_fit.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "metrology/compare/emboss.hpp"
@@ -54,34 +55,21 @@ double otsu(const std::vector<float>& values) {
   return *low + width * (0.5 * static_cast<double>(first + last) + 1);
 }
 
-// Least squares over the pixels with a reading for which use(pixel, height) holds.
+/// Least squares over the pixels with a reading for which use(pixel, height) holds.
 template <class Use>
 BasePlane fit_plane(const Image& heights, const Use& use) {
-  std::array<double, 6> s{};  // 1, x, y, xx, xy, yy
-  std::array<double, 3> r{};
-  const double mx = 0.5 * (heights.width - 1);
-  const double my = 0.5 * (heights.height - 1);
+  std::vector<double> rows;  // 1, x, y
+  std::vector<double> used;
   for (int j = 0; j < heights.height; ++j) {
     for (int i = 0; i < heights.width; ++i) {
       const double h = heights(i, j);
       if (!std::isfinite(h) || !use(i, j, h)) continue;
-      const double x = i - mx;
-      const double y = j - my;
-      s[0] += 1, s[1] += x, s[2] += y, s[3] += x * x, s[4] += x * y, s[5] += y * y;
-      r[0] += h, r[1] += x * h, r[2] += y * h;
+      rows.insert(rows.end(), {1, i - 0.5 * (heights.width - 1), j - 0.5 * (heights.height - 1)});
+      used.push_back(h);
     }
   }
-  // Cramer's rule on the 3 x 3 normal equations.
-  const double c0 = s[3] * s[5] - s[4] * s[4];
-  const double c1 = s[1] * s[5] - s[4] * s[2];
-  const double c2 = s[1] * s[4] - s[3] * s[2];
-  const double determinant = s[0] * c0 - s[1] * c1 + s[2] * c2;
-  if (!(std::abs(determinant) > 0)) return {};
-  const double d0 = s[0] * s[5] - s[2] * s[2];
-  const double d1 = s[0] * s[4] - s[1] * s[2];
-  const double d2 = s[0] * s[3] - s[1] * s[1];
-  return {(r[0] * c0 - r[1] * c1 + r[2] * c2) / determinant, (-r[0] * c1 + r[1] * d0 - r[2] * d1) / determinant,
-          (r[0] * c2 - r[1] * d1 + r[2] * d2) / determinant};
+  const std::vector<double> plane = stats::linear_fit(rows, 3, used);
+  return {plane[0], plane[1], plane[2]};
 }
 
 double plane_at(const BasePlane& plane, const Image& image, int i, int j) {
