@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/weld.hpp"
 #include "solid/mesh/private/winding.hpp"
@@ -55,8 +55,7 @@ std::vector<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
 class Patches {
  public:
   Patches(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& cancelling)
-      : mesh_(mesh), root_(mesh.triangles.size()), keep_(mesh.triangles.size(), 0), met_(mesh.triangles.size(), 0) {
-    std::iota(root_.begin(), root_.end(), std::size_t{0});
+      : mesh_(mesh), patches_(mesh.triangles.size()), keep_(mesh.triangles.size(), 0), met_(mesh.triangles.size(), 0) {
     std::vector<char> doubtful(mesh.triangles.size(), 0);
     for (const std::size_t t : cancelling) doubtful[t] = 1;
     std::vector<Triangle> rest;
@@ -78,21 +77,17 @@ class Patches {
   }
 
   [[nodiscard]] bool needless(std::size_t triangle) {
-    const std::size_t root = find(triangle);
+    const std::size_t root = patches_.of(triangle);
     if (met_[root] == 0) return is_within_others(root);
     return keep_[root] == 0;
   }
 
  private:
-  std::size_t find(std::size_t t) {
-    while (root_[t] != t) t = root_[t] = root_[root_[t]];
-    return t;
-  }
   /// Single triangles of the others may be turned over still, and mislead beside them.
   bool is_mostly_within(std::size_t patch) {
     std::vector<int> points;
-    for (std::size_t t = 0; t < root_.size(); ++t)
-      if (find(t) == patch) points.push_back(mesh_.triangles[t][0]);
+    for (std::size_t t = 0; t < patches_.size(); ++t)
+      if (patches_.of(t) == patch) points.push_back(mesh_.triangles[t][0]);
     constexpr std::size_t some = 15;
     const std::size_t step = points.size() / some + 1;
     int within = 0;
@@ -111,22 +106,22 @@ class Patches {
   }
   // An edge of the patch with so many other triangles.
   void join(const std::vector<std::size_t>& patch, std::size_t others) {
-    std::size_t root = find(patch.front());
+    std::size_t root = patches_.of(patch.front());
     for (const std::size_t t : patch) {
-      const std::size_t other = find(t);
+      const std::size_t other = patches_.of(t);
       if (others > 0 || other == root) continue;
-      root_[other] = root;
+      patches_.join(root, other);
       keep_[root] |= keep_[other];
       met_[root] |= met_[other];
     }
     for (const std::size_t t : patch) {
-      if (others > 0) met_[find(t)] = 1;
-      if (others % 2 == 1) keep_[find(t)] = 1;
+      if (others > 0) met_[patches_.of(t)] = 1;
+      if (others % 2 == 1) keep_[patches_.of(t)] = 1;
     }
   }
 
   const model::TriangleSoup& mesh_;
-  std::vector<std::size_t> root_;
+  DisjointSets<> patches_;
   std::vector<char> keep_;
   std::vector<char> met_;
   std::vector<Triangle> rest_;           // that do not cancel
@@ -139,8 +134,7 @@ class Patches {
 class Copies {
  public:
   Copies(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& copies)
-      : patch_(mesh.triangles.size()), gain_(mesh.triangles.size(), 0) {
-    std::iota(patch_.begin(), patch_.end(), std::size_t{0});
+      : patches_(mesh.triangles.size()), gain_(mesh.triangles.size(), 0) {
     std::vector<char> copy(mesh.triangles.size(), 0);
     for (const std::size_t t : copies) copy[t] = 1;
     std::vector<Triangle> rest;
@@ -167,30 +161,26 @@ class Copies {
     });
   }
 
-  [[nodiscard]] bool needed(std::size_t triangle) { return gain_[find(triangle)] > 0; }
+  [[nodiscard]] bool needed(std::size_t triangle) { return gain_[patches_.of(triangle)] > 0; }
 
  private:
-  std::size_t find(std::size_t t) {
-    while (patch_[t] != t) t = patch_[t] = patch_[patch_[t]];
-    return t;
-  }
   // An edge of these copies.
   void join(const std::vector<std::size_t>& copies, long balance, long with) {
     if (with != 0) {
-      for (const std::size_t t : copies) gain_[find(t)] -= balance == 0 ? 1 : 0;
+      for (const std::size_t t : copies) gain_[patches_.of(t)] -= balance == 0 ? 1 : 0;
       return;
     }
-    const std::size_t root = find(copies.front());
+    const std::size_t root = patches_.of(copies.front());
     for (const std::size_t t : copies) {
-      const std::size_t other = find(t);
+      const std::size_t other = patches_.of(t);
       if (other == root) continue;
-      patch_[other] = root;
+      patches_.join(root, other);
       gain_[root] += gain_[other];
     }
     gain_[root] += balance != 0 ? 1 : 0;
   }
 
-  std::vector<std::size_t> patch_;
+  DisjointSets<> patches_;
   std::vector<long> gain_;  // edges that a patch balances, less those that it unbalances
 };
 

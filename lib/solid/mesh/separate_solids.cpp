@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "solid/mesh/private/topology.hpp"
@@ -15,31 +15,12 @@ namespace vam::solid {
 
 namespace {
 
-/// Points of a mesh that triangles connect.
-class ConnectedPoints {
- public:
-  explicit ConnectedPoints(const model::TriangleSoup& mesh) : parent_(mesh.points.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-    for (const Triangle& triangle : mesh.triangles) {
-      join(triangle[0], triangle[1]);
-      join(triangle[0], triangle[2]);
-    }
-  }
-  void join(int a, int b) { parent_[root(a)] = root(b); }
-  /// Of each point, the one that stands for all it is connected with.
-  [[nodiscard]] std::vector<int> roots() {
-    std::vector<int> all(parent_.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = root(static_cast<int>(i));
-    return all;
-  }
-
- private:
-  int root(int point) {
-    while (parent_[point] != point) point = parent_[point] = parent_[parent_[point]];
-    return point;
-  }
-  std::vector<int> parent_;
-};
+/// Of each point, the one that stands for all it is connected with.
+std::vector<int> roots(DisjointSets<int>& connected) {
+  std::vector<int> all(connected.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = connected.of(static_cast<int>(i));
+  return all;
+}
 
 /// Of connected points.
 struct Piece {
@@ -104,9 +85,14 @@ SeparateSolids::SeparateSolids(const SurfaceTree& surface, const Repair& repaire
 void SeparateSolids::find(const SurfaceTree& surface, const Bounds& shared, const std::vector<SurfaceSample>& samples,
                           double near_mm, double least_mm3) {
   const Bounds bounds = bounding_box(mesh_);
-  ConnectedPoints connected(mesh_);
+  DisjointSets<int> connected(mesh_.points.size());
+  const auto join = [&](int a, int b) { connected.join(connected.of(b), connected.of(a)); };
+  for (const Triangle& triangle : mesh_.triangles) {
+    join(triangle[0], triangle[1]);
+    join(triangle[0], triangle[2]);
+  }
   const auto point_of = [&](int triangle) { return mesh_.triangles[triangle][0]; };
-  const Pieces pieces_alone(surface, connected.roots());
+  const Pieces pieces_alone(surface, roots(connected));
   const std::vector<std::vector<int>> crossing = crossed(mesh_, pieces_alone, shared);
   std::vector<std::vector<int>> touching(samples.size());
   constexpr int at_once = 1000;
@@ -119,11 +105,11 @@ void SeparateSolids::find(const SurfaceTree& surface, const Bounds& shared, cons
     }
   });
   for (int t = 0; t < count_of(crossing); ++t)
-    for (const int other : crossing[t]) connected.join(point_of(t), point_of(other));
+    for (const int other : crossing[t]) join(point_of(t), point_of(other));
   for (int i = 0; i < count; ++i)
-    for (const int other : touching[i]) connected.join(point_of(samples[i].triangle), point_of(other));
+    for (const int other : touching[i]) join(point_of(samples[i].triangle), point_of(other));
 
-  solid_ = connected.roots();
+  solid_ = roots(connected);
   std::map<int, Piece> pieces;
   for (const Triangle& triangle : mesh_.triangles) {
     const auto [at, is_new] = pieces.try_emplace(solid_[triangle[0]]);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/disjoint_sets.hpp"
+
 namespace vam::solid {
 
 namespace {
@@ -27,25 +29,6 @@ std::vector<std::int32_t> by_depth(const std::vector<std::int32_t>& squared) {
   return order;
 }
 
-/// Sets of voxels that touch; each is named by its deepest one.
-class Sets {
- public:
-  explicit Sets(std::size_t voxels) : parent_(voxels, absent) {}
-  void add(std::int32_t voxel) { parent_[static_cast<std::size_t>(voxel)] = voxel; }
-  [[nodiscard]] bool has(std::int32_t voxel) const { return parent_[static_cast<std::size_t>(voxel)] != absent; }
-  [[nodiscard]] std::int32_t of(std::int32_t voxel) {
-    while (parent(voxel) != voxel) voxel = parent(voxel) = parent(parent(voxel));
-    return voxel;
-  }
-  /// The second set becomes a part of the first.
-  void join(std::int32_t deeper, std::int32_t other) { parent(other) = deeper; }
-
- private:
-  static constexpr std::int32_t absent = -1;
-  std::int32_t& parent(std::int32_t voxel) { return parent_[static_cast<std::size_t>(voxel)]; }
-  std::vector<std::int32_t> parent_;
-};
-
 }  // namespace
 
 std::vector<std::int64_t> necks(const std::array<int, 3>& size, const std::vector<std::int32_t>& squared,
@@ -58,13 +41,14 @@ std::vector<std::int64_t> necks(const std::array<int, 3>& size, const std::vecto
         (n / 9 - 1) * size[0] * size[1] + (n / 3 % 3 - 1) * size[0] + n % 3 - 1;
   }
   std::vector<std::int64_t> found;
-  Sets sets(squared.size());
+  DisjointSets<std::int32_t> sets(squared.size());  // of voxels that touch; each is named by its deepest one
   for (const std::int32_t voxel : by_depth(squared)) {
-    sets.add(voxel);
     std::int32_t own = voxel;
     for (const std::int32_t step : around) {
-      if (!sets.has(voxel + step)) continue;
-      std::int32_t other = sets.of(voxel + step);
+      const std::int32_t beside = voxel + step;
+      const bool is_earlier = depth_of(beside) > depth_of(voxel) || (depth_of(beside) == depth_of(voxel) && step < 0);
+      if (!is_earlier) continue;
+      std::int32_t other = sets.of(beside);
       if (other == own) continue;
       if (depth_of(own) < depth_of(other)) std::swap(own, other);
       sets.join(own, other);
