@@ -3,12 +3,12 @@
 #include "io/mesh/private/formats.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <string_view>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
+#include "io/mesh/private/text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -17,49 +17,42 @@ namespace {
 
 bool is_binary(const std::string& bytes) { return bytes.find('\0') != std::string::npos; }
 
-std::string_view trimmed(const std::string& bytes) {
-  return std::string_view(bytes).substr(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
-}
-
-bool starts_with_word(std::string_view text, std::string_view word) {
-  return text.starts_with(word) && text.size() > word.size() &&
-         std::string_view(" \t\r\n").find(text[word.size()]) != text.npos;
+/// With a blank behind it; empty where there is none.
+std::string_view first_word(std::string_view text) {
+  text = text.substr(0, 1 << 16);
+  const std::string_view word = take_word(text);
+  return text.empty() ? text : word;
 }
 
 // A line of an OBJ file that nothing else has: "v x y z" or "f a b c" at its start.
 bool is_obj(const std::string& bytes) {
   if (is_binary(bytes)) return false;
-  const std::string_view head = std::string_view(bytes).substr(0, 1 << 16);
-  for (std::size_t line = 0; line < head.size();) {
-    if (starts_with_word(head.substr(line), "v") || starts_with_word(head.substr(line), "f")) return true;
-    const std::size_t end = head.find('\n', line);
-    if (end == std::string_view::npos) return false;
-    line = end + 1;
+  for (Lines lines{std::string_view(bytes).substr(0, 1 << 16)}; lines.next();) {
+    const std::string_view line = lines.line.substr(0, 2);
+    if (line == "v " || line == "f " || line == "v\t" || line == "f\t") return true;
   }
   return false;
 }
 
 bool is_off(const std::string& bytes) {
-  for (const char* magic : {"OFF", "COFF", "NOFF", "CNOFF", "STOFF"}) {
-    if (starts_with_word(trimmed(bytes), magic)) return true;
-  }
-  return false;
+  const std::string_view word = first_word(bytes);
+  return word == "OFF" || word == "COFF" || word == "NOFF" || word == "CNOFF" || word == "STOFF";
 }
 
-bool is_ply(const std::string& bytes) { return starts_with_word(bytes, "ply"); }
+bool is_ply(const std::string& bytes) { return bytes.starts_with("ply") && first_word(bytes) == "ply"; }
 
 // ASCII STL; some programs write it in capitals.
 bool is_text_stl(const std::string& bytes) {
-  return !is_binary(bytes) && starts_with_word(lower_case(std::string(trimmed(bytes).substr(0, 8))), "solid");
+  return !is_binary(bytes) && lower_case(std::string(first_word(bytes))) == "solid";
 }
 
 // The size comes before "solid": many programs begin the header of a binary STL with that word.
 bool is_stl(const std::string& bytes) { return has_binary_stl_size(bytes) || is_text_stl(bytes); }
 
 bool has_vertex_line(const std::string& text) {
-  for (std::size_t line = 0; line < text.size(); line = std::min(text.find('\n', line), text.size()) + 1) {
-    double x = 0, y = 0, z = 0;
-    if (text[line] == 'v' && std::sscanf(text.c_str() + line, "v %lf %lf %lf", &x, &y, &z) == 3) return true;
+  for (Lines lines{text}; lines.next();) {
+    std::string_view line = lines.line;
+    if (take_word(line) == "v" && take_point(line)) return true;
   }
   return false;
 }

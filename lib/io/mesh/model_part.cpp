@@ -2,12 +2,12 @@
 #include "io/mesh/private/model_part.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
+#include "io/mesh/private/text.hpp"
 
 namespace vam::io {
 
@@ -85,7 +85,7 @@ class ModelReader {
   }
 
   void begin_object(const XmlElement& element) {
-    const unsigned id = number_of_object(element, "id");
+    const unsigned id = number<unsigned>(element, "id");
     const auto [place, fresh] = part_.objects.try_emplace(id);
     if (!fresh) throw MeshProblem{"has two objects " + std::to_string(id) + "; mend it, or save the mesh again"};
     object_ = &place->second;
@@ -102,7 +102,7 @@ class ModelReader {
     if (++triangles_ > max_triangles) {
       throw MeshProblem{"has more than " + std::to_string(max_triangles) + " triangles, the most that are read"};
     }
-    object_->triangles.push_back({corner(element, "v1"), corner(element, "v2"), corner(element, "v3")});
+    object_->triangles.push_back({number<int>(element, "v1"), number<int>(element, "v2"), number<int>(element, "v3")});
   }
 
   [[nodiscard]] Instance instance(const XmlElement& element) {
@@ -112,18 +112,18 @@ class ModelReader {
     }
     Instance made;
     made.part = element.attribute("path").value_or("");
-    made.object = number_of_object(element, "objectid");
+    made.object = number<unsigned>(element, "objectid");
     const auto text = element.attribute("transform");
     if (!text) return made;
-    std::size_t count = 0;
-    for (const std::string& word : split(std::string(*text), ' ')) {
-      if (word.empty()) continue;
-      const auto value = parse_number(word);
-      if (!value || count >= 12) wrong(element, "transform");
-      made.placement.rows[count / 3][count % 3] = *value * (count < 9 ? 1 : unit_);
-      ++count;
+    std::string_view rest = *text;
+    for (auto& row : made.placement.rows) {
+      for (double& value : row) {
+        const auto number = number_of<double>(take_word(rest));
+        if (!number) wrong(element, "transform");
+        value = *number * (&row == &made.placement.rows.back() ? unit_ : 1);
+      }
     }
-    if (count != 12) wrong(element, "transform");
+    if (!without_blanks(rest).empty()) wrong(element, "transform");
     return made;
   }
 
@@ -133,24 +133,11 @@ class ModelReader {
                       (text ? std::string(attribute) + " " + excerpt(*text) : "no " + std::string(attribute)) +
                       "; it is damaged"};
   }
-  [[nodiscard]] static double number(const XmlElement& element, std::string_view attribute) {
-    const auto value = parse_number(element.attribute(attribute).value_or(""));
+  template <class Number = double>
+  [[nodiscard]] static Number number(const XmlElement& element, std::string_view attribute) {
+    const auto value = number_of<Number>(element.attribute(attribute).value_or(""));
     if (!value) wrong(element, attribute);
     return *value;
-  }
-  template <class Whole>
-  [[nodiscard]] static Whole whole(const XmlElement& element, std::string_view attribute) {
-    const std::string_view text = element.attribute(attribute).value_or("");
-    Whole value{};
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc{} || end != text.data() + text.size()) wrong(element, attribute);
-    return value;
-  }
-  [[nodiscard]] static int corner(const XmlElement& element, std::string_view attribute) {
-    return whole<int>(element, attribute);
-  }
-  [[nodiscard]] static unsigned number_of_object(const XmlElement& element, std::string_view attribute) {
-    return whole<unsigned>(element, attribute);
   }
 
   ModelPart part_;

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Binary STL, read and written by hand: the format is 50 bytes a triangle, and CGAL's reader welds through a std::map,
-// which takes longer than slicing.
+// STL, binary and as text.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 
 #include "base/index.hpp"
+#include "base/printable.hpp"
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/formats.hpp"
+#include "io/mesh/private/text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -44,6 +47,14 @@ std::array<float, 3> normal_of(const std::array<double, 3>& a, const std::array<
   return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
 }
 
+/// What leads from one level of a text to another.
+struct Step {
+  std::string_view word;
+  int from, to;
+};
+constexpr int in_facet = 2;
+constexpr Step steps[] = {{"solid", 0, 1}, {"facet", 1, in_facet}, {"endfacet", in_facet, 1}, {"endsolid", 1, 0}};
+
 }  // namespace
 
 std::string lower_case(std::string text) {
@@ -60,6 +71,8 @@ std::uint64_t binary_stl_bytes(const std::string& bytes) {
 bool has_binary_stl_size(const std::string& bytes) {
   return bytes.size() >= header_bytes && bytes.size() == binary_stl_bytes(bytes);
 }
+
+namespace {
 
 PolygonSoup parse_binary_stl(const std::string& bytes) {
   if (bytes.size() < header_bytes) {
@@ -90,6 +103,39 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
   }
   return soup;
 }
+
+PolygonSoup parse_ascii_stl(const std::string& bytes) {
+  std::string text = lower_case(bytes);  // some programs write it in capitals; names do not matter
+  if (std::find(text.begin(), text.end(), '\n') == text.end()) std::replace(text.begin(), text.end(), '\r', '\n');
+  PolygonSoup soup;
+  soup.of_facets = true;
+  int level = 0;
+  bool ended = false;  // by the last word
+  for (Lines lines{text}; lines.next();) {
+    std::string_view rest = lines.line;
+    for (auto word = take_word(rest); !word.empty(); word = take_word(rest)) {
+      const auto* const step = std::find_if(steps, std::end(steps), [&](const Step& s) { return s.word == word; });
+      ended = word == "endsolid";
+      if (word == "vertex" && level == in_facet) {
+        const std::string_view row = lines.line.substr(static_cast<std::size_t>(word.data() - lines.line.data()));
+        const auto point = take_point(rest);
+        if (!point) lines.refuse(excerpt(without_blanks(row)) + " is no vertex of three finite coordinates");
+        soup.points.push_back(*point);
+      }
+      if (step == std::end(steps)) continue;
+      if (step->from != level) give_up("STL", soup);
+      level = step->to;
+      const int first = 3 * count_of(soup.faces);
+      if (word == "endfacet") soup.faces.push_back({first, first + 1, first + 2});
+      if (soup.points.size() != 3 * soup.faces.size()) give_up("STL", soup);
+      if (word.ends_with("solid")) break;  // a name follows
+    }
+  }
+  if (!ended) throw MeshProblem{"the STL text does not end in 'endsolid'; it is truncated"};
+  return soup;
+}
+
+}  // namespace
 
 PolygonSoup parse_stl(const std::string& bytes) {
   const bool binary = has_binary_stl_size(bytes) || bytes.find('\0') != std::string::npos;

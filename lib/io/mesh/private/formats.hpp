@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "model/mesh.hpp"
@@ -48,10 +47,6 @@ struct MeshFormat {
 /// In the order in which contents are tried.
 [[nodiscard]] const std::vector<MeshFormat>& mesh_formats();
 
-/// Binary or ASCII. Throws MeshProblem.
-[[nodiscard]] PolygonSoup parse_stl(const std::string& bytes);
-/// 84 bytes of header and count, then 50 bytes a triangle. Throws MeshProblem when the size is not that.
-[[nodiscard]] PolygonSoup parse_binary_stl(const std::string& bytes);
 /// What the triangle count in the header asks for; 0 where there is no header.
 [[nodiscard]] std::uint64_t binary_stl_bytes(const std::string& bytes);
 /// True when that is exactly the size.
@@ -63,22 +58,11 @@ struct MeshFormat {
 /// Capitals of ASCII as small letters.
 [[nodiscard]] std::string lower_case(std::string text);
 
-/// The property `name`, a float of every vertex, of a little-endian PLY; nothing where it has none.
-[[nodiscard]] std::vector<float> ply_numbers(const std::string& bytes, const std::string& name, std::size_t vertices);
-
 /// Farther from the origin no mesh has points, whatever its unit: a kilometre in nm.
 inline constexpr double farthest_point = 1e12;
 
-/// Whether text begins with so many finite numbers, between blanks.
-[[nodiscard]] bool begins_with_numbers(std::string_view text, int count);
-
-/// An OBJ file with its continued lines joined, its faces as indices and blanks. Throws MeshProblem for a vertex
-/// without three coordinates, which CGAL takes for the end of the file, and for a corner of a face that is no index of
-/// a vertex, which CGAL leaves out or takes for another.
-[[nodiscard]] std::string checked_obj(const std::string& bytes);
-
-/// By CGAL; each throws MeshProblem when CGAL gives up.
-[[nodiscard]] PolygonSoup parse_ascii_stl(const std::string& bytes);
+/// Each throws MeshProblem; STL is binary or text.
+[[nodiscard]] PolygonSoup parse_stl(const std::string& bytes);
 [[nodiscard]] PolygonSoup parse_obj(const std::string& bytes);
 [[nodiscard]] PolygonSoup parse_ply(const std::string& bytes);
 [[nodiscard]] PolygonSoup parse_off(const std::string& bytes);
