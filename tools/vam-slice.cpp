@@ -183,6 +183,7 @@ void run(const cli::App& app, Options& options) {
   if (!correction.rms_mm.empty()) {
     report["compensation"] = {{"rms_mm", correction.rms_mm}, {"applied", correction.applied}};
   }
+  if (options.fill == "wrap") report["wrap"] = {{"alpha_mm", options.wrap_mm[0]}, {"offset_mm", options.wrap_mm[1]}};
   if (opaque) {
     report["insert"] = slice_tool::insert_figures(volumes.front(), *opaque, *insert, options);
     volumes.push_back(std::move(*opaque));

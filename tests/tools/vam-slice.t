@@ -88,6 +88,15 @@ volume 216 vam-slice cube.stl --fit 6 --voxel 0.25
 volume 64 sh -c 'vam-slice --voxel 0.25 "$@" <cube.stl' -
 ok "repairs are reported" sh -c 'vam-slice twice.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "dropped 5 duplicate triangles"'
 ok "a majority is reported" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 boundary edges remain; the inside is determined by majority"'
+ok "an open mesh is wrapped" vam-slice lidless.stl --fill wrap --wrap 0.4,0.05 --voxel 0.25 -o out.vdb --report report.json
+is "by so much" "$(json report.json wrap.offset_mm)" 0.05
+holds "it is larger by no more than the offset" "$(json report.json volume_mm3) > 64 && $(json report.json volume_mm3) < 4.1^3"
+ok "which is said" sh -c 'vam-slice lidless.stl --fill wrap --voxel 0.4 --verbose -o out.vdb 2>&1 | grep -q "4 open edges .* larger by up to 0.05 mm"'
+fails 64 'give --fill wrap' vam-slice lidless.stl --fill vote --wrap 0.4,0.05 -o x.vdb
+for size in 0.4,0 0.4,0.003 0.4,0.5 -0.4,-0.1; do
+  fails 64 '--wrap: an offset of .* from ALPHA/100 to ALPHA' vam-slice lidless.stl --fill wrap --wrap=$size -o x.vdb
+done
+fails 65 'lidless.stl: its wrap .* give --wrap' vam-slice lidless.stl --fill wrap --wrap 0.001,0.0001 -o x.vdb
 quiet "a closed mesh needs no warning" vam-slice cube.stl --voxel 0.5 -o out.vdb
 ok "the largest size that fits" vam-slice cube.stl --fit-writable --voxel 0.25 -o out.vdb --report report.json
 holds "it fills the circle except for half the diagonal of a voxel" \

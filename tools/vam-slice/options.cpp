@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "model/magnification.hpp"
 #include "model/metadata.hpp"
 #include "solid/voxel/size_doubt.hpp"
@@ -76,8 +77,15 @@ void declare(cli::App& app, Options& options) {
   app.option("--shape", "NAME:KEY=VALUE,...", options.shape,
              "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.")
       .form();
-  app.choice("--fill", options.fill, {"auto", "exact", "vote"},
-             "Inside test: exact (closed meshes), by majority (vote; meshes with holes), or chosen automatically.");
+  app.choice(
+      "--fill", options.fill, {"auto", "exact", "vote", "wrap"},
+      "Inside test: exact (closed meshes), by majority (vote; meshes with holes), or chosen automatically. wrap: "
+      "replace the mesh by a closed surface around it, for scans whose inside no vote settles.");
+  app.option("--wrap", "ALPHA,OFFSET", options.wrap_mm, 2,
+             "Of --fill wrap: openings narrower than 2 ALPHA are closed, and the part is larger by up to OFFSET on all "
+             "sides, both in mm, OFFSET from ALPHA/100 to ALPHA.")
+      .needs({"--fill"});
+  app.default_is("2 and 1/8 voxels");
   app.option(
          "--compensate", "SDF.vdb", options.compensate,
          "Correct the mesh by the deviation of its print, a volume of vam-sdf --volume against the same mesh. Once "
@@ -144,6 +152,11 @@ void check(const cli::App& app, const Options& options) {
     if (app.given("--fill")) throw Error{Fault::usage, "--fill: applies to meshes only"};
     if (app.given("--compensate")) throw Error{Fault::usage, "--compensate: applies to meshes only"};
   }
+  if (app.given("--wrap") && options.fill != "wrap") throw Error{Fault::usage, "--wrap: give --fill wrap, too"};
+  if (const auto& mm = options.wrap_mm; !mm.empty() && !(mm[0] > 0 && mm[1] >= 0.01 * mm[0] && mm[1] <= mm[0])) {
+    throw Error{Fault::usage, "--wrap: an offset of " + format_number(mm[1]) + " mm for " + format_number(mm[0]) +
+                                  " mm; give ALPHA above 0 and OFFSET from ALPHA/100 to ALPHA"};
+  }
   if (is_folder(options.input)) {
     for (const char* flag :
          {"--scale", "--mirror", "--up", "--rotate", "--fit", "--fit-writable", "--no-centre", "--insert"}) {
@@ -184,6 +197,7 @@ void settle(Options& options, const model::Printer& printer) {
   placement.stretch_z = options.stretch_z.value_or(1 / model::vertical_magnification(printer));
   if (!options.voxel_mm) options.voxel_mm = printer.projector.pixel_mm;
   placement.voxel_mm = *options.voxel_mm;
+  if (options.wrap_mm.empty()) options.wrap_mm = {2 * *options.voxel_mm, *options.voxel_mm / 8};
 }
 
 }  // namespace vam::slice_tool

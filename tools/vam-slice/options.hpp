@@ -27,6 +27,7 @@ struct Options {
   std::vector<double> insert_at_mm;
   std::optional<double> clearance_mm;  // the insert is cut out of the part
   std::string fill = "auto";
+  std::vector<double> wrap_mm;  // alpha and offset of fill wrap
   std::optional<double> voxel_mm;
   std::vector<std::string> compensate;
   double damping = 0.8;

@@ -7,10 +7,13 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "session/surface.hpp"
 #include "solid/voxel/size_doubt.hpp"
+#include "solid/wrap/wrap.hpp"
 
 namespace vam::slice_tool {
 
@@ -35,11 +38,26 @@ solid::Part image_part(const Options& options) {
   return solid::image_part(std::move(stack), options.input, options.voxel_mm.value(), options.placement.stretch_z);
 }
 
+/// The part of a closed surface around the mesh, which `map` places.
+solid::Part wrapped_part(model::TriangleSoup mesh, const solid::Affine& map, const Options& options,
+                         const std::string& subject) {
+  transform(mesh, map);
+  const solid::WrapSize size{options.wrap_mm[0], options.wrap_mm[1]};
+  solid::Wrap wrap = solid::wrapped(std::move(mesh), size, subject);
+  note(subject + ": wrapped: " + std::to_string(wrap.open_edges) + " open edges are closed, openings narrower than " +
+       format_number(2 * size.alpha_mm, 3) + " mm and cavities filled, and the part is larger by up to " +
+       format_number(size.offset_mm, 3) + " mm on all sides");
+  solid::Part part = solid::mesh_part(std::move(wrap.mesh), subject, {}, solid::FillMode::exact);
+  part.map = map;
+  return part;
+}
+
 solid::Part mesh_part(const Options& options, const solid::Writable& room, Correction& correction) {
   model::TriangleSoup mesh =
       corrected(session::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale"), options, correction);
   const std::string subject = io::input_name(options.input);
   const solid::Affine map = solid::place(mesh, options.placement, room, subject);
+  if (options.fill == "wrap") return wrapped_part(std::move(mesh), map, options, subject);
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));
 }
 

@@ -80,7 +80,7 @@ void require_settled(const Vote& vote, const Repair& repair, bool tiny, const st
                                                    " voxels are undecided";
   throw Error{Fault::data, subject + ": the inside cannot be determined: the surface has " +
                                std::to_string(repair.boundary_edges) + " boundary edges and " + found +
-                               "; close it in a mesh editor"};
+                               "; close it in a mesh editor, or slice it with --fill wrap"};
 }
 
 }  // namespace

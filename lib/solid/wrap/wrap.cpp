@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solid/wrap/wrap.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/alpha_wrap_3.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/memory.hpp"
+#include "base/text.hpp"
+#include "base/vector3.hpp"
+#include "solid/mesh/holes.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+using Point3 = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+using Surface = CGAL::Surface_mesh<Point3>;
+
+double area_mm2(const model::TriangleSoup& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    area += 0.5 * length(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
+  return area;
+}
+
+void require_size(const model::TriangleSoup& mesh, double alpha_mm, const std::string& subject) {
+  constexpr double most = 2e6;
+  constexpr double triangle_bytes = 2e3;
+  const double per_alpha = 2.1 * area_mm2(mesh);
+  const double triangles = per_alpha / (alpha_mm * alpha_mm);
+  if (triangles > most) {
+    throw Error{Fault::data, subject + ": its wrap of " + format_number(alpha_mm, 3) + " mm would have " +
+                                 format_number(triangles / 1e6, 3) + " million triangles; up to " +
+                                 format_number(most / 1e6) + " million are made, give --wrap " +
+                                 format_number(1.1 * std::sqrt(per_alpha / most), 2) + ",OFFSET or more"};
+  }
+  require_memory(triangle_bytes * (triangles + static_cast<double>(mesh.triangles.size())), subject + ": its wrap",
+                 "use a larger --wrap");
+}
+
+model::TriangleSoup soup_of(const Surface& surface) {
+  model::TriangleSoup soup;
+  for (const auto vertex : vertices(surface)) {
+    const Point3& p = surface.point(vertex);
+    soup.points.push_back({p.x(), p.y(), p.z()});
+  }
+  for (const auto face : faces(surface)) {
+    const auto side = halfedge(face, surface);
+    const auto corner = [&](const auto& at) { return static_cast<int>(source(at, surface)); };
+    soup.triangles.push_back({corner(side), corner(next(side, surface)), corner(prev(side, surface))});
+  }
+  return soup;
+}
+
+}  // namespace
+
+Wrap wrapped(model::TriangleSoup mesh, const WrapSize& size, const std::string& subject) {
+  Wrap made;
+  made.open_edges = close_holes(mesh);
+  require_size(mesh, size.alpha_mm, subject);
+  std::vector<Point3> points;
+  for (const auto& [x, y, z] : mesh.points) points.emplace_back(x, y, z);
+  Surface surface;
+  CGAL::alpha_wrap_3(points, mesh.triangles, size.alpha_mm, size.offset_mm, surface);
+  made.mesh = soup_of(surface);
+  return made;
+}
+
+}  // namespace vam::solid

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A closed surface around a mesh of any state.
+#pragma once
+
+#include <string>
+
+#include "model/mesh.hpp"
+
+namespace vam::solid {
+
+struct WrapSize {
+  double alpha_mm = 0;   // > 0; openings narrower than twice that are closed
+  double offset_mm = 0;  // > 0; from the mesh to the vertices of the wrap, which lies wholly outside the mesh
+};
+
+struct Wrap {
+  model::TriangleSoup mesh;  // closed, without crossings; triangles run anticlockwise seen from outside
+  long open_edges = 0;       // that the mesh had
+};
+
+/// CGAL's 3D alpha wrap [PRH22] of the mesh with lids on its holes (close_holes): holes, cracks, crossings, doubled and
+/// inner surfaces do not matter; cavities are filled. Takes 0.1 to 0.2 ms and up to 2 kB a triangle, of which there are
+/// some 2.1 area / alpha^2. Throws Fault::data beyond two million of these, Fault::memory for a lack of memory.
+[[nodiscard]] Wrap wrapped(model::TriangleSoup mesh, const WrapSize& size, const std::string& subject);
+
+}  // namespace vam::solid

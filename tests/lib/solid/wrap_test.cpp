@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces around meshes of any state: they are closed, and lie between the mesh and its offset.
+#include "solid/wrap/wrap.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "base/error.hpp"
+#include "lib/meshes.hpp"
+#include "oracle/meshes.hpp"
+#include "solid/mesh/holes.hpp"
+#include "solid/mesh/repair.hpp"
+
+using namespace vam;
+using namespace vam::solid;
+using model::TriangleSoup;
+
+namespace {
+
+constexpr double radius_mm = 5;
+
+/// With so many holes of some 0.4 mm, and the rest turned at random.
+TriangleSoup punched_sphere(int holes) {
+  TriangleSoup mesh = test::sphere({0, 0, 0}, radius_mm, 100);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0, 1);
+  for (int hole = 0; hole < holes; ++hole) {
+    const Vector3 way{normal(random), normal(random), normal(random)};
+    const Vector3 at = (radius_mm / length(way)) * way;
+    std::erase_if(mesh.triangles, [&](const auto& t) { return length(mesh.points[t[0]] - at) < 0.2; });
+  }
+  for (auto& t : mesh.triangles)
+    if (random() % 2 == 0) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a sphere with 100 holes is wrapped into a closed one, larger by no more than the offset") {
+  const WrapSize size{0.3, 0.02};
+  TriangleSoup open = punched_sphere(100);
+  const Wrap wrap = wrapped(open, size, "sphere");
+  CHECK(wrap.open_edges > 1000);
+  TriangleSoup mesh = wrap.mesh;
+  const Repair done = repair(mesh, "wrap");
+  CHECK(done.closed());
+  CHECK_FALSE(done.changed());
+  CHECK(done.components == 1);
+  CHECK(done.cavities == 0);
+  for (const Vector3& p : mesh.points) {
+    CHECK(length(p) <= radius_mm + size.offset_mm + 1e-9);
+    CHECK(length(p) >= radius_mm - 0.02);  // lids of the largest holes lie 0.25^2 / (2 * 5) mm within
+  }
+  const double ball_mm3 = 4.0 / 3 * std::numbers::pi * std::pow(radius_mm, 3);
+  const double shell_mm3 = 4 * std::numbers::pi * radius_mm * radius_mm * size.offset_mm;
+  CHECK(std::abs(oracle::signed_volume(mesh) - ball_mm3) < shell_mm3);
+}
+
+TEST_CASE("what is crossed, doubled or within does not matter, and grooves wider than alpha stay") {
+  TriangleSoup mesh;
+  test::add_box({0, 0, 0}, {4, 4, 1}, mesh);
+  test::add_box({0, 0, 0.5}, {1, 4, 4}, mesh);  // crosses the first
+  test::add_box({3, 0, 0.5}, {4, 4, 4}, mesh);
+  test::add_box({3.4, 1, 1}, {3.6, 2, 2}, mesh);  // within
+  mesh.triangles.resize(mesh.triangles.size() - 1);
+  mesh.triangles.push_back(mesh.triangles.front());
+  const WrapSize size{0.2, 0.02};
+  const double volume_mm3 = oracle::signed_volume(wrapped(mesh, size, "groove").mesh);
+  CHECK(volume_mm3 > 40);
+  CHECK(volume_mm3 < 40 + 108 * size.offset_mm + 0.5);  // inner edges are rounded
+}
+
+TEST_CASE("a lid closes a hole flat") {
+  TriangleSoup mesh = oracle::box({0, 0, 0}, {1, 2, 3});
+  CHECK(close_holes(mesh) == 0);
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2);
+  CHECK(close_holes(mesh) == 4);
+  CHECK(repair(mesh, "box").closed());
+  CHECK(oracle::signed_volume(mesh) == doctest::Approx(6));
+}
+
+TEST_CASE("a wrap of too many triangles is refused with the length that helps") {
+  const TriangleSoup mesh = test::sphere({0, 0, 0}, radius_mm, 20);
+  CHECK_THROWS_WITH_AS(
+      (void)wrapped(mesh, {0.001, 0.001}, "sphere"),
+      doctest::Contains("sphere: its wrap of 0.001 mm would have 658 million triangles; up to 2 million are"), Error);
+}
