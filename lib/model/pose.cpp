@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 
 namespace vam::model {
@@ -19,31 +20,37 @@ double distance_mm(const Pose& a, const Pose& b) {
   return std::hypot(a.dx_mm - b.dx_mm, a.dy_mm - b.dy_mm, a.dz_mm - b.dz_mm);
 }
 
-Pose parse_line(const std::string& line) {
-  std::istringstream stream(line);
-  std::array<double, 4> numbers{};
-  std::string cell;
-  for (double& number : numbers) {
-    std::getline(stream, cell, ',');
-    const auto value = parse_number(cell);
-    if (!value) throw std::runtime_error("a pose has '" + cell + "' for a number");
-    number = *value;
-  }
-  std::getline(stream, cell);
-  const Pose pose{numbers[0], numbers[1], numbers[2], numbers[3], moves_named(cell)};
-  if (const std::string why = objection(pose); !why.empty()) throw std::runtime_error("a pose " + why);
-  return pose;
+std::string moves_name(Moves moves) { return moves == Moves::vial ? "vial" : "part"; }
+
+Moves moves_named(const std::string& name) {
+  if (name == "vial") return Moves::vial;
+  if (name == "part") return Moves::part;
+  throw std::runtime_error("a pose moves '" + name + "', not vial or part");
 }
 
-}  // namespace
-
+/// Why the displacement is none of this world; empty where it is.
 std::string objection(const Pose& pose) {
   constexpr double most_mm = 1e4;
-  if (!std::isfinite(pose.angle_deg)) return "is at " + format_number(pose.angle_deg) + " degrees";
   for (const double mm : {pose.dx_mm, pose.dy_mm, pose.dz_mm}) {
     if (!(std::abs(mm) <= most_mm)) return "is displaced by " + format_number(mm) + " mm; check the unit";
   }
   return "";
+}
+
+}  // namespace
+
+Pose pose_of(std::span<const std::string> cells) {
+  if (cells.size() != 5) throw std::runtime_error("a pose has " + std::to_string(cells.size()) + " cells, not 5");
+  std::array<double, 4> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto value = parse_number(cells[i]);
+    if (!value || !std::isfinite(*value))
+      throw std::runtime_error(split(header, ',')[i] + " " + excerpt(cells[i]) + " is not a number");
+    numbers[i] = *value;
+  }
+  const Pose pose{numbers[0], numbers[1], numbers[2], numbers[3], moves_named(cells[4])};
+  if (const std::string why = objection(pose); !why.empty()) throw std::runtime_error("a pose " + why);
+  return pose;
 }
 
 std::string objection(const Poses& poses, double start_deg, double step_deg) {
@@ -54,14 +61,6 @@ std::string objection(const Poses& poses, double start_deg, double step_deg) {
            std::to_string(k) + " is at " + format_number(want);
   }
   return "";
-}
-
-std::string moves_name(Moves moves) { return moves == Moves::vial ? "vial" : "part"; }
-
-Moves moves_named(const std::string& name) {
-  if (name == "vial") return Moves::vial;
-  if (name == "part") return Moves::part;
-  throw std::runtime_error("a pose moves '" + name + "', not vial or part");
 }
 
 std::string poses_text(const Poses& poses) {
@@ -82,7 +81,7 @@ Poses parse_poses(const std::string& text) {
   std::getline(stream, line);
   if (line != header) throw std::runtime_error("the table of poses does not begin with " + std::string(header));
   Poses poses;
-  while (std::getline(stream, line)) poses.push_back(parse_line(line));
+  while (std::getline(stream, line)) poses.push_back(pose_of(split(line, ',')));
   return poses;
 }
 

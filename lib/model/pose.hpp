@@ -2,6 +2,7 @@
 // Where the vial, or the part in it, stands while each frame is shown: off the place that the settings give it.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,18 +26,15 @@ struct Pose {
 /// One for every frame, in order; none: nothing is displaced.
 using Poses = std::vector<Pose>;
 
-/// "vial" or "part"; throws std::runtime_error for another word.
-[[nodiscard]] std::string moves_name(Moves moves);
-[[nodiscard]] Moves moves_named(const std::string& name);
-
-/// Why the displacement is none of this world, "is displaced by 1e9 mm; check the unit"; empty where it is.
-[[nodiscard]] std::string objection(const Pose& pose);
-
 /// Why the poses are not those of frames at start_deg, start_deg + step_deg ...; empty where they are.
 [[nodiscard]] std::string objection(const Poses& poses, double start_deg, double step_deg);
 
+/// From the cells angle_deg, dx_mm, dy_mm, dz_mm, moves ("vial" or "part"). Throws std::runtime_error for others, and
+/// for a pose that is none of this world.
+[[nodiscard]] Pose pose_of(std::span<const std::string> cells);
+
 /// The lines of a table of poses with its header, "angle_deg,dx_mm,dy_mm,dz_mm,moves" [formats: Poses], and the way
-/// back. Throws std::runtime_error for another text and for impossible poses.
+/// back. Throws std::runtime_error for another text and what pose_of() throws.
 [[nodiscard]] std::string poses_text(const Poses& poses);
 [[nodiscard]] Poses parse_poses(const std::string& text);
 

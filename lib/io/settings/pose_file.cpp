@@ -19,16 +19,11 @@ model::Poses read_poses(const std::string& path) {
   const CsvTable table = read_csv(path, {"angle_deg", "dx_mm", "dy_mm", "dz_mm", "moves"});
   model::Poses poses;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    const std::string place = table.source + ":" + std::to_string(table.lines[row]) + ": ";
-    model::Pose pose{table.number(row, 0), table.number(row, 1), table.number(row, 2), table.number(row, 3), {}};
-    if (const std::string why = model::objection(pose); !why.empty())
-      throw Error{Fault::data, place + "the pose " + why};
     try {
-      pose.moves = model::moves_named(table.rows[row][4]);
+      poses.push_back(model::pose_of(table.rows[row]));
     } catch (const std::runtime_error& problem) {
-      throw Error{Fault::data, place + problem.what()};
+      throw Error{Fault::data, table.source + ":" + std::to_string(table.lines[row]) + ": " + problem.what()};
     }
-    poses.push_back(pose);
   }
   return poses;
 }
