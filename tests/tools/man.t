@@ -62,8 +62,7 @@ done
 
 # A page of a tool is short beside its options; theory, measured figures and protocols stand in section 7. What is longer
 # yet is named here with its words, and may only shrink.
-longer='vam-calibrate 1321
-vam-calibrate-all 1126
+longer='vam-calibrate-all 1126
 vam-convert 1407
 vam-curethrough 1184'
 words() { awk '/^\.\\" <options>/ { options = 1 } /^\.\\" <\/options>/ { options = 0 } !options { n += NF } END { print n }' "$1"; }
