@@ -62,8 +62,7 @@ done
 
 # A page of a tool is short beside its options; theory, measured figures and protocols stand in section 7. What is longer
 # yet is named here with its words, and may only shrink.
-longer='vam-calibrate-all 1126
-vam-convert 1407'
+longer='vam-calibrate-all 1126'
 words() { awk '/^\.\\" <options>/ { options = 1 } /^\.\\" <\/options>/ { options = 0 } !options { n += NF } END { print n }' "$1"; }
 printf '.Sh A\n.\\" <options>\n.It Fl x\n.\\" </options>\none two\n' >counted.1
 is 'words are counted beside the options' "$(words counted.1)" 6
