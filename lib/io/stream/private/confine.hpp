@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to apart.cpp: what a child may do.
+// Private to sandboxed_reader.cpp: what a child may do.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to apart.cpp and its two ends: the shared memory and the socket.
+// Private to sandboxed_reader.cpp and its two ends: the shared memory and the socket.
 #pragma once
 
 #include <cstddef>
