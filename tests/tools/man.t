@@ -72,7 +72,7 @@ for page in "$VAM_SOURCE"/man/*.1; do
   holds "$name: words beside its options" "$(words "$page") <= ${most:-900}"
   [ -z "$most" ] || holds "$name: is longer than others may be, else it is not named" "$(words "$page") > 900"
 done
-for script in vam-batch vam-renew vam-print vam-calibrate-all; do
+for script in vam-batch vam-print vam-calibrate-all; do
   is "$script: only options are marked as such" "$(sed -n '/^\.\\" <options>/,/^\.\\" <\/options>/p' "$VAM_SOURCE/man/$script.1" | grep '^\.It' | grep -v '^\.It Fl')" ''
 done
 
