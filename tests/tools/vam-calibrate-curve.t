@@ -29,7 +29,7 @@ quiet 'at an isovalue' vam-calibrate working-curve scatter.vdb --dose dose.vdb -
 holds 'the critical dose is lower' "($(json low.json critical_dose_mj_cm3) - (50 - 4 * log(3))) ^ 2 < 0.1 ^ 2"
 vam-slice --shape box:x=2.4,y=2.4,z=6 --voxel 0.2 --stretch-z 1 -o block.vdb
 ok 'vam-sdf takes the record' vam-sdf scatter.vdb block.vdb --resin curve.json --report sdf.json
-fails 65 'doses are relative, not mJ/cm3' vam-calibrate working-curve scatter.vdb --dose relative.vdb
+fails 65 'not mJ/cm3' vam-calibrate working-curve scatter.vdb --dose relative.vdb
 fails 65 'has no scatter-NNNN.vdb of vam-ost --live' vam-calibrate working-curve . --dose dose.vdb
 mkdir turns; cp scatter.vdb turns/scatter-0000.vdb; cp scatter.vdb turns/scatter-0001.vdb
 fails 65 'does not state its turns' vam-calibrate working-curve turns --dose dose.vdb
