@@ -182,8 +182,8 @@ def write_array(kind, path, nz, ny, nx):
     npy = b"\x93NUMPY\1\0" + struct.pack("<H", len(text)) + text.encode() + raw
     if ending == ".npz":
         with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as out:
-            out.writestr("part.npy", npy)
-            out.writestr("other.npy", npy[:-4] + struct.pack("<f", 0.5))
+            for name, data in (("part.npy", npy), ("other.npy", npy[:-4] + struct.pack("<f", 0.5))):
+                out.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)  # which has no time of today
         return
     with open(path, "wb") as out:
         if ending == ".nrrd":
