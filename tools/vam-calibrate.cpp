@@ -78,11 +78,12 @@ void add_beam(cli::App& app, ScanOptions& o) {
                calibrate_tool::scan_beam, Flips::optional);
   scan.flag("--side", o.side,
             "The frames show a lit row in fluorescent resin from the side (vam-project --pattern row).")
-      .form();
+      .form()
+      .excludes({"--first", "--spacing"});
   add_dark(scan, o);
   scan.option("--first", "MM", o.first_mm, cli::any, "Distance of the first plane from the rotation axis.")
       .required_without("--side");
-  scan.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes.").required_without("--side");
+  scan.option("--spacing", "MM", o.step_mm, cli::not_zero, "Distance between planes.").required_without("--side");
   scan.option("--pixel", "MM", o.pixel_mm, cli::positive,
               "Pixel pitch of the bare sensor, or of the frames at the rotation axis (with --side).")
       .required_without("--side")
@@ -92,7 +93,7 @@ void add_beam(cli::App& app, ScanOptions& o) {
 void add_axis(cli::App& app, ScanOptions& o) {
   auto& scan = add_scan(app, o, "axis", "rotation axis and wobble in the camera's frames of a turn",
                         calibrate_tool::scan_axis, Flips::none);
-  scan.option("--view-step", "DEG", o.step_deg, cli::any, "Angle between frames without recorded angles, not 0.");
+  scan.option("--view-step", "DEG", o.step_deg, cli::not_zero, "Angle between frames without recorded angles.");
   add_heights(scan, o);
 }
 
@@ -148,8 +149,10 @@ void add_resin(cli::App& app, ResinOptions& o) {
       .option("--profile", "FILE.png", o.profile,
               "Height image of the standard from a profilometer, to measure its diameter.")
       .reads()
-      .form();
-  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.");
+      .form()
+      .excludes({"--diameter"});
+  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.")
+      .only_with({"--profile"});
 }
 
 void add_working_curve(cli::App& app, WorkingCurveOptions& o) {

@@ -48,11 +48,15 @@ void declare(cli::App& app, Options& o) {
   app.option("--view-step", "DEG", o.every_deg, cli::positive,
              "Angle between the frames to keep: those nearest to its multiples.")
       .default_is("every frame is kept");
-  app.option("--turns", "N", o.turns, cli::positive, "With --view-step: number of turns.").default_is("1");
+  app.option("--turns", "N", o.turns, cli::positive, "Number of turns.")
+      .default_is("1")
+      .only_with({"--view-step"})
+      .excludes({"--frames"});
   app.option("--follow", "FILE", o.follow, "Read the stage angle from this output of vam-stage, a FIFO or -.");
-  app.option("--speed", "DEG/S", o.speed_deg_s, cli::rate,
-             "Without --follow: stage speed; the angle is speed x time since the start.");
-  app.option("--angle", "DEG", o.angle_deg, {0, 1e6}, "Without --follow: fixed stage angle.");
+  app.option("--speed", "DEG/S", o.speed_deg_s, cli::rate, "Stage speed; the angle is speed x time since the start.")
+      .excludes({"--follow"});
+  app.option("--angle", "DEG", o.angle_deg, {0, 1e6}, "Fixed stage angle.")
+      .excludes({"--follow", "--speed", "--view-step"});
   app.option("--lag", "MS", o.lag_ms, {-10000, 10000},
              "Delay of the camera's time stamps from the moment of the exposure that they name (camera.stamp).")
       .default_is("camera.lag_ms");

@@ -131,6 +131,7 @@ int main(int argc, char** argv) {
          "Seal printer files instead of checking them: append a line with the seal, against which the tools verify the "
          "file from then on; a file with a seal stays as it is. Standard input is copied to standard output with this "
          "line, unchanged if it has one.")
-      .form();
+      .form()
+      .excludes({"--fast"});
   return app.run(argc, argv, [&] { run(options); });
 }

@@ -60,7 +60,7 @@ void declare(cli::App& app, Options& o) {
              "Find the axis, too: each dose is given three times, by vam-dose with --column-offset -PX, 0 and PX.");
   app.option("--axis-sigma", "PX", o.axis_sigma_px, cli::positive,
              "Standard deviation of projector.axis_column, as its calibration states it.")
-      .needs({"--column-offset"});
+      .only_with({"--column-offset"});
   app.option("--before", "REPORT", o.before, "Report of vam-correct of the turn before.").reads();
   app.option("--resolution", "MM", o.resolution_mm, cli::non_negative,
              "Standard deviation of what blurs the densities.");

@@ -33,7 +33,7 @@ void run(const cli::App& app, Options& options) {
   io::StackReader in(options.inputs.front());
   io::require(options.inputs.front(), in.info(), model::Kind::sinogram);
   if (!options.full_scale) options.full_scale = model::full_scale(in.info().extra);
-  const model::StackInfo info = posed(in.info(), options);
+  const model::StackInfo info = posed(app, in.info(), options);
   const dose_tool::Place place = place_of(options, printer, info);
   io::SparseVolume volume = empty_volume(app, place, printer, info);
   dose_tool::Light light(in, info, options, printer);

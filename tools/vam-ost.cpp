@@ -27,8 +27,8 @@ using ost_tool::Options;
 
 void declare_camera(cli::App& app, Options& o) {
   app.group("Camera");
-  app.option("--view-step", "DEG", o.step_deg, cli::any,
-             "Angle between views without recorded angles, not 0. Negative: opposite direction of rotation.");
+  app.option("--view-step", "DEG", o.step_deg, cli::not_zero,
+             "Angle between views without recorded angles. Negative: opposite direction of rotation.");
   app.option("--dark", "FILE", o.dark,
              "Image or stack without a print (dark, or of the vial before printing); its mean is subtracted.")
       .reads();
@@ -58,7 +58,8 @@ void declare_reconstruction(cli::App& app, Options& o) {
   app.option("--uncertainty", "FILE.vdb", o.uncertainty,
              "Write the standard deviations of the volume's values due to the noise of the views, as a volume "
              "'uncertainty' for vam-sdf; a mesh (.ply) has those of its vertices in mm (scalar_uncertainty).")
-      .writes({".vdb"});
+      .writes({".vdb"})
+      .excludes({"--mlem-iterations"});
   app.choice("--negative", o.negative, {"clip", "keep"}, "Negative densities: clip them to 0, or keep them.");
   app.flag("--no-refraction", o.no_refraction,
            "Neglect refraction and perspective: image columns are parallel rays (for comparison).");
@@ -67,7 +68,7 @@ void declare_reconstruction(cli::App& app, Options& o) {
 
 void declare_print(cli::App& app, Options& o) {
   app.group("Print");
-  app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.");
+  app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").excludes({"--resin"});
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin with the gelation threshold I_p.")
       .reads();
   app.option("--min-body", "MM3", o.pieces_mm3, cli::non_negative,
@@ -75,7 +76,7 @@ void declare_print(cli::App& app, Options& o) {
       .default_is("1 % of the largest body's volume");
   app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (" + join(io::written_mesh_endings(), " or ") + ").")
       .writes(io::written_mesh_endings())
-      .needs({"--isovalue", "--resin"});
+      .only_with({"--isovalue", "--resin"});
   app.option("--projections", "FILE", o.projections,
              "Write sum projections of volume, print and target (.png, .pdf or .svg).")
       .writes(plot::figure_endings());
@@ -86,23 +87,28 @@ void declare_print(cli::App& app, Options& o) {
 
 void declare_live(cli::App& app, Options& o) {
   app.group("Live");
-  app.flag("--live", o.live, "Reconstruct while views arrive; -o is a folder.").form();
+  app.flag("--live", o.live, "Reconstruct while views arrive; -o is a folder.")
+      .form()
+      .only_with({"--output", "--log", "--page", "--until"})
+      .excludes({"--report", "--uncertainty"});
   app.flag("--uncertainties", o.uncertainties,
            "Write the standard deviations of each volume's values into the folder, too, before the volume.")
-      .needs({"--live"});
+      .only_with({"--live"})
+      .only_with({"--output"})
+      .excludes({"--mlem-iterations"});
   app.option("--volume-step", "DEG", o.every_deg, cli::positive, "Angle between reconstructed volumes.")
-      .needs({"--live"});
+      .only_with({"--live"});
   app.option("--until", "CONDITIONS", o.until,
              "Print a stop event and exit when all conditions hold, on missing and overcure (%), iou and cured (mm3).")
-      .needs({"--live"})
-      .needs({"--isovalue", "--resin"})
-      .needs({"--target"});
-  app.option("--log", "FILE", o.log, "Append one JSON line per volume; - is standard error.").needs({"--live"});
+      .only_with({"--live"})
+      .only_with({"--isovalue", "--resin"})
+      .only_with({"--target"});
+  app.option("--log", "FILE", o.log, "Append one JSON line per volume; - is standard error.").only_with({"--live"});
   app.option("--page", "FILE.html", o.page,
              "Write a page that refreshes itself (HTML), with the image of --projections.")
       .writes({".html"})
-      .needs({"--live"})
-      .needs({"--projections"});
+      .only_with({"--live"})
+      .only_with({"--projections"});
 }
 
 void declare(cli::App& app, Options& o) {
@@ -146,28 +152,7 @@ void once(const cli::App& app, const Options& options) {
 
 void run(const cli::App& app, const Options& options) {
   if (session::print_printer(options.printer)) return;
-  if (options.step_deg == 0.0) {
-    throw Error{Fault::usage, "--view-step: is 0; give the angle between views"};
-  }
-  if (options.live && options.output == "-" && options.log.empty() && options.page.empty() && options.until.empty()) {
-    throw Error{Fault::usage,
-                "--live: gives no result; name a folder for the volumes by -o, or use --log, --page or "
-                "--until"};
-  }
-  if (options.live && app.given("--report")) {
-    throw Error{Fault::usage, "--report: describes one volume; with --live the figures of each are written to --log"};
-  }
   if (!options.projections.empty()) plot::require_figures();
-  if (!options.uncertainty.empty() && options.live) {
-    throw Error{Fault::usage, "--uncertainty: describes one volume; omit it, --live has --uncertainties"};
-  }
-  if (options.uncertainties && options.output == "-") {
-    throw Error{Fault::usage, "--uncertainties: go where the volumes go; name a folder by -o"};
-  }
-  if ((!options.uncertainty.empty() || options.uncertainties) && options.how.mlem_iterations > 0) {
-    throw Error{Fault::usage, std::string(options.uncertainties ? "--uncertainties" : "--uncertainty") +
-                                  ": is that of filtered back-projection; omit it, or --mlem-iterations"};
-  }
   options.live ? ost_tool::live(app, options) : once(app, options);
 }
 

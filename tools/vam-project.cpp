@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-project: projector frames from sinograms, for files or a screen; one frame per time step of the turning stage.
-#include "base/error.hpp"
-#include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/frame_sink.hpp"
@@ -32,18 +30,12 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = settle(options);
   if (session::print_printer(options.printer, printer, options.output)) return;
   if (!options.freeze.empty()) return freeze(options, printer);
-  const bool live = device::names_display(options.output);
-  if (!live) project::refuse_live(app, options.output);
-  if (options.only_plan && !options.report.empty()) {
-    throw Error{Fault::usage, "--report: describes what was shown, and --plan shows nothing; omit one"};
-  }
+  const bool live = project::is_live(app, options.output);
   if (!options.pattern.plan.name.empty()) {
-    if (options.input != "-")
-      throw Error{Fault::usage, "--pattern: conflicts with SINOGRAM (" + options.input + "); omit one"};
     if (options.only_plan) return project::print_devices(options, printer);
     return show_pattern(app, options, printer.projector);
   }
-  if (options.only_plan) return print_plan(options, printer);
+  if (options.only_plan) return print_plan(app, options, printer);
   if (live) return device::interruptible([&] { print_live(app, options, printer); });
   if (project::is_folder(options.input)) {
     return write_slices(app, options, printer, project::slice_folder(options.input));

@@ -38,7 +38,7 @@ void declare(cli::App& app, Options& o) {
   app.option("--title", "TEXT", o.title, "Title of the page.").default_is("the name of the first file");
   app.option("--max-sections", "N", o.sections, {1, 200}, "Maximum number of sections of a volume.");
   app.option("--max-images", "N", o.projections, {1, 360}, "Maximum number of images of a stack or video.");
-  session::add_grey_target(app, o.grey);
+  session::add_grey_target(app, o.grey, {});
   cli::add_printer(app, o.printer);
   cli::add_threads(app);
   app.usual({"--output", "--title", "--max-sections", "--max-images", "--grey-target", "--printer", "--set"});

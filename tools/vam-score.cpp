@@ -101,7 +101,6 @@ void score_grey(const Options& options, const model::Printer& printer,
 }
 
 void run(const cli::App& app, Options& options) {
-  check(app, options);
   const std::vector<model::Condition> conditions = conditions_of(options);
   const model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, "-")) return;

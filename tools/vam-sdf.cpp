@@ -28,9 +28,11 @@ void declare_inspection(cli::App& app, Options& options) {
              "first one's normal, the third the remaining shift. Given three times, primary first.");
   app.option("--uncertainty", "FILE.vdb", options.uncertainty,
              "Standard deviations of the print volume's values, from vam-ost --uncertainty.")
-      .reads();
+      .reads()
+      .not_for({"meshes"});
   app.option("--isovalue-uncertainty", "VALUE", options.isovalue_uncertainty, cli::non_negative,
-             "Standard uncertainty of the isovalue, in its units.");
+             "Standard uncertainty of the isovalue, in its units.")
+      .not_for({"meshes"});
   app.option("--scale-uncertainty", "PERCENT", options.scale_uncertainty_percent, cli::non_negative,
              "Standard uncertainty of the print's scale, that of the camera's pixel pitch.");
 }
@@ -44,18 +46,23 @@ void declare(cli::App& app, Options& options) {
   app.option("--volume", "FILE.vdb", options.volume,
              "Write how far the print is outside the design, in mm around the design's surface, for vam-slice "
              "--compensate.")
-      .writes({".vdb"});
+      .writes({".vdb"})
+      .excludes({"--fit-scale"});
   app.option("--volume-voxel", "MM", options.volume_voxel_mm, cli::positive, "Voxel of --volume.")
       .default_is("1/100 of the design's largest dimension")
-      .needs({"--volume"});
-  app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
+      .only_with({"--volume"});
+  app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.")
+      .excludes({"--resin"})
+      .not_for({"meshes"});
   app.option("--resin", "FILE", options.resin_record,
              "Record of vam-calibrate resin with the gelation threshold I_p, used as isovalue.")
-      .reads();
+      .reads()
+      .not_for({"meshes"});
   app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
   app.option("--min-body", "MM3", options.pieces_mm3, cli::non_negative,
              "Minimum volume of a body that belongs to the print; smaller bodies of a print volume are dropped.")
-      .default_is("1 % of the largest body's volume");
+      .default_is("1 % of the largest body's volume")
+      .not_for({"meshes"});
   app.group("Alignment");
   app.choice("--align", options.align, {"none", "icp", "full"}, "Alignment of the print with the design.");
   app.flag("--fit-scale", options.scale, "Also fit a uniform scale.");

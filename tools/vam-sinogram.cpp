@@ -54,9 +54,6 @@ model::StackInfo make_info(const tomo::ProjectionSpec& spec, const io::SparseVol
 }
 
 void run(const cli::App& app, const Options& options) {
-  if (options.printer_absorption && options.absorption_per_mm)
-    throw Error{Fault::usage, "--absorption: give either --absorption or --printer-absorption"};
-  if (options.cutoff && options.filter == "none") throw Error{Fault::usage, "--cutoff: requires --filter"};
   const model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, options.output)) return;
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);

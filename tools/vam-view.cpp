@@ -148,32 +148,8 @@ void show_volume(Options options, const std::string& history) {
   write_figure(options, volume_figure(options, shown), history);
 }
 
-/// Options that only other kinds of files have a use for.
-void refuse(const cli::App& app, const Options& options, const std::string& what,
-            const std::vector<std::string>& flags) {
-  for (const std::string& flag : flags) {
-    if (app.given(flag))
-      throw Error{Fault::data, options.input + ": " + flag + " does not apply to " + what + "; omit it"};
-  }
-}
-
-/// Of a volume, those that another figure has a use for.
-void refuse_unused(const cli::App& app, const Options& options) {
-  const std::vector<std::string> of_sections{"--plane", "--at", "--sheet"};
-  if (options.histogram) {
-    refuse(app, options, "a histogram", of_sections);
-    refuse(app, options, "a histogram", {"--colours"});
-  }
-  if (options.render) refuse(app, options, "a body in three dimensions", of_sections);
-  if (options.render || options.cure) refuse(app, options, "colours that tell cure", {"--colours", "--low", "--high"});
-  if (options.plain) refuse(app, options, "plain pixels", {"--dpi", "--title"});
-}
-
 void show_images(const cli::App& app, Options options, io::FileType type) {
-  refuse(app, options, "images",
-         {"--grid", "--plane", "--target", "--dose-histogram", "--cure-map", "--render", "--threshold", "--compare"});
   if (!options.exported.empty()) {
-    if (type != io::FileType::stack) throw Error{Fault::usage, "--export: requires a volume or an EXR stack"};
     io::StackReader stack(options.input);
     return io::write_nrrd(options.exported, stack);
   }
@@ -182,19 +158,18 @@ void show_images(const cli::App& app, Options options, io::FileType type) {
   write_figure(options, plot::view_images(*images, options.view), app.history());
 }
 
+constexpr const char* trace_ending = ".csv";
+
+/// As options say what they are not for.
+std::string kind_of(const std::string& input, const std::optional<io::FileType>& type) {
+  if (!type) return input.ends_with(trace_ending) ? "traces" : "meshes";
+  return *type == io::FileType::volume ? "volumes" : *type == io::FileType::stack ? "stacks" : "images";
+}
+
 /// A trace of vam-optimize, or else a mesh.
 void show_other(const cli::App& app, const Options& options) {
-  if (!options.exported.empty()) throw Error{Fault::usage, "--export: requires a volume or an EXR stack"};
-  const bool trace = options.input.ends_with(".csv");
-  const std::string what = trace ? "a trace" : "a mesh";
-  refuse(app, options, what,
-         {"--grid", "--plane", "--target", "--dose-histogram", "--cure-map", "--threshold", "--at", "--sheet",
-          "--colours", "--low", "--high"});
-  if (!trace) {
-    refuse(app, options, what, {"--compare"});
+  if (!options.input.ends_with(trace_ending))
     return write_figure(options, view_tool::mesh_figure(options.input, options.view), app.history());
-  }
-  refuse(app, options, what, {"--render", "--plain", "--image-size"});
   plot::save(options.output, plot::draw(view_tool::trace_plot(options)), app.history(), options.dpi);
 }
 
@@ -208,11 +183,9 @@ void run(const cli::App& app, Options& options) {
                        : options.plane == "coronal" ? plot::Plane::coronal
                                                     : plot::Plane::sagittal;
   const auto type = io::known_file_type(options.input);
+  app.require_for(kind_of(options.input, type), io::input_name(options.input));
   if (!type) return show_other(app, options);
-  if (*type == io::FileType::volume) {
-    refuse_unused(app, options);
-    return show_volume(options, app.history());
-  }
+  if (*type == io::FileType::volume) return show_volume(options, app.history());
   show_images(app, options, *type);
 }
 

@@ -238,11 +238,6 @@ App& App::form() {
   return *this;
 }
 
-App& App::needs(const std::vector<std::string>& any_of) {
-  state_->current_group().options.back().needs.push_back(any_of);
-  return *this;
-}
-
 App& App::subcommand(const std::string& name, const std::string& summary, const std::function<void()>& body) {
   auto nested = std::unique_ptr<App>(new App(Manual{name, summary}));
   nested->state_->owned.reset();

@@ -45,13 +45,16 @@ struct Range {
   double low;
   double high;
   bool open_low = false;  // low itself is not allowed
+  bool not_zero = false;
 };
 inline constexpr Range any{-1e300, 1e300};
+inline constexpr Range not_zero{-1e300, 1e300, false, true};
 inline constexpr Range positive{0, 1e300, true};
 inline constexpr Range non_negative{0, 1e300};
 inline constexpr Range rate{0.001, 1e6};  // of what must end in a lifetime: frames a second, degrees a second
 
 struct Option;  // cli/private/declaration.hpp
+struct Rule;
 struct Declaration;
 
 /// Options are bound to variables whose values are the defaults shown to the user. Value names carry the unit (MM,
@@ -105,13 +108,19 @@ class App {
   /// And writes it in these formats, whatever it is called: a name with the ending of another one is refused.
   App& writes_as(const std::vector<std::string>& endings);
   /// The operand or option declared last names a file that the tool reads; - is standard input. At most one input is
-  /// standard input, and no output is an input. `unless`: options that stand for the operand.
+  /// standard input, and no output is an input. `unless`: options that stand for the operand, and exclude it.
   App& reads(const std::vector<std::string>& unless = {});
   /// The option declared last makes a form of the tool, which the synopsis shows beside the plain one: with the
   /// operands that it does not stand for (reads).
   App& form();
-  /// The option declared last is refused where none of these is given. Called again: nor where none of those is.
-  App& needs(const std::vector<std::string>& any_of);
+  /// The option declared last is refused where none of these conditions holds: "--like", which is given;
+  /// "--geometry vial", whose value is in force. Called again: nor where none of those holds. value: only with this
+  /// one of the option.
+  App& only_with(const std::vector<std::string>& any_of, const std::string& value = "");
+  /// And where one of these holds.
+  App& excludes(const std::vector<std::string>& conditions, const std::string& value = "");
+  /// The option declared last has no effect on these kinds of input or output, in the plural [require_for].
+  App& not_for(const std::vector<std::string>& kinds);
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move), which runs `body`. Returns the
   /// nested declaration. A tool with operands or options of its own has a plain form, which runs without a command;
   /// else a command must be given. Options may stand before the command.
@@ -141,6 +150,9 @@ class App {
   [[nodiscard]] std::vector<std::string> inputs() const;
   /// Did the user give this option, of the command if one was given?
   [[nodiscard]] bool given(const std::string& flag) const;
+  /// Which kind the file of this name is, as soon as the tool knows it. Throws Fault::usage for an option that is
+  /// not_for() it.
+  void require_for(const std::string& kind, const std::string& name) const;
 
  private:
   struct State;
@@ -149,7 +161,9 @@ class App {
   void parse(int argc, char** argv);
   bool print_about(int argc, char** argv) const;
   void require_present() const;
-  void require_needed() const;
+  [[nodiscard]] bool holds(const std::string& condition) const;
+  void require_rules() const;
+  void require_rule(const Option& option, const Rule& rule) const;
   void require_own_inputs() const;
   void require_own_outputs() const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;

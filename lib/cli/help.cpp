@@ -52,7 +52,8 @@ std::string brief_text(Option option) {
   if (!option.brief.empty()) return option.brief;
   option.help = first_sentence(option.help);
   option.range_text.clear();
-  option.needs.clear();
+  option.rules.clear();
+  option.not_for.clear();
   return join(details(option), " ");
 }
 
@@ -144,7 +145,7 @@ std::vector<std::string> details(const Option& option) {
   if (!option.left_out.empty()) texts.push_back("Without a number: " + option.left_out + ".");
   if (option.repeatable) texts.emplace_back("May be repeated.");
   if (option.required) texts.push_back(option.unless.empty() ? "Required." : "Required without " + option.unless + ".");
-  for (const auto& any_of : option.needs) texts.push_back("Requires " + join(any_of, " or ") + ".");
+  for (const auto& text : rule_texts(option)) texts.push_back(text);
   return texts;
 }
 

@@ -148,19 +148,6 @@ void App::require_present() const {
   }
 }
 
-void App::require_needed() const {
-  for (const auto& group : state_->tool.groups) {
-    for (const auto& option : group.options) {
-      if (!given(long_flag(option))) continue;
-      for (const auto& any_of : option.needs) {
-        const auto is_given = [&](const std::string& flag) { return given(flag); };
-        if (std::any_of(any_of.begin(), any_of.end(), is_given)) continue;
-        throw Error{Fault::usage, long_flag(option) + ": requires " + join(any_of, " or ")};
-      }
-    }
-  }
-}
-
 namespace {
 
 // By the text of --memory.
@@ -199,7 +186,7 @@ void App::parse(int argc, char** argv) {
   }
   const App& form = form_in_use();
   form.require_present();
-  form.require_needed();
+  form.require_rules();
   form.require_own_inputs();
   form.require_own_outputs();
 }

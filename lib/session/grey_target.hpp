@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cli/app.hpp"
 #include "io/vdb/vdb.hpp"
@@ -16,11 +17,12 @@ struct GreyChoice {
   std::string band_volume;
   score::GreyOptions how;
 
-  /// The circle and the unit are not known yet. Throws Fault::usage for a band of a void that has another rule.
+  /// The circle and the unit are not known yet.
   [[nodiscard]] score::GreyOptions options() const;
 };
 
-void add_grey_target(cli::App& app, GreyChoice& grey);
+/// not_beside: options that such a target has no use for.
+void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::string>& not_beside);
 
 /// Warns where a target that is taken as coverage looks like doses, and returns whether it does. remedy: ends the
 /// warning.

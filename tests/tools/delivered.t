@@ -53,9 +53,9 @@ holds 'and not where the printer file has the axis' "$(json aside.score.json ver
 is 'whose axis they state all the same' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr aside.exr vam:printer)" "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr whole.exr vam:printer)"
 holds 'are enough' "$(json one.json turns) == 1 && $(json one.json ver) == 0"
 
-fails 64 'delivered.*requires --init|--delivered requires --init' vam-optimize $resin --angles 90 part.vdb --delivered half.vdb -o none.exr
-fails 64 'method osmo does not use it' $rest --method osmo -o none.exr
-fails 64 '--delivered: does not apply to --shortest' $rest --shortest -o none.exr
+misuse --delivered --init vam-optimize $resin --angles 90 part.vdb --delivered half.vdb -o none.exr
+misuse --delivered --method $rest --method osmo -o none.exr
+misuse --delivered --shortest $rest --shortest -o none.exr
 fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --angles 90 part.vdb --delivered half.vdb --init whole.exr -o none.exr
 vam-dose whole.exr --like part.vdb -o relative.vdb
 fails 65 "relative.vdb: the dose is in units of 'relative', not mJ/cm3" vam-optimize $resin --angles 90 part.vdb --delivered relative.vdb --init whole.exr -o none.exr

@@ -128,8 +128,8 @@ fails 65 'align the vial' vam-optimize --angles 60 --poses wide.csv part.vdb -o 
 fails 65 'empty.csv' vam-optimize --angles 60 --poses empty.csv part.vdb -o none.exr
 head -n 31 wobble.csv >half.csv
 fails 65 'one pose per frame' vam-dose plain.exr --poses half.csv --like part.vdb -o none.vdb
-fails 64 'give only one' vam-optimize --angles 60 --poses wobble.csv --helix 5 part.vdb -o none.exr
-fails 64 'do not apply to a parallel beam' vam-optimize --angles 60 --geometry parallel --poses wobble.csv part.vdb -o none.exr
+misuse --helix --poses vam-optimize --angles 60 --poses wobble.csv --helix 5 part.vdb -o none.exr
+misuse --poses '--geometry vial' vam-optimize --angles 60 --geometry parallel --poses wobble.csv part.vdb -o none.exr
 fails 64 'in-plane' vam-dose wobble.exr --in-plane --like part.vdb -o none.vdb
 fails 64 'do not return' vam-optimize --angles 60 --poses sink.csv --turns 3 --set resin.absorption_per_mm=0.01 \
   --set resin.critical_dose_mj_cm3=100 part.vdb -o none.exr

@@ -51,6 +51,12 @@ fails() {  # fails STATUS REGEX COMMAND...: that exit status, one line on stderr
   fi
 }
 
+misuse() {  # misuse OPTION CAUSE COMMAND...: refused with 64 in the name of the tool and the option, for this cause (another
+  # option, a kind of input), with a remedy
+  wrong=$1; cause=$2; shift 2
+  fails 64 "^vam-[a-z-]*: $wrong( [^:]*)?: .*$cause.*; (omit|give) " "$@"
+}
+
 is() {  # is NAME GOT WANT
   if [ "$2" = "$3" ]; then report 0 "$1"; else report 1 "$1"; echo "# got '$2', want '$3'"; fi
 }

@@ -23,9 +23,9 @@ fails 66 'missing' vam-calibrate edges missing
 fails 64 'REVERSE: missing' vam-calibrate lag turn
 fails 64 '--flips: missing' vam-calibrate latency ramp
 fails 64 '--first: missing, as is --side' vam-calibrate beam beam
-fails 64 '--spacing: must not be 0' vam-calibrate beam beam --pixel 0.0035 --first 0 --spacing 0
+fails 64 '--spacing: 0 is out of range; give any number but 0' vam-calibrate beam beam --pixel 0.0035 --first 0 --spacing 0
 is 'either form of beam is in its help' "$(vam-calibrate beam --help | grep -c 'beam \[OPTIONS\] --side FRAMES$\|beam \[OPTIONS\] --first MM --spacing MM --pixel MM FRAMES$')" 2
-fails 64 'omit --first and --spacing' vam-calibrate beam beam --side --spacing 1
+misuse --side --spacing vam-calibrate beam beam --side --spacing 1
 fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames have 160 x 32' vam-calibrate beam beam --side --dark ramp/00000.png
 fails 65 'at least 32 are required' vam-calibrate beam ramp --side
 fails 65 'the camera is at 45 degrees to the beam' vam-calibrate beam beam --side --set camera.azimuth_deg=45

@@ -10,9 +10,9 @@ take="vam-capture --device $sim --binning 12 --fps 10"
 fails 64 'number of images' $take --log why -o views.exr
 fails 64 'a folder cannot hold a stream' $take --live -o views/
 fails 64 'have no angles' $take --view-step 10 --log why -o views/
-fails 64 'turns: requires --view-step' $take --frames 3 --turns 2 -o views.exr
-fails 64 'conflicts with --turns' $take --view-step 10 --speed 90 --turns 2 --frames 3 -o views.exr
-fails 64 'conflicts with --follow' $take --frames 3 --follow - --speed 90 -o views.exr
+misuse --turns --view-step $take --frames 3 --turns 2 -o views.exr
+misuse --turns --frames $take --view-step 10 --speed 90 --turns 2 --frames 3 -o views.exr
+misuse --speed --follow $take --frames 3 --follow - --speed 90 -o views.exr
 fails 64 'unknown scheme' vam-capture --device usb:1 --frames 1 -o views.exr
 fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
 fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
@@ -53,7 +53,7 @@ same 'has the same pixels' sum1 sum2
 is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 
 # A stage at a fixed, known angle.
-fails 64 'a fixed stage angle conflicts with --follow, --speed and --view-step' $take --angle 90 --speed 3 --frames 1 -o no.exr
+misuse --angle --speed $take --angle 90 --speed 3 --frames 1 -o no.exr
 $take --angle 270 --frames 1 --compression none -o fixed.exr
 is 'its angle is recorded' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr fixed.exr vam:angle_deg)" 270
 

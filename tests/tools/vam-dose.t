@@ -70,7 +70,7 @@ holds "fewer turns do not suffice" "$(json plan.json multiplier) <= 1 && $(json 
 holds "duration of the print" "$(json plan.json duration_s) == 36 * $(json plan.json turns)"
 holds "the brightest pixel" "($(json plan.json peak_intensity_mw_cm2) / (3.8 * $(json plan.json multiplier)) - 1)^2 < 1e-12"
 holds "light efficiency, from either tool" "($(json plan.json efficiency) / $(json turn-score.json efficiency) - 1)^2 < 1e-8"
-fails 64 'requires --like' vam-dose frames.exr $resin --exposure-plan -o x.vdb
+misuse --exposure-plan --like vam-dose frames.exr $resin --exposure-plan -o x.vdb
 fails 64 'requires resin.critical_dose_mj_cm3' vam-dose frames.exr --like part.vdb --exposure-plan -o x.vdb
 fails 65 "has no grid 'target'" vam-dose frames.exr --like turn.vdb $resin --exposure-plan -o x.vdb
 
@@ -165,7 +165,7 @@ fails 65 cubes vam-dose flattened.exr -o x.vdb
 fails 65 'cover 180 deg' vam-dose half.exr -o x.vdb
 fails 65 'not slices of the volume' vam-dose flat.exr --like part.vdb -o x.vdb
 fails 65 'the printer it was resampled for' vam-dose frames.exr --set projector.columns=800 -o x.vdb
-fails 64 'already determines' vam-dose frames.exr --like part.vdb --size 5 -o x.vdb
+misuse --size --like vam-dose frames.exr --like part.vdb --size 5 -o x.vdb
 fails 64 size vam-dose frames.exr --size -5 -o x.vdb
 fails 64 full-scale vam-dose frames.exr --full-scale 0 -o x.vdb
 fails 64 radius vam-dose frames.exr --set vial.radius_mm=-3 -o x.vdb

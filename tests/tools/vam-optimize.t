@@ -69,13 +69,13 @@ judged 'two bits, level rays' small.vdb "$level" --bits 2
 judged 'half-covered ends, level rays' cut.vdb "$level"
 fails 65 '^vam-optimize: --bits 1: the peak intensity of [0-9.e-]+ rounds to 0 at a full scale of 100; the frames would be dark; use' \
   vam-optimize --method dose-norm --angles 24 --bits 1 --full-scale 100 part.vdb -o out.exr
-fails 64 'omit --max-intensity' vam-optimize --shortest --max-intensity 1 part.vdb -o out.exr
-fails 64 'omit --max-intensity, --turns' vam-optimize --shortest --turns 2 part.vdb -o out.exr
-fails 64 'use a method with --max-intensity' vam-optimize --method fbp --until ver=0 --shortest part.vdb -o out.exr
+misuse --shortest --max-intensity vam-optimize --shortest --max-intensity 1 part.vdb -o out.exr
+misuse --shortest --turns vam-optimize --shortest --turns 2 part.vdb -o out.exr
+misuse --shortest '--method' vam-optimize --method fbp --until ver=0 --shortest part.vdb -o out.exr
 fails 64 'if every pixel is lit at every angle' vam-optimize --angles 60 --max-intensity 0.05 part.vdb -o out.exr
 fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --turns 3 part.vdb -o out.exr
-fails 64 'omit --max-intensity' vam-optimize --turns 3 --max-intensity 1 part.vdb -o out.exr
-fails 64 'method fbp has no maximum intensity' vam-optimize --method fbp --turns 3 part.vdb -o out.exr
+misuse --turns --max-intensity vam-optimize --turns 3 --max-intensity 1 part.vdb -o out.exr
+misuse --turns '--method' vam-optimize --method fbp --turns 3 part.vdb -o out.exr
 vam-optimize --angles 60 --iterations 1 --max-intensity 0.12 part.vdb -o out.exr 2>missed.txt
 is "a part that does not print for its maximum intensity is reported" "$(grep -c 'does not print after 1 iteration: .*; more --iterations, or a --max-intensity above 0.12' missed.txt)" 1
 
@@ -132,7 +132,7 @@ holds "the report contains the blurred faces" "$(value lid.json blurred_faces.0.
 holds "vam-dose confirms the process window" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.001"
 holds "the process window is wider than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
 fails 65 'already.*omit vam-resample' vam-resample vial.exr -o twice.exr
-fails 64 '--detector-bins: does not apply to --geometry vial' vam-optimize --detector-bins 100 part.vdb -o out.exr
+misuse --detector-bins '--geometry parallel' vam-optimize --detector-bins 100 part.vdb -o out.exr
 fails 65 'outside its columns 0 to 1023' vam-optimize --geometry vial --set projector.axis_column=9000 part.vdb -o out.exr
 
 absorbing="--set resin.absorption_per_mm=0.1"
@@ -261,9 +261,9 @@ quiet "a front as an image, with tolerances" vam-optimize --angles 12 --robust l
   --tradeoff front.png tiny.vdb -o front.exr
 is "it is an image" "$(head -c 8 front.png | od -An -c | tr -d ' ')" '211PNG\r\n032\n'
 fails 64 'front.txt' vam-optimize --tradeoff front.txt coarse.vdb -o out.exr
-fails 64 'omit --max-intensity' vam-optimize --tradeoff out.csv --max-intensity 1 part.vdb -o out.exr
-fails 64 'omit .*--patience' vam-optimize --tradeoff out.csv --patience 3 part.vdb -o out.exr
-fails 64 'use a method with --max-intensity' vam-optimize --tradeoff out.csv --method fbp part.vdb -o out.exr
+misuse --tradeoff --max-intensity vam-optimize --tradeoff out.csv --max-intensity 1 part.vdb -o out.exr
+misuse --tradeoff --patience vam-optimize --tradeoff out.csv --patience 3 part.vdb -o out.exr
+misuse --tradeoff '--method' vam-optimize --tradeoff out.csv --method fbp part.vdb -o out.exr
 vam-optimize --angles 12 --tradeoff nowhere/out.csv coarse.vdb -o kept.exr 2>.log/nowhere
 is "a front that cannot be written leaves the projections" \
   "$? $(grep -c nowhere/out.csv .log/nowhere) $([ -s kept.exr ] && echo kept)" "73 1 kept"
@@ -282,7 +282,7 @@ fails 65 "certificate" vam-optimize --weights proof.vdb part.vdb -o out.exr
 fails 64 "vam-optimize --help=all lists all" vam-optimize --threshold 3 part.vdb
 is 'the help fits on a screen, with a dozen options' \
   "$(vam-optimize --help | awk '/^  -/ && !/--version/ { n++ } END { print (NR <= 30), (n <= 14) }')" '1 1'
-fails 64 'certify: does not apply to --grey-target' vam-optimize --grey-target --certify p.vdb part.vdb -o out.exr
+misuse --certify --grey-target vam-optimize --grey-target --certify p.vdb part.vdb -o out.exr
 fails 64 'p.exr' vam-optimize --certify p.exr part.vdb -o out.exr
 
 # A budget of time.
@@ -291,7 +291,7 @@ is "time stops the run" "$(value budget.json stopped_by)" time
 holds "its light is of use" "$(value budget.json iou) > 0.95"
 vam-optimize --angles 60 --budget 0.01 --max-intensity 0.12 part.vdb -o out.exr 2>short.txt
 is "which is named where it is too short" "$(grep -c 'does not print after [0-9]* iterations* within --budget: .*; a larger --budget' short.txt)" 1
-fails 64 '--budget: does not apply to --checkpoint' vam-optimize --budget 10 --checkpoint b.state part.vdb -o out.exr
+misuse --budget --checkpoint vam-optimize --budget 10 --checkpoint b.state part.vdb -o out.exr
 
 # Printers off their settings.
 off='axis=2px,index=0.02,angle=1deg,radius=0.5%,lamp=2%,psf=0.1mm'
@@ -313,14 +313,14 @@ done
 is "the pixels of such a run, interrupted" \
   "$(tail -c 20000 robust-parts.exr | cksum)" "$(tail -c 20000 robust.exr | cksum)"
 same "its figures" parts.json robust.json
-fails 64 '--robust: method cal does not use it; omit it, or choose one of apg' \
+misuse --robust '--method' \
   vam-optimize --method cal --robust lamp=3% part.vdb -o out.exr
-fails 64 'use --geometry vial' vam-optimize --geometry parallel --robust lamp=3% part.vdb -o out.exr
-fails 64 'does not apply to --grey-target' vam-optimize --grey-target --robust lamp=3% part.vdb -o out.exr
+misuse --robust '--geometry vial' vam-optimize --geometry parallel --robust lamp=3% part.vdb -o out.exr
+misuse --robust --grey-target vam-optimize --grey-target --robust lamp=3% part.vdb -o out.exr
 fails 64 "no tolerance is called 'colour'; there are axis" vam-optimize --robust colour=3 part.vdb -o out.exr
 fails 64 "'axis=0.5': the unit must be px; write for example" vam-optimize --robust axis=0.5 part.vdb -o out.exr
 fails 64 "'-1' is not a number above 0 in px" vam-optimize --robust axis=-1px part.vdb -o out.exr
-fails 64 'requires --robust' vam-optimize --yield-printers 5 part.vdb -o out.exr
+misuse --yield-printers --robust vam-optimize --yield-printers 5 part.vdb -o out.exr
 python3 "$VAM_SOURCE/tests/tools/scans.py" beam beam
 records='--set calibration.folder=cal'
 fails 64 'no calibration.folder' vam-optimize --robust calibration part.vdb -o out.exr
@@ -342,7 +342,7 @@ vam-slice --shape torus --voxel 0.09 -o fine.vdb && vam-score fine.vdb --grid ta
 vam-sdf asked.ply design.ply --align none --samples 20000 --report asked-sdf.json >table
 sdf() { python3 -c 'import json, sys; print(json.load(open("asked-sdf.json"))["print_to_design"][sys.argv[1]])' "$1"; }
 holds "the print is as large as the design" "$(sdf mean_mm) >= -0.026 && $(sdf mean_mm) <= 0.026 && $(sdf rms_mm) <= 0.065"
-fails 64 '--free-surface: method cal does not use it' vam-optimize --method cal --free-surface part.vdb -o out.exr
+misuse --free-surface '--method .*apg' vam-optimize --method cal --free-surface part.vdb -o out.exr
 quiet "a band around the surface" vam-optimize --angles 45 --iterations 10 --surface-margin 0.15 --report band.json part.vdb -o band.exr
 quiet "surface voxels constrained, too" vam-optimize --angles 45 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
 holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"
@@ -362,8 +362,8 @@ fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --resin-response f
 fails 66 'none.csv' vam-optimize --method bclp --resin-response none.csv part.vdb -o out.exr
 fails 66 "'logstic' is none of linear, step, logistic and no file; did you mean logistic" \
   vam-optimize --method bclp --resin-response logstic part.vdb -o out.exr
-fails 64 'choose one of bclp by --method, or give --grey-target' vam-optimize --band 0.2 part.vdb -o out.exr
-fails 64 'does not support grey targets; use one of pm, bclp, apg' vam-optimize --grey-target --method osmo part.vdb -o out.exr
+misuse --band '--method bclp' vam-optimize --band 0.2 part.vdb -o out.exr
+misuse --grey-target '--method' vam-optimize --grey-target --method osmo part.vdb -o out.exr
 fails 64 'neglect the blur' vam-optimize --method osmo --set projector.telecentric=true --set resin.psf_mm=0.1 part.vdb -o out.exr
 vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 -o other.vdb
 fails 65 "other.vdb: the grid of 'target' differs" vam-optimize --weights other.vdb part.vdb -o out.exr
@@ -374,7 +374,7 @@ for geometry in vial parallel; do
 done
 fails 64 'absorbed or blocked; use footprints' \
   vam-optimize --geometry parallel --line-integrals fourier --set resin.absorption_per_mm=0.05 part.vdb -o out.exr
-fails 64 'applies to parallel beams' vam-optimize --line-integrals auto part.vdb -o out.exr
+misuse --line-integrals '--geometry parallel' vam-optimize --line-integrals auto part.vdb -o out.exr
 fails 64 'does not apply around an insert' \
   vam-optimize --geometry parallel --absorption-model disc --set resin.absorption_per_mm=0.05 handle.vdb -o out.exr
 fails 65 'part and insert share' vam-optimize overlap.vdb -o out.exr
@@ -383,8 +383,8 @@ fails 64 'magic. is not one of auto, fbp' vam-optimize --method magic part.vdb -
 fails 64 'void dose, 0.9, is not below the least part dose, 0.8' vam-optimize --dose-low 0.9 --dose-high 0.8 part.vdb -o out.exr
 fails 64 "unknown figure 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.exr
 fails 64 '--power' vam-optimize --method pm --power 0.5 part.vdb -o out.exr
-fails 64 '--dither: 2 turns need frames that differ' vam-optimize --bits 4 --dither 2 part.vdb -o out.exr
-fails 64 '--full-scale: requires --bits' vam-optimize --full-scale 1 part.vdb -o out.exr
+fails 64 '--dither: 2 is out of range; give 1' vam-optimize --bits 4 --dither 2 part.vdb -o out.exr
+misuse --full-scale --bits vam-optimize --full-scale 1 part.vdb -o out.exr
 fails 64 '--angles' vam-optimize --angles 0 part.vdb -o out.exr
 fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 64 'as --output does; name a file for one of them' vam-optimize part.vdb --report -

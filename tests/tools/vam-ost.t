@@ -36,7 +36,7 @@ is 'one line per volume' "$(grep -c missing_percent log.jsonl)" 1
 quiet 'and its uncertainty' vam-ost views --view-step 6 $rig --live --uncertainties --isovalue 1 -o both
 is 'in the folder, the volume last' "$(ls -tr both | tr '\n' ' ')" 'uncertainty-0000.vdb scatter-0000.vdb '
 is 'both state their turns' "$(grep -alc vam:turns both/*.vdb | wc -l)" 2
-fails 64 'name a folder by -o' vam-ost views --view-step 6 $rig --live --uncertainties --log x
+misuse --uncertainties --output vam-ost views --view-step 6 $rig --live --uncertainties --log x
 grep -q 'now.png' now.html; report $? 'the page shows the image'
 event=$(vam-ost views --view-step 6 $rig --live --resin resin.json --target design.vdb --until 'iou>=0.5')
 echo "$event" | grep -q '"event":"stop"'; report $? 'a stop event when the condition holds'
@@ -66,9 +66,9 @@ holds 'a tenth of a pixel or so' "$(json known.json uncertainty_budget.surface_m
 quiet 'or of the mesh' vam-sdf known.ply standard-design.vdb --report mesh.json
 is 'which says so, too' "$(json mesh.json uncertainty_budget.source)" mesh
 holds 'and knows as much' "$(json mesh.json uncertainty_budget.surface_mm) / $(json known.json uncertainty_budget.surface_mm) > 0.99 && $(json mesh.json uncertainty_budget.surface_mm) / $(json known.json uncertainty_budget.surface_mm) < 1.01"
-fails 64 'omit it, --live has --uncertainties' vam-ost standard.exr $glass --live -o x --uncertainty x.vdb
-fails 64 '--uncertainty: is that of filtered .*; omit it, or --mlem-iterations' vam-ost standard.exr $glass -o x.vdb --mlem-iterations 3 --uncertainty y.vdb
-fails 64 '--uncertainties: is that of filtered' vam-ost standard.exr $glass --live -o x --mlem-iterations 3 --uncertainties
+misuse --live --uncertainty vam-ost standard.exr $glass --live -o x --uncertainty x.vdb
+misuse --uncertainty --mlem-iterations vam-ost standard.exr $glass -o x.vdb --mlem-iterations 3 --uncertainty y.vdb
+misuse --uncertainties --mlem-iterations vam-ost standard.exr $glass --live -o x --mlem-iterations 3 --uncertainties
 holds 'the standard is as high as it was drawn' "$(json glass.json height_mm) > 3.8 && $(json glass.json height_mm) < 4.2"
 python3 - <<'PY'
 import struct, zlib
@@ -141,15 +141,15 @@ fails 65 'no volume' vam-ost views --view-step 2 $rig --live --log live.jsonl
 fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --view-step 20 $rig --live --log live.jsonl
 
 fails 64 'have no angles; give their angular step by --view-step' vam-ost views -o x.vdb
-fails 64 'mesh: requires --isovalue or --resin' vam-ost views --view-step 6 --mesh p.ply -o x.vdb
+misuse --mesh '--isovalue or --resin' vam-ost views --view-step 6 --mesh p.ply -o x.vdb
 fails 64 "'p.off' must end in .3mf or .ply or .stl or .obj" vam-ost views --view-step 6 --isovalue 1 --mesh p.off -o x.vdb
-fails 64 'volume-step: requires --live' vam-ost views --view-step 6 --volume-step 90 -o x.vdb
-fails 64 'until: requires --target' vam-ost views --view-step 6 --live --isovalue 1 --until 'iou>=0.5'
-fails 64 'report: describes one volume' vam-ost views --view-step 6 --live -o x --report x.json
-fails 64 'view-step: is 0' vam-ost views --view-step 0 -o x.vdb
-fails 64 'requires --projections' vam-ost views --view-step 6 --live --page p.html
+misuse --volume-step --live vam-ost views --view-step 6 --volume-step 90 -o x.vdb
+misuse --until --target vam-ost views --view-step 6 --live --isovalue 1 --until 'iou>=0.5'
+misuse --live --report vam-ost views --view-step 6 --live -o x --report x.json
+fails 64 '--view-step: 0 is out of range; give any number but 0' vam-ost views --view-step 0 -o x.vdb
+misuse --page --projections vam-ost views --view-step 6 --live --page p.html
 fails 64 '--diameter: missing, as is --profile' vam-calibrate resin scatter.vdb
-fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb --diameter 6 --profile profile.png
+misuse --profile --diameter vam-calibrate resin scatter.vdb --diameter 6 --profile profile.png
 fails 65 'no print at this threshold' vam-ost views --view-step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
 fails 65 'views: views: the turn is incomplete' vam-ost views --view-step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb
@@ -190,5 +190,5 @@ fails 64 '^vam-ost: --binning: given twice' vam-ost views --set camera.azimuth_d
 vam-ost views --view-step 6 $rig --isovalue "$(json resin.json isovalue)" --min-body 1e6 --mesh none.ply -o x.vdb 2>errors
 is 'a print without a body' "$? $(grep -c 'no body is kept: the largest has .* mm3; check --min-body' errors) $(ls none.ply 2>/dev/null)" '65 1 '
 fails 65 'standard: appears .* mm in diameter, 6.5 mm are stated; check --diameter' vam-calibrate resin standard.vdb --diameter 6.5 -o wrong.json
-fails 64 'live: gives no result; name a folder' vam-ost --live --view-step 6 dark $rig
+misuse --live --output vam-ost --live --view-step 6 dark $rig
 done_testing

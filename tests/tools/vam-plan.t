@@ -193,7 +193,7 @@ fails 64 '--voxel' vam-plan box.off --voxel 0
 fails 66 'none.stl' vam-plan none.stl
 echo hello >text.stl
 fails 65 'text.stl' vam-plan text.stl
-fails 64 'give only one of them' vam-plan box.off --shape cylinder
+misuse PART --shape vam-plan box.off --shape cylinder
 fails 65 'box.off: is 1e[+]05 x 1e[+]05 x 4e[+]04 mm, [0-9e+.]* times too large for this printer; check --unit' \
   vam-plan box.off --scale 10000
 fails 65 '^vam-plan: shape cylinder:diameter=1000,height=2: is 1e[+]06 x 1e[+]06 x 2000 mm' \

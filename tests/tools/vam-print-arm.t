@@ -381,7 +381,7 @@ holds 'and logged' "$on > 0.3 && $on < 3"
 is 'as black' "$(tail -n 1 hang/flips.jsonl | grep -o '"frame":-1.*"by":"vam-print"' | wc -l)" 1
 fails 74 'standard output: cannot be written' sh -c 'vam-print frames.exr --display null: --uncalibrated --plan >/dev/full'
 
-fails 64 'omit --exposure-plan' vam-dose frames.exr --shown whole --exposure-plan --like part.vdb --set resin.absorption_per_mm=0.1 --set resin.critical_dose_mj_cm3=5 -o x.vdb
+misuse --shown --exposure-plan vam-dose frames.exr --shown whole --exposure-plan --like part.vdb --set resin.absorption_per_mm=0.1 --set resin.critical_dose_mj_cm3=5 -o x.vdb
 
 if [ -n "$full" ]; then
   wait $full

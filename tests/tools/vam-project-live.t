@@ -30,13 +30,13 @@ fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
 fails 64 '1.5 is not a whole number' vam-project part.exr -o null: --plan --turns 1.5
 fails 64 'from: 720 degrees is beyond the 2 turns' vam-project part.exr -o null: --turns 2 --from 720
 fails 64 'from: 720 degrees is beyond the 2 turns' vam-project part.exr -o null: --plan --turns 2 --from 720
-fails 64 'report: describes what was shown' vam-project part.exr -o null: --plan --report -
+misuse --plan --report vam-project part.exr -o null: --plan --report -
 vam-project part.exr -o null: --plan --turns 2 --from 180 >plan
 ok "the plan of a print's rest has its turns" grep -q '^exposure   1.5 turns from 180 deg on at ' plan
 vam-project --pattern star --plan -o null: --light 'sim:?log=planned' >plan
 is 'the plan of a pattern: its devices, without light' "$? $(cut -d' ' -f1 plan | tr '\n' ' ') $(cat planned 2>/dev/null)" '0 display relay engine  '
 fails 64 'is not one of dlpc350:, dlpc900:, sim:|sim0' vam-project --pattern star --plan -o null: --light sim0:
-fails 64 'pattern: conflicts with SINOGRAM' vam-project sino.exr --pattern star -o star/
+misuse SINOGRAM --pattern vam-project sino.exr --pattern star -o star/
 for pattern in star axis grid grey ramp sweep row blink; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
 is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
 ok 'a dry run reports the pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows
@@ -114,7 +114,7 @@ begun=$(grep -m 1 '"frame":[0-9]' renewed | sed 's/.*"t_monotonic_s":\([0-9.]*\)
 vam-dose one.exr --shown renewed --before "$(awk "BEGIN { printf \"%.6f\", $begun + 1 }")" --size 2 --set stage.speed_deg_s=180 -o dose.vdb --report early.json
 holds 'in the first second half a turn was shown' "($(json early.json shown_turns) - 0.5) ^ 2 < 0.02 ^ 2"
 fails 65 'no light was shown in this run before that time; check --before' vam-dose one.exr --shown renewed --before 0 --size 2 --set stage.speed_deg_s=180 -o x.vdb
-fails 64 'before: requires --shown|--before requires --shown' vam-dose one.exr --before 0 --size 2 -o x.vdb
+misuse --before --shown vam-dose one.exr --before 0 --size 2 -o x.vdb
 cp one.exr same.exr
 fails 64 'same.exr: is given twice, but its light was delivered once' vam-dose one.exr same.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o x.vdb
 fails 64 'one.exr: is given twice' vam-dose one.exr one.exr --shown renewed --size 2 --set stage.speed_deg_s=180 -o x.vdb
@@ -152,7 +152,7 @@ holds 'a video has that scale, too' "$(json scale.json full_scale) == 0.5"
 vam-project part.exr -o null: --speed 360 --turns 1 --max-missed 0.9 --log /dev/full --frames-from new 2>full
 is 'a log that cannot be written ends the print in good order' "$? $(grep -c '/dev/full: write failed' full)" '74 1'
 fails 66 'nowhere: cannot read the folder' vam-project part.exr -o null: --turns 1 --speed 180 --frames-from nowhere
-fails 64 'frames-from: applies only to a display' vam-project part.exr -o x.mkv --frames-from new
+misuse --frames-from files vam-project part.exr -o x.mkv --frames-from new
 
 wait $early
 is 'a stage that ends is an error' $? 75

@@ -37,12 +37,12 @@ vam-project slices.exr $screen --print-speed 2000 -o fast.exr --compression none
 is "another print speed" "$($exr attr fast.exr vam:fps) $($exr attr fast.exr vam:speed_mm_h)" "11.1111111 2000"
 quiet "live, by elapsed time" vam-project levels $screen --fps 200 -o null: --max-missed 1 --report live.json
 holds "shown for 53 / 200 s, about 16 blanks" "$(json live.json lit_flips) >= 10 && $(json live.json lit_flips) <= 24"
-fails 64 'both set the slice rate' vam-project slices.exr $screen --fps 5 --print-speed 1000 -o x/
+misuse --fps --print-speed vam-project slices.exr $screen --fps 5 --print-speed 1000 -o x/
 fails 64 'levels does not state its slice height; give --fps' vam-project levels $screen --print-speed 1000 -o x/
-fails 64 'shown once, by time' vam-project slices.exr $screen --turns 2 -o x/
-fails 64 'plan: slices.exr contains slices' vam-project slices.exr $screen --plan -o null:
-fails 64 'from: slices.exr contains slices' vam-project slices.exr $screen --from 90 -o null: --log why
-fails 64 'shown once, by time' vam-project slices.exr $screen --turns 2 -o null: --log why
+misuse --turns slices vam-project slices.exr $screen --turns 2 -o x/
+misuse --plan slices vam-project slices.exr $screen --plan -o null:
+misuse --from slices vam-project slices.exr $screen --from 90 -o null: --log why
+misuse --turns slices vam-project slices.exr $screen --turns 2 -o null: --log why
 vam-slice --shape disc-grid --voxel 0.4 | vam-sinogram --filter ram-lak --negative clip | vam-resample | vam-project --bits 8 --speed 120 --fps 2 -o turn.exr
 fails 65 'contains frames at stage angles' vam-project turn.exr -o x/
 fails 65 'voxels of 0.05 mm are not the projector.s pixels of 0.065 mm' vam-project slices.exr -o x/

@@ -167,7 +167,7 @@ ok "an older folder of frames is replaced" vam-project part.exr --turns 0.5 -o f
 is "whole" "$(ls frames | grep -c png)" 18
 ln -s /dev/full full.mkv
 fails 74 'full.mkv' vam-project part.exr -o full.mkv
-fails 64 'report: does not apply to --pattern' vam-project --pattern ramp --steps 3 -o steps/ --report steps.json
-fails 64 'turns: does not apply to --pattern' vam-project --pattern ramp --turns 3 -o steps/
+misuse --pattern --report vam-project --pattern ramp --steps 3 -o steps/ --report steps.json
+misuse --pattern --turns vam-project --pattern ramp --turns 3 -o steps/
 is 'nothing is made of them' "$(ls | grep -c steps)" 0
 done_testing

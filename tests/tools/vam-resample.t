@@ -48,8 +48,8 @@ is "horizontal rays do not climb" "$(vam-resample --explain --row 0 --set projec
 is "the middle row is that of the map" \
   "$(vam-resample --explain --row 383 --set projector.axis_row=383 | awk -F, 'NR > 1 { print $3 "," $5 "," $8 "," $9 }' | cksum)" \
   "$(vam-resample --explain | awk -F, 'NR > 1 { print $1 "," $2 "," $3 "," $4 }' | cksum)"
-fails 64 '--row: requires --explain' vam-resample --row 3 virtual.exr -o x.exr
-fails 64 'does not apply' vam-resample --explain --geometry parallel --row 3 -o x.csv
+misuse --row --explain vam-resample --row 3 virtual.exr -o x.exr
+misuse --row '--geometry vial' vam-resample --explain --geometry parallel --row 3 -o x.csv
 fails 64 'rows are 0 ... 767' vam-resample --explain --row 768 -o x.csv
 $exr make tall.exr width=64 height=60 pixel=0.26 row=0.26 count=51
 vam-resample tall.exr -o tall-p.exr 2>tall.err
@@ -109,8 +109,8 @@ fails 65 'virtual' vam-resample --geometry parallel virtual.exr -o x.exr
 fails 65 'cover 180 deg' vam-resample half.exr -o x.exr
 fails 64 'geometry' vam-resample --geometry camera virtual.exr -o x.exr
 fails 64 'interpolation' vam-resample --interpolation spline virtual.exr -o x.exr
-fails 64 'does not apply' vam-resample --geometry parallel --no-fresnel camera.exr -o x.exr
-fails 64 'does not apply' vam-resample --bin-width 1 virtual.exr -o x.exr
+misuse --no-fresnel '--geometry vial' vam-resample --geometry parallel --no-fresnel camera.exr -o x.exr
+misuse --bin-width '--geometry parallel' vam-resample --bin-width 1 virtual.exr -o x.exr
 fails 64 'bin-width' vam-resample --geometry parallel --bin-width 0 camera.exr -o x.exr
 fails 64 'radius' vam-resample --set vial.radius_mm=-1 virtual.exr -o x.exr
 fails 65 'window' vam-resample --set bath.index=1.5 virtual.exr -o x.exr

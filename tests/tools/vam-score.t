@@ -125,7 +125,8 @@ is "by all voxels" "$(json grey.json ver) $(json grey.json cv)" "0.0 0.0"
 ok "in words" sh -c 'vam-score --grid target part.vdb --grey-target | grep -q "^verdict  *met: 100 % of [0-9]* voxels are within 0.1 of the target"'
 vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb 2>.log/coarse
 for rule in met below free; do
-  set -- --grey-target --void $rule --dose-low 0.4 --band 0.3
+  set -- --grey-target --void $rule --band 0.3
+  [ $rule != below ] || set -- "$@" --dose-low 0.4
   vam-optimize "$@" --angles 60 --iterations 10 --report want-$rule.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o $rule.vdb
   vam-score "$@" $rule.vdb --target coarse.vdb --report is-$rule.json >.log/score
   # Of two programs, whose doses differ by rounding.
@@ -134,9 +135,9 @@ for rule in met below free; do
   done
 done
 # A band of its own in the void, and one for each voxel: 0.3 everywhere, as of a dose of a disc that all is in.
-set -- --grey-target --void met --void-band 0.5 --band 0.2
-vam-optimize "$@" --angles 60 --iterations 10 --report want.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o void.vdb
-vam-score "$@" void.vdb --target coarse.vdb --report is.json >.log/score
+set -- --grey-target --void met --band 0.2
+vam-optimize "$@" --void-band 0.5 --angles 60 --iterations 10 --report want.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o void.vdb
+vam-score "$@" --void-band 0.5 void.vdb --target coarse.vdb --report is.json >.log/score
 holds 'with a band of the void the error rate is that of vam-optimize' "($(json is.json ver) - $(json want.json ver)) ^ 2 < 1e-8"
 grep -q 'are within their bands around the target' .log/score; report $? 'and the verdict says so'
 vam-convert coarse.vdb -o coarse.npy
@@ -155,7 +156,7 @@ vam-score --grey-target --band 0.3 banded.vdb --target alike.vdb --report one.js
 holds 'and that of the same band for all' "($(json is.json ver) - $(json one.json ver)) ^ 2 + ($(json is.json pw) - $(json one.json pw)) ^ 2 < 1e-12"
 fails 65 "the grid of '.*' differs from that of the target" vam-score --grey-target --band-volume part.vdb banded.vdb --target alike.vdb
 vam-optimize --grey-target --resin-response logistic --angles 60 --iterations 2 coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o response.vdb
-fails 64 '--void free: stands for --void-band' vam-score --grey-target --void free --void-band 0.5 banded.vdb --target alike.vdb
+misuse --void-band '--void met' vam-score --grey-target --void free --void-band 0.5 banded.vdb --target alike.vdb
 fails 65 "response 'logistic' of the resin, and doses are judged here" vam-score --grey-target response.vdb --target coarse.vdb
 # Once the resin is known, the dose is in mJ/cm3 and the target still relative.
 absorbs='--set resin.absorption_per_mm=0.05'
@@ -176,8 +177,8 @@ ok 'a grey target that is taken for coverage is a warning' sh -c "vam-score --gr
 ok 'in vam-optimize, too' sh -c "vam-optimize --angles 30 --iterations 2 graded.vdb -o taken.exr 2>&1 |
   grep -q 'graded.vdb: the target is grey'"
 quiet 'which it is said to be' vam-score --grid target graded.vdb --grey-target
-fails 64 'requires --grey-target' vam-score --grid target part.vdb --void free
-fails 64 'does not apply to --grey-target' vam-score --grid target part.vdb --grey-target --surface
+misuse --void --grey-target vam-score --grid target part.vdb --void free
+misuse --grey-target --surface vam-score --grid target part.vdb --grey-target --surface
 fails 64 "unknown figure 'turns'" vam-score --grid target part.vdb --grey-target --require 'turns<3'
 fails 65 'make both from the same target' vam-score --grid target part.vdb --grey-target --target other.vdb
 

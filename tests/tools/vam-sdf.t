@@ -41,12 +41,12 @@ ok 'what came after the best print is left' vam-slice design.off --compensate no
 grep -q 'has settled' .log/err; report $? 'and said'
 fails 65 'another design' vam-slice grown.off --compensate first.vdb --voxel 0.2 -o x.vdb
 fails 65 'RMS deviation|no grid' vam-slice design.off --compensate next.vdb --voxel 0.2 -o x.vdb
-fails 64 'meshes only' vam-slice --shape sphere:diameter=6 --compensate first.vdb --voxel 0.2 -o x.vdb
+misuse --compensate 'test parts' vam-slice --shape sphere:diameter=6 --compensate first.vdb --voxel 0.2 -o x.vdb
 fails 64 'damping' vam-slice design.off --damping 0.5 --voxel 0.2 -o x.vdb
 fails 64 'volume-voxel' vam-sdf grown.off design.off --volume-voxel 0.1
-fails 64 '^vam-sdf: --fit-scale: the shrinkage would be missing' vam-sdf grown.off design.off --fit-scale --volume x.vdb
-fails 64 '^vam-slice: --scale: --compensate corrects' vam-slice design.off --scale 0.5 --compensate first.vdb --voxel 0.2 -o x.vdb
-fails 64 '^vam-slice: --unit: --compensate corrects' vam-slice design.off --unit in --compensate first.vdb --voxel 0.2 -o x.vdb
+misuse --volume --fit-scale vam-sdf grown.off design.off --fit-scale --volume x.vdb
+misuse --compensate --scale vam-slice design.off --scale 0.5 --compensate first.vdb --voxel 0.2 -o x.vdb
+misuse --compensate --unit vam-slice design.off --unit in --compensate first.vdb --voxel 0.2 -o x.vdb
 awk 'NR == 2 { print $1, $2 - 1, $3; next } { line[NR] = $0 } END { for (n = 3; n < NR; ++n) print line[n] }' design.off |
   { echo OFF; cat; } >open.off
 awk 'NR == 2 { $2 *= 2 } { print } NR > 2 && NF == 4 { again = again $0 "\n" } END { printf "%s", again }' design.off >twice.off
@@ -104,7 +104,7 @@ fails 64 'is given already' vam-sdf off.off design.off $datum --region a=0,0,0,1
 fails 64 'must begin with a name' vam-sdf off.off design.off --region 0,0,0,1,1,1
 fails 65 'enlarge its box' vam-sdf off.off design.off --region far=plane:20,20,20,30,30,30
 fails 64 'top.bend' vam-sdf grown.off design.off $faces --require 'top.bend<1'
-fails 64 'is a mesh' vam-sdf grown.off design.off --isovalue-uncertainty 0.1
+misuse --isovalue-uncertainty meshes vam-sdf grown.off design.off --isovalue-uncertainty 0.1
 
 # Prints that grow by 0.05 mm from one to the next.
 for n in 1 2 3 4; do

@@ -71,8 +71,8 @@ fails 64 'angles' vam-sinogram --angles 0 part.vdb -o x.exr
 fails 64 'detector-bins' vam-sinogram --detector-bins 0 part.vdb -o x.exr
 fails 64 'filter' vam-sinogram --filter ramp part.vdb -o x.exr
 fails 64 'cutoff' vam-sinogram --filter hann --cutoff 0 part.vdb -o x.exr
-fails 64 'requires --filter' vam-sinogram --cutoff 0.5 part.vdb -o x.exr
-fails 64 'give either' vam-sinogram --printer-absorption --absorption 1 part.vdb -o x.exr
+misuse --cutoff '--filter none' vam-sinogram --cutoff 0.5 part.vdb -o x.exr
+misuse --printer-absorption --absorption vam-sinogram --printer-absorption --absorption 1 part.vdb -o x.exr
 fails 64 'absorption' vam-sinogram --absorption -1 part.vdb -o x.exr
 python3 - <<'PY'
 head = "{'descr': '<f4', 'fortran_order': False, 'shape': (4, 8, 8), }"

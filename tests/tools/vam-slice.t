@@ -92,7 +92,7 @@ ok "an open mesh is wrapped" vam-slice lidless.stl --fill wrap --wrap 0.4,0.05 -
 is "by so much" "$(json report.json wrap.offset_mm)" 0.05
 holds "it is larger by no more than the offset" "$(json report.json volume_mm3) > 64 && $(json report.json volume_mm3) < 4.1^3"
 ok "which is said" sh -c 'vam-slice lidless.stl --fill wrap --voxel 0.4 --verbose -o out.vdb 2>&1 | grep -q "4 open edges .* larger by up to 0.05 mm"'
-fails 64 'give --fill wrap' vam-slice lidless.stl --fill vote --wrap 0.4,0.05 -o x.vdb
+misuse --wrap '--fill wrap' vam-slice lidless.stl --fill vote --wrap 0.4,0.05 -o x.vdb
 for size in 0.4,0 0.4,0.003 0.4,0.5 -0.4,-0.1; do
   fails 64 '--wrap: an offset of .* from ALPHA/100 to ALPHA' vam-slice lidless.stl --fill wrap --wrap=$size -o x.vdb
 done
@@ -131,7 +131,7 @@ with zipfile.ZipFile("inch.3mf", "w") as out:
         for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))) + '</triangles></mesh></object></resources><build><item objectid="1"/></build></model>')
 PY
 volume 64 vam-slice inch.3mf --scale 0.078740157480315 --voxel 0.25
-fails 64 '--scale: --fit determines the scale; give either --scale or --fit' vam-slice cube.stl --fit 3 --scale 2 -o x.vdb
+misuse --fit --scale vam-slice cube.stl --fit 3 --scale 2 -o x.vdb
 printf 'PK\5\6\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0' >empty.3mf
 fails 65 'empty.3mf: is an empty zip archive, not a mesh' vam-slice empty.3mf -o x.vdb
 for z in 5 -5 200; do
@@ -193,7 +193,7 @@ quiet "a mesh is placed by auto" vam-slice cube.stl --voxel 0.25 --place auto $l
 ok "an insert is raised with the part" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 --place 2 -o out.vdb
 fails 65 'spans z = -57.*; --place auto finds a height within them' vam-slice --shape cone --voxel 0.25 --place -50 -o x.vdb
 fails 64 "'high' is neither a height in mm nor auto" vam-slice --shape cone --voxel 0.25 --place high -o x.vdb
-fails 64 'omit --any-height' vam-slice --shape cone --voxel 0.25 --place auto --any-height -o x.vdb
+misuse --any-height '--place auto' vam-slice --shape cone --voxel 0.25 --place auto --any-height -o x.vdb
 
 # Inserts
 ok "a shaft in a handle" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 -o insert.vdb
@@ -216,7 +216,7 @@ quiet "without a number, too" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0
 quiet "which is none" vam-slice --insert-shape box:x=2,y=2,z=8 --voxel 0.25 --report none.json -o none.vdb --cut-insert 0 cube.stl
 is "the same part" "$(json bare.json volume_mm3)" "$(json none.json volume_mm3)"
 holds "of which the insert is missing" "$(json bare.json insert.shared_mm3) < 1e-6 && $(json bare.json insert.contact_voxels) > 0"
-fails 64 'cube.stl: give either PART or --shape' $cutting -o x.vdb --cut-insert cube.stl
+misuse PART --shape $cutting -o x.vdb --cut-insert cube.stl
 quiet "with a clearance" $cutting --cut-insert 0.25 --report report.json -o insert.vdb
 # The faces move by one voxel, the edges by 0.59 of a voxel's square for the 0.79 of a quarter of a circle.
 holds "the clearance is subtracted, too" "($(json report.json volume_mm3) - (144 - 4 * (6.25 - 4 * 0.414 * 0.25^2)))^2 < 0.05^2"
@@ -237,8 +237,8 @@ says 'overlaps the part' vam-slice cube.stl --fit 8 --rotate 0,0,90 --insert sma
   --voxel 0.25 --report report.json -o insert.vdb
 holds "the insert keeps its size" "($(json report.json insert.size_mm.0) - 2)^2 + ($(json report.json insert.size_mm.2) - 2)^2 < 1e-9"
 holds "the part has its own" "($(json report.json size_mm.2) - 8)^2 < 1e-9"
-fails 64 'requires --insert or --insert-shape' vam-slice cube.stl --cut-insert 0 -o x.vdb
-fails 64 'requires --insert' vam-slice cube.stl --insert-shape sphere --insert-unit cm -o x.vdb
+misuse --cut-insert '--insert or --insert-shape' vam-slice cube.stl --cut-insert 0 -o x.vdb
+misuse --insert-unit --insert vam-slice cube.stl --insert-shape sphere --insert-unit cm -o x.vdb
 centred() { vam-slice cube.stl --insert near.stl "$@" --voxel 0.25 -o insert.vdb 2>&1 | grep -o 'centred at ([^)]*)'; }
 is "an insert is mirrored with its part" "$(centred --mirror x | tr -d -)" "$(centred)"
 ok "to the other side" test "$(centred --mirror x)" != "$(centred)"
@@ -272,10 +272,10 @@ fails 64 'outside' vam-slice --shape sphere:diameter=-3 -o x.vdb
 fails 64 '--voxel' vam-slice --shape sphere --voxel -1 -o x.vdb
 fails 64 '--voxel' vam-slice --shape sphere --voxel 0 -o x.vdb
 fails 64 '--rotate' vam-slice --shape sphere --rotate 1,2 -o x.vdb
-fails 64 'either PART or --shape' vam-slice cube.stl --shape sphere -o x.vdb
-fails 64 'applies to meshes' vam-slice --shape sphere --unit in -o x.vdb
-fails 64 'either --fit' vam-slice cube.stl --fit 3 --fit-writable -o x.vdb
-fails 64 'does not apply to images' vam-slice stack --fit 3 -o x.vdb
+misuse PART --shape vam-slice cube.stl --shape sphere -o x.vdb
+misuse --unit 'test parts' vam-slice --shape sphere --unit in -o x.vdb
+misuse --fit-writable --fit vam-slice cube.stl --fit 3 --fit-writable -o x.vdb
+misuse --fit images vam-slice stack --fit 3 -o x.vdb
 fails 65 'truncated' vam-slice cut.stl -o x.vdb
 fails 65 'nan.stl' vam-slice nan.stl -o x.vdb
 fails 65 'empty.stl' vam-slice empty.stl -o x.vdb
@@ -293,7 +293,7 @@ ok "the stated scale fits" vam-slice cube.stl --scale 2.91 -o x.vdb
 fails 65 '; give --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
 fails 65 '; give --voxel 1.51 to make it fit' vam-slice stack --voxel 4 -o x.vdb
 ok "the stated voxel fits images" vam-slice stack --voxel 1.51 -o x.vdb
-fails 64 'does not apply to images' vam-slice stack --up y -o x.vdb
+misuse --up images vam-slice stack --up y -o x.vdb
 # Resin that cannot drain, until its wall is lost to the voxels
 shell='egg-shell:length=9,diameter=8,wall=0.8,opening'
 vam-slice --shape $shell=0 --voxel 0.2 -o egg.vdb --report egg.json 2>egg.log

@@ -92,16 +92,16 @@ mkdir -p run1 run2; cp trace.csv run1/; cp trace.csv run2/
 vam-view run1/trace.csv --compare run2/trace.csv --title t -o apart.png
 vam-view trace.csv --compare trace.csv --title t -o alike.png
 ok 'two of one name are told apart by their folders' test "$($png sum apart.png)" != "$($png sum alike.png)"
-fails 64 'exclude each other' vam-view wider.vdb --target small.vdb --cure-map --render -o x.png
+misuse --render --cure-map vam-view wider.vdb --target small.vdb --cure-map --render -o x.png
 fails 65 "wider.vdb: has no grid 'target'; give the part with --target" vam-view wider.vdb --cure-map -o x.png
-fails 64 'requires --cure-map' vam-view wider.vdb --threshold 1 -o x.png
+misuse --threshold --cure-map vam-view wider.vdb --threshold 1 -o x.png
 fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.png
 fails 65 'compare volumes of one grid' vam-view small.vdb --compare part.vdb -o x.png
-fails 65 'does not apply to a trace' vam-view trace.csv --dose-histogram -o x.png
-fails 65 'trace.csv: --render does not apply to a trace' vam-view trace.csv --render -o x.png
-fails 65 'trace.csv: --plain does not apply to a trace' vam-view trace.csv --plain -o x.png
-fails 65 'box.off: --compare does not apply to a mesh' vam-view box.off --compare blue.ply -o x.png
-fails 65 'box.off: --at does not apply to a mesh' vam-view box.off --at 1 -o x.png
+misuse --dose-histogram traces vam-view trace.csv --dose-histogram -o x.png
+misuse --render traces vam-view trace.csv --render -o x.png
+misuse --plain traces vam-view trace.csv --plain -o x.png
+misuse --compare meshes vam-view box.off --compare blue.ply -o x.png
+misuse --at meshes vam-view box.off --at 1 -o x.png
 ok "a mesh without axes" vam-view blue.ply --plain --image-size 100 -o plain-blue.png
 is "as many pixels, in its colours" \
   "$($png size plain-blue.png) $($png get plain-blue.png 50 50 | awk '{ print ($1 < 5 && $2 < 5 && $3 > 80) }')" "100 100 8 3 1"
@@ -178,7 +178,7 @@ fails 65 'cut.mkv' vam-view cut.mkv -o x.png
 fails 65 'no axial section at 90 mm' vam-view part.vdb --at 90 -o x.png
 fails 65 'has no image at 9; the nearest is z = 0.52 mm' vam-view sino.exr --at 9 -o x.png
 fails 65 'target' vam-view part.vdb --grid dose -o x.png
-fails 65 'does not apply to images' vam-view sino.exr --dose-histogram -o x.png
+misuse --dose-histogram stacks vam-view sino.exr --dose-histogram -o x.png
 mkdir hollow
 fails 65 'no PNG or TIFF' vam-view hollow -o x.png
 fails 64 'must end in .png' vam-view part.vdb --plain -o x.svg
@@ -197,12 +197,12 @@ vam-convert dark.npy --voxel 0.4 --stretch-z 1 --grid dose -o dark.vdb 2>.log/da
 vam-convert part.npy --voxel 0.4 --stretch-z 1 -o lit.vdb 2>.log/lit
 fails 65 'the dose is 0 everywhere' vam-view dark.vdb --target lit.vdb --cure-map -o x.png
 fails 64 '^vam-view: --low 2: must be below --high 1$' vam-view part.vdb --low 2 --high 1 -o x.png
-fails 65 '--plane does not apply to a body in three dimensions; omit it' vam-view part.vdb --render --plane coronal -o x.png
-fails 65 '--sheet does not apply to a histogram; omit it' vam-view part.vdb --target part.vdb --dose-histogram --sheet 2 -o x.png
-fails 65 '--high does not apply to colours that tell cure; omit it' vam-view part.vdb --target part.vdb --cure-map --high 1 -o x.png
-fails 65 '--title does not apply to plain pixels; omit it' vam-view part.vdb --plain --title t -o x.png
+misuse --render --plane vam-view part.vdb --render --plane coronal -o x.png
+misuse --dose-histogram --sheet vam-view part.vdb --target part.vdb --dose-histogram --sheet 2 -o x.png
+misuse --cure-map --high vam-view part.vdb --target part.vdb --cure-map --high 1 -o x.png
+misuse --plain --title vam-view part.vdb --plain --title t -o x.png
 fails 64 'part.vdb' vam-view part.vdb -o part.vdb
-fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd
+misuse --export images vam-view frames.mkv --export x.nrrd
 fails 74 'full' vam-view part.vdb -o /dev/full
 fails 73 'missing/x.png' vam-view part.vdb -o missing/x.png
 

@@ -37,7 +37,6 @@ class Dark {
 };
 
 metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Printer& printer) {
-  if (*options.step_mm == 0) throw Error{Fault::usage, "--spacing: must not be 0"};
   const Dark dark(options.dark);
   metrology::BeamWidths widths;
   each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {
@@ -52,9 +51,6 @@ metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Pr
 }
 
 metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Printer& printer) {
-  if (options.step_mm || options.first_mm) {
-    throw Error{Fault::usage, "beam: --side covers all planes; omit --first and --spacing"};
-  }
   metrology::FrameMean frames;
   metrology::SideView view;
   each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {

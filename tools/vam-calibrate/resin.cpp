@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate resin: the scattered intensity at which the resin gels, from the volume of a printed standard.
-#include "base/error.hpp"
 #include "base/json.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/report.hpp"
@@ -11,9 +10,6 @@
 namespace vam::calibrate_tool {
 
 void measure_resin(const ResinOptions& options) {
-  if (options.diameter_mm && !options.profile.empty()) {
-    throw Error{Fault::usage, "resin: give the diameter of the standard, as either --diameter or --profile"};
-  }
   double diameter_mm = options.diameter_mm.value_or(0);
   if (!options.profile.empty()) {
     diameter_mm = 2 * options.profile_pixel_mm * metrology::find_circle(io::read_field(options.profile)).radius;

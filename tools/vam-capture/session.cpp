@@ -56,13 +56,8 @@ device::CapturePlan plan_of(const Options& o, const model::Printer& printer) {
   plan.latency_s = 1e-3 * o.lag_ms.value_or(printer.camera.lag_ms);
   if (o.max_lost) plan.max_lost = *o.max_lost;
   plan.frames = o.frames.value_or(0);
-  if (!o.every_deg) {
-    if (o.turns) throw Error{Fault::usage, "--turns: requires --view-step; give it, or --frames instead"};
-    return plan;
-  }
+  if (!o.every_deg) return plan;
   const double places = 360 * o.turns.value_or(1) / *o.every_deg;
-  if (o.frames && o.turns)
-    throw Error{Fault::usage, "--frames: conflicts with --turns, which determines the number of frames; omit one"};
   if (!o.frames) plan.frames = std::lround(places);
   if (plan.frames < 1) throw Error{Fault::usage, "--view-step: exceeds --turns; give a smaller angle"};
   return plan;
@@ -139,11 +134,6 @@ bool is_recording(const std::string& device) { return device.rfind("replay:", 0)
 
 void check(const Options& o, const model::Printer& printer) {
   require_stack_or_folder(o.output);
-  if (!o.follow.empty() && o.speed_deg_s)
-    throw Error{Fault::usage, "--speed: conflicts with --follow, which provides the angle"};
-  if (o.angle_deg && (!o.follow.empty() || o.speed_deg_s || o.every_deg)) {
-    throw Error{Fault::usage, "--angle: a fixed stage angle conflicts with --follow, --speed and --view-step"};
-  }
   if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
     throw Error{Fault::usage, "--view-step: camera frames have no angles; give --follow or --speed"};
   }

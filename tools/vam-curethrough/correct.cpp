@@ -242,7 +242,7 @@ void declare(cli::App& app, CorrectOptions& options) {
              "CSV of resins with the columns name,absorbance_height_um,full_cure_dose_mj_cm3: print a table that "
              "compares them for this part. Slices are then written only with -o or --png.");
   app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Platform speeds of the table.")
-      .needs({"--catalogue"});
+      .only_with({"--catalogue"});
   app.default_is("20, 40, 60 and 80 % of the limit of each resin");
   add_print(app, options.print);
   app.group("Report and performance");

@@ -226,10 +226,10 @@ void declare(cli::App& app, ModelOptions& options) {
              "Plot an x-z section: slices, cure map, and intensity and dose along one column (.png, .pdf or .svg).");
   app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.")
       .default_is("the middle")
-      .needs({"--section"});
+      .only_with({"--section"});
   app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves.")
       .default_is("the middle")
-      .needs({"--section"});
+      .only_with({"--section"});
   add_print(app, options.print);
   app.group("Report and performance");
   cli::add_report(app, options.report);

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
@@ -129,9 +128,6 @@ double blur_mm(const Options& options, const model::Printer& printer, const mode
 Exposed expose(Light& light, const model::StackInfo& info, const Options& options, const model::Printer& printer,
                const Place& place, io::SparseVolume& volume) {
   const bool projector = info.space == model::Space::projector;
-  if (options.in_plane && !projector) {
-    throw Error{Fault::usage, "--in-plane: applies to projector sinograms; the rays of a virtual one are horizontal"};
-  }
   const auto climb = options.in_plane ? light::Climb::flat : light::Climb::follow;
   const light::Simulation simulation(printer, options.alignment, info, place.grid, climb);
   const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);

@@ -17,12 +17,14 @@ void declare_volume(cli::App& app, Options& options) {
          "refers (of a grey target, a dose, only the voxels count), its grid 'insert' an opaque object in the beam.")
       .reads();
   app.option("--size", "MM", options.size_mm, cli::positive,
-             "Edge of the square volume around the axis; the voxel size is the slice height.");
+             "Edge of the square volume around the axis; the voxel size is the slice height.")
+      .excludes({"--like"});
   app.default_is("the region that is lit from all stage angles (projector), or the width of the sinogram (virtual)");
   app.option("--poses", "FILE", options.poses,
              "Pose of the vial or the part in every frame: a table (CSV) with the columns "
              "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line per frame.")
-      .reads();
+      .reads()
+      .not_for({"virtual sinograms"});
   app.default_is("the poses of the stack, or none");
 }
 
@@ -35,39 +37,46 @@ void declare_beam(cli::App& app, Options& options) {
   app.option("--bits", "N", options.bits, {1, 16},
              "Quantise intensities to the grey levels of this bit depth, through projector.response or else a linear "
              "response from projector.min_intensity_mw_cm2.")
-      .needs({"--full-scale"});
+      .only_with({"--full-scale"});
   app.option("--dither", "N", options.dither_turns, {1, 1000},
              "Round as vam-project --dither N does, and expose to the mean over the N turns.")
-      .needs({"--bits"});
+      .only_with({"--bits"});
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
              "Time in which the light arrives, and the dose diffuses.");
   app.default_is("the duration of stage.turns turns");
   app.flag("--exposure-plan", options.exposure_plan,
            "Determine the number of whole turns and the fraction of full intensity that put the critical dose in the "
            "middle half of the process window, and write the dose of that exposure.")
-      .needs({"--like"});
+      .only_with({"--like"});
   app.option("--shown", "RUN", options.shown,
              "Compute the dose that this print delivered: the run folder of vam-print, or the flip log of vam-project. "
              "Give it once for the print and once for each resumption. Logs that were cut or changed are refused "
-             "(vam-formats(7), EVENT LOGS).");
+             "(vam-formats(7), EVENT LOGS).")
+      .excludes({"--exposure-plan"})
+      .not_for({"virtual sinograms"});
   app.option("--before", "SECONDS", options.before_s, cli::any,
              "With --shown, count light before this time only, on the clock of the logs (t_monotonic_s). Where a print "
              "that goes on has not reached it, its light goes on as in its last frames.")
-      .needs({"--shown"});
+      .only_with({"--shown"});
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
   app.flag("--in-plane", options.in_plane,
-           "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");
+           "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.")
+      .not_for({"virtual sinograms", "sinograms with poses"});
   app.choice("--negative", options.negative, {"clip", "keep"},
-             "Negative intensities of a projector sinogram, which no projector can show: clip them to 0, or keep them. "
-             "Those of a virtual sinogram are kept, with a warning where these tools did not write it.");
+             "Negative intensities, which no projector can show: clip them to 0, or keep them. Those of a virtual "
+             "sinogram are kept, with a warning where these tools did not write it.")
+      .not_for({"virtual sinograms"});
 }
 
 void declare_alignment(cli::App& app, Options& options) {
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
-             "Distance in columns from projector.axis_column to the image of the axis, positive to the right.");
-  app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.");
-  app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.");
+             "Distance in columns from projector.axis_column to the image of the axis, positive to the right.")
+      .not_for({"virtual sinograms"});
+  app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.")
+      .not_for({"virtual sinograms"});
+  app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.")
+      .not_for({"virtual sinograms"});
 }
 
 }  // namespace
@@ -95,12 +104,6 @@ void settle(Options& options, const model::Printer& printer) {
     throw Error{Fault::usage,
                 "--exposure-plan: requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm; without them doses "
                 "are relative"};
-  }
-  if (options.exposure_plan && !options.shown.empty()) {
-    throw Error{Fault::usage, "--shown: determines the exposure; omit --exposure-plan"};
-  }
-  if (!options.like.empty() && options.size_mm) {
-    throw Error{Fault::usage, "--size: --like already determines the voxels"};
   }
   options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
 }

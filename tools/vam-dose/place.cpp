@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
@@ -16,17 +17,15 @@
 
 namespace vam::dose_tool {
 
-model::StackInfo posed(model::StackInfo info, const Options& options) {
-  const bool projector = info.space == model::Space::projector;
+model::StackInfo posed(const cli::App& app, model::StackInfo info, const Options& options) {
+  const std::string name = io::input_name(options.inputs.front());
+  if (info.space != model::Space::projector) app.require_for("virtual sinograms", name);
   if (!options.poses.empty()) {
-    if (!projector) throw Error{Fault::usage, "--poses: applies to projector sinograms; a virtual one has no vial"};
     info.poses = io::read_poses(options.poses);
     io::require_angles(options.poses, info.poses, info.height, info.angle_start_deg, info.angle_step_deg);
   }
   if (info.poses.empty()) return info;
-  if (options.in_plane) {
-    throw Error{Fault::usage, "--in-plane: does not apply to a stack with poses; omit it"};
-  }
+  app.require_for("sinograms with poses", name);
   if (options.exposure_plan && !model::repeat(info.poses)) {
     throw Error{Fault::usage, "--exposure-plan: the poses of " + options.inputs.front() +
                                   " do not return to the first one, so the print cannot be repeated turn by turn; set "

@@ -23,7 +23,7 @@ struct Place {
 
 /// The stack with the poses to judge it by: --poses, or its own. Throws Fault::usage where they do not apply,
 /// Fault::data where they are not one a frame.
-[[nodiscard]] model::StackInfo posed(model::StackInfo info, const Options& options);
+[[nodiscard]] model::StackInfo posed(const cli::App& app, model::StackInfo info, const Options& options);
 
 /// The grid of --like, or one around what the light reaches. Throws Fault::data when an exposure is to be planned
 /// without part.

@@ -157,9 +157,6 @@ std::vector<double> shown_turns(const Options& options, const std::string& sinog
                                 const std::optional<double>& full_scale, const model::StackInfo& info,
                                 const model::Printer& printer) {
   if (options.shown.empty()) return {};
-  if (info.space != model::Space::projector) {
-    throw Error{Fault::usage, "--shown: applies to projector sinograms"};
-  }
   require_distinct_runs(options.shown);
   const io::StageRows rows{info.height, info.angle_start_deg, info.angle_step_deg};
   if (std::abs(std::abs(rows.step_deg) * rows.count - 360) > 0.01 * std::abs(rows.step_deg)) {

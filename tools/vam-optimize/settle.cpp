@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What follows from the options of vam-optimize, and what contradicts itself in them.
-#include <algorithm>
+// What follows from the options of vam-optimize.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -54,14 +53,7 @@ model::Tolerances named_tolerances(Options& options) {
 
 /// Tolerances are met by iterations that nothing but --until and --patience stops, if given.
 void settle_tolerances(const cli::App& app, Options& options) {
-  if (options.robust.empty()) {
-    if (app.given("--yield-printers")) throw Error{Fault::usage, "--yield-printers: requires --robust"};
-    return;
-  }
-  if (!options.in_vial()) {
-    throw Error{Fault::usage, "--robust: does not apply to a parallel beam; use --geometry vial"};
-  }
-  if (options.demands.grey) throw Error{Fault::usage, "--robust: does not apply to --grey-target"};
+  if (options.robust.empty()) return;
   try {
     options.printer_tolerances = named_tolerances(options);
   } catch (const Error& error) {
@@ -70,117 +62,8 @@ void settle_tolerances(const cli::App& app, Options& options) {
   if (!app.given("--patience")) options.limits.patience = 0;
 }
 
-/// An option that only other methods read.
-void refuse_unread(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
-  for (const std::string& other : optimize::method_names()) {
-    for (const std::string& flag : optimize::method_entry(other).options) {
-      if (optimize::reads(method, flag) || !app.given(flag)) continue;
-      const bool of_grey = flag == "--band" || flag == "--resin-response" || flag == "--softness";
-      if (options.demands.grey && of_grey) continue;
-      const auto readers =
-          optimize::method_names([&](const optimize::MethodEntry& entry) { return optimize::reads(entry, flag); });
-      throw Error{Fault::usage, flag + ": method " + method.name + " does not use it; omit it, or choose one of " +
-                                    join(readers, ", ") + " by --method" + (of_grey ? ", or give --grey-target" : "")};
-    }
-  }
-}
-
-void refuse_poses(const Options& options) {
-  const int ways =
-      (options.poses.empty() ? 0 : 1) + (options.helix_mm ? 1 : 0) + (options.wobble_record.empty() ? 0 : 1);
-  if (ways == 0) return;
-  if (ways > 1)
-    throw Error{Fault::usage, "--poses, --helix, --wobble-record: give only one; a table for --poses can combine them"};
-  if (options.helix_mm == 0.0) throw Error{Fault::usage, "--helix: must not be 0"};
-  if (!options.in_vial()) {
-    throw Error{Fault::usage,
-                "--poses, --helix, --wobble-record: do not apply to a parallel beam; use --geometry vial"};
-  }
-}
-
-void refuse_dither(const Options& options) {
-  if (options.dither_turns.value_or(1) == 1) return;
-  throw Error{Fault::usage, "--dither: " + std::to_string(*options.dither_turns) +
-                                " turns need frames that differ, but a sinogram has those of one; give 1, or round by "
-                                "vam-project --dither"};
-}
-
-void refuse_beside_budget(const cli::App& app, const Options& options) {
-  if (options.budget_s && (app.given("--checkpoint") || app.given("--tradeoff"))) {
-    throw Error{Fault::usage,
-                "--budget: does not apply to --checkpoint and --tradeoff, whose results are the same on "
-                "any machine; omit it"};
-  }
-}
-
-/// What completes a dose is of this print and this printer alone, and has a scale.
-void refuse_beside_delivered(const cli::App& app, const Options& options) {
-  if (options.delivered.empty()) return;
-  if (!options.in_vial()) {
-    throw Error{Fault::usage, "--delivered: does not apply to a parallel beam; use --geometry vial"};
-  }
-  for (const char* flag : {"--grey-target", "--robust", "--shortest", "--tradeoff", "--certify", "--poses", "--helix",
-                           "--wobble-record"}) {
-    if (app.given(flag)) throw Error{Fault::usage, std::string("--delivered: does not apply to ") + flag + "; omit it"};
-  }
-}
-
-/// What is of the whole part, or depends on the machine.
-void settle_slices(const cli::App& app, Options& options) {
-  if (options.slices.empty()) return;
-  (void)session::slices_named(options.slices);
-  for (const char* flag :
-       {"--budget", "--robust", "--tradeoff", "--certify", "--bits", "--poses", "--helix", "--wobble-record"}) {
-    if (app.given(flag)) {
-      throw Error{Fault::usage, std::string("--slices: does not apply to ") + flag +
-                                    ", which needs the whole part; omit one of them"};
-    }
-  }
-}
-
-void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
-  optimize::check(options.demands);
-  if (options.void_rule != "met" && (app.given("--void-band") || app.given("--void-weight")))
-    throw Error{Fault::usage, "--void " + options.void_rule + ": stands for --void-band or --void-weight; omit these"};
-  refuse_unread(app, options, method);
-  refuse_poses(options);
-  refuse_dither(options);
-  refuse_beside_budget(app, options);
-  refuse_beside_delivered(app, options);
-  if (options.in_vial() && options.bins) {
-    throw Error{Fault::usage,
-                "--detector-bins: does not apply to --geometry vial, whose sinogram has the projector's columns; use "
-                "--geometry parallel"};
-  }
-  if (options.in_vial() && options.absorption_model == "disc") {
-    throw Error{Fault::usage, "--absorption-model disc: applies to parallel beams; use --geometry parallel"};
-  }
-  if (options.line_integrals != "footprints" && (options.in_vial() || !options.certify.empty())) {
-    throw Error{Fault::usage, "--line-integrals " + options.line_integrals +
-                                  ": applies to parallel beams, and not to --certify, which proves by footprints; use "
-                                  "--geometry parallel without --certify"};
-  }
-  if (options.demands.grey && !options.certify.empty()) {
-    throw Error{Fault::usage, "--certify: does not apply to --grey-target, which distinguishes no part and void"};
-  }
-  if (options.demands.grey && !method.grey) {
-    const auto able = optimize::method_names([](const optimize::MethodEntry& entry) { return entry.grey; });
-    throw Error{Fault::usage,
-                "--grey-target: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
-  }
-  if (options.demands.grey && (options.surface_margin_mm > 0 || options.demands.surface)) {
-    throw Error{Fault::usage, "--grey-target: has no surface; omit --surface-margin and --surface"};
-  }
-}
-
 /// The front is that of rising limits, whatever the print is at each.
-void settle_tradeoff(const cli::App& app, Options& options) {
-  if (options.limit.of_even <= 0 || options.shortest || app.given("--until") || app.given("--iterations") ||
-      app.given("--patience")) {
-    throw Error{Fault::usage,
-                "--tradeoff: sets the maximum intensity and the iterations; omit --max-intensity, --turns, --shortest, "
-                "--until, --iterations, --patience and --grey-target, and use a method with --max-intensity"};
-  }
+void settle_tradeoff(Options& options) {
   if (plot::is_figure(options.tradeoff)) plot::require_figures();
   options.until.clear();
   options.raising = optimize::front_raising;
@@ -191,11 +74,6 @@ void settle_tradeoff(const cli::App& app, Options& options) {
 
 /// Where the user gives no limit, there is a low one, which is raised while the part does not print.
 void settle_raising(const cli::App& app, Options& options) {
-  if (options.shortest && options.limit.of_even <= 0) {
-    throw Error{Fault::usage,
-                "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and --grey-target, "
-                "and use a method with --max-intensity"};
-  }
   if (options.shortest && options.until.empty()) options.until = optimize::automatic_until;
   if (options.limit.of_even <= 0 || options.until.empty()) return;
   options.raising = options.shortest ? optimize::shortest_raising : optimize::usual_raising;
@@ -223,11 +101,6 @@ optimize::Deadline deadline_of(const Options& options) {
 
 void settle_limit(Options& options, const optimize::MethodEntry& method) {
   const bool reads = optimize::reads(method, "--max-intensity");
-  if (options.turns && options.max_intensity) {
-    throw Error{Fault::usage, "--turns: sets the maximum intensity; omit --max-intensity"};
-  }
-  if (options.turns && !reads)
-    throw Error{Fault::usage, "--turns: method " + method.name + " has no maximum intensity"};
   if (options.turns) return;  // with the printer
   if (options.max_intensity) {
     options.limit.most = *options.max_intensity;
@@ -241,8 +114,8 @@ void settle_limit(Options& options, const optimize::MethodEntry& method) {
 void settle(const cli::App& app, Options& options) {
   settle_auto(app, options);
   const optimize::MethodEntry& method = optimize::method_entry(options.method);
-  refuse_contradictions(app, options, method);
-  settle_slices(app, options);
+  optimize::check(options.demands);
+  if (!options.slices.empty()) (void)session::slices_named(options.slices);
   settle_tolerances(app, options);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.demands.void_below = options.void_rule == "below";
@@ -251,7 +124,7 @@ void settle(const cli::App& app, Options& options) {
   if (!optimize::reads(method, "--free-surface")) options.demands.free_surface = true;
   options.limits.iterations = options.iterations.value_or(method.iterations);
   if (options.budget_s) options.limits.deadline = deadline_of(options);
-  options.tradeoff.empty() ? settle_raising(app, options) : settle_tradeoff(app, options);
+  options.tradeoff.empty() ? settle_raising(app, options) : settle_tradeoff(options);
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
   }

@@ -21,8 +21,6 @@ namespace {
 
 std::optional<double> isovalue_of(const Options& o) {
   if (o.resin_record.empty()) return o.isovalue;
-  if (o.isovalue)
-    throw Error{Fault::usage, "--isovalue, --resin: conflict, both give the gelation threshold; omit one"};
   return io::gelation_isovalue(o.resin_record);
 }
 

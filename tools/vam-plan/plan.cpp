@@ -124,7 +124,6 @@ solid::Part within_rows(solid::Part part, const solid::Writable& room, double vo
 }  // namespace
 
 Plan plan(const Options& options, const model::Printer& printer) {
-  if (!options.shape.empty() && options.input != "-") throw Error{Fault::usage, "PART, --shape: give only one of them"};
   const Source source(options);
   const double voxel = voxel_of(options, printer);
   Plan made;

@@ -5,6 +5,7 @@
 #include "io/image/frame_sink.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/input_name.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/show.hpp"
@@ -13,6 +14,7 @@
 namespace vam::project {
 
 void write_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader) {
+  app.require_for("sinograms", io::input_name(options.input));
   const model::Projector& projector = printer.projector;
   const double turns = optics::turns_to_show(reader.info(), options.turns, printer.stage.turns);
   const auto differences = require_printer(options, reader.info(), printer);

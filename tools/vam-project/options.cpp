@@ -17,12 +17,17 @@ namespace {
 void add_time(cli::App& app, Options& options) {
   app.group("Time");
   app.option("--fps", "HZ", options.fps, cli::rate, "Frames per second.")
-      .default_is("projector.fps; for slices print speed / slice height");
+      .default_is("projector.fps; for slices print speed / slice height")
+      .excludes({"--print-speed"});
   app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::rate, "Speed of the platform, for slices.")
-      .default_is("as stated in the stack");
-  app.option("--speed", "DEG/S", options.speed_deg_s, cli::rate, "Stage speed.").default_is("stage.speed_deg_s");
+      .default_is("as stated in the stack")
+      .not_for({"sinograms"});
+  app.option("--speed", "DEG/S", options.speed_deg_s, cli::rate, "Stage speed.")
+      .default_is("stage.speed_deg_s")
+      .not_for({"slices"});
   app.option("--turns", "N", options.turns, cli::positive, "Turns of the print; not necessarily a whole number.")
-      .default_is("stage.turns");
+      .default_is("stage.turns")
+      .not_for({"slices"});
 }
 
 void add_position(cli::App& app, Options& options) {
@@ -37,7 +42,8 @@ void add_position(cli::App& app, Options& options) {
   app.option("--row-offset", "PX", options.row_offset, {-65536, 65536},
              "Distance in rows from projector.axis_row to the image of z = 0, positive downwards; the light is shifted "
              "by it.");
-  app.option("--flatland", "MM", options.flatland_mm, cli::any, "Show the slice nearest to this z from above.");
+  app.option("--flatland", "MM", options.flatland_mm, cli::any, "Show the slice nearest to this z from above.")
+      .not_for({"slices"});
 }
 
 void add_grey(cli::App& app, Options& options) {
@@ -53,25 +59,32 @@ void add_grey(cli::App& app, Options& options) {
       "Round by error diffusion over columns and angles, so that the dose, a sum over many pixels, is accurate to less "
       "than a grey level. The frames of N turns differ: in them a pixel between two levels shows both in proportion. N "
       "must divide the number of turns.");
+  app.not_for({"slices"});
 }
 
 void add_live(cli::App& app, Options& all) {
   LiveOptions& options = all.live;
   app.group("Live output");
   app.option("--follow", "FILE", options.follow,
-             "Read the stage angle from this output of vam-stage spin, a FIFO or - (SINOGRAM is then required).");
-  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
+             "Read the stage angle from this output of vam-stage spin, a FIFO or - (SINOGRAM is then required).")
+      .not_for({"files", "slices"});
+  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".").not_for({"files"});
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000}, "Frames to preload.")
-      .default_is("one for each angle of the sinogram");
+      .default_is("one for each angle of the sinogram")
+      .not_for({"files", "slices"});
   app.option("--from", "DEG", options.from_deg, {0, 1e9},
-             "Stay dark until this stage angle, to print the rest of an aborted print.");
+             "Stay dark until this stage angle, to print the rest of an aborted print.")
+      .not_for({"files", "slices"});
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
              "Delay of the projector, from the vertical blank to the light.")
-      .default_is("projector.latency_ms");
+      .default_is("projector.latency_ms")
+      .not_for({"files"});
   app.option("--max-missed", "FRACTION", options.allowed_missed, {0, 1},
-             "Maximum fraction of missed vertical blanks in the run-up.");
+             "Maximum fraction of missed vertical blanks in the run-up.")
+      .not_for({"files"});
   app.option("--max-missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
-             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.");
+             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.")
+      .not_for({"files"});
   app.option(
       "--frames-from", "FOLDER", options.frames_from,
       "Look for new projections in this folder while printing: a sinogram (EXR) that appears in it takes the place "
@@ -81,15 +94,20 @@ void add_live(cli::App& app, Options& all) {
       "--turns do, is shown at it, another one at that of the first; what exceeds that is clipped and counted in the "
       "log. A file named turn-N.exr is for turn N only, and refused once that has begun. Names that begin with a dot "
       "are passed over.");
+  app.not_for({"files"});
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
-             "reason of the end; - is standard error. Every second it is brought to the disk.");
+             "reason of the end; - is standard error. Every second it is brought to the disk.")
+      .not_for({"files"});
   app.option("--log-seals", "FILE", options.log_seals,
              "Append to FILE, whenever --log was brought to the disk, the number of its bytes and their SHA-256, by "
-             "which lines that are lost later are found out; used by vam-print.");
+             "which lines that are lost later are found out; used by vam-print.")
+      .not_for({"files"});
   app.flag("--plan", all.only_plan,
            "Print frames, memory, duration and dose, query display and light engine for their identity, and show "
-           "nothing; with --pattern only the query.");
+           "nothing; with --pattern only the query.")
+      .excludes({"--report"})
+      .not_for({"files", "slices"});
   app.flag("--die-with-parent", options.with_parent, "Blank the display and exit when the parent process exits.");
 }
 
@@ -102,7 +120,10 @@ void add_patterns(cli::App& app, PatternOptions& options) {
          "columns), row (a line at z = 0, for vam-calibrate beam) or blink (black and level in a pseudo-random "
          "sequence "
          "of 127 steps, for vam-calibrate latency; give --hold 0.02).")
-      .form();
+      .form()
+      .excludes({"--turns", "--speed", "--print-speed", "--full-scale", "--multiplier", "--dither", "--flatland",
+                 "--column-offset", "--row-offset", "--frames-per-turn", "--from", "--frames-from", "--accept-printer",
+                 "--freeze", "--report"});
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.");
   app.option("--pitch", "PX", options.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.")
@@ -140,6 +161,8 @@ void declare(cli::App& app, Options& options) {
              "--follow", "--light", "--log", "--pattern", "--printer", "--set", "--report"});
 }
 
+namespace {
+
 /// "nul:" or "drn:HDMI-A-1", but not "2026-11-25T15:00.mkv".
 void refuse_unknown_display(const std::string& output) {
   const auto colon = output.find(':');
@@ -153,15 +176,13 @@ void refuse_unknown_display(const std::string& output) {
                                 device::display_devices() + ", or ./" + output + " for files"};
 }
 
-void refuse_live(const cli::App& app, const std::string& output) {
+}  // namespace
+
+bool is_live(const cli::App& app, const std::string& output) {
+  if (device::names_display(output)) return true;
   refuse_unknown_display(output);
-  for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--max-missed",
-                           "--max-missed-lit", "--plan", "--log", "--log-seals", "--frames-from"}) {
-    if (!app.given(flag)) continue;
-    throw Error{Fault::usage, std::string(flag) + ": applies only to a display, but the output is " +
-                                  (output == "-" ? "standard output" : output) + "; give -o " +
-                                  device::display_devices()};
-  }
+  app.require_for("files", output == "-" ? "standard output" : output);
+  return false;
 }
 
 model::Printer settle(Options& options) {

@@ -59,7 +59,7 @@ struct Options {
 
 /// Of output to files. Throws Fault::usage when an option of live output is given, or the output looks like a display
 /// but is of no known kind.
-void refuse_live(const cli::App& app, const std::string& output);
+[[nodiscard]] bool is_live(const cli::App& app, const std::string& output);
 
 void declare(cli::App& app, Options& options);
 /// The printer as options change it, and what options take from it. Throws Fault::usage for a depth no projector has.

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "device/open/display.hpp"
@@ -68,20 +67,7 @@ model::StackInfo stack_info(const model::Projector& projector, int count) {
 
 }  // namespace
 
-namespace {
-
-void refuse_options_of_prints(const cli::App& app) {
-  for (const char* flag : {"--turns", "--speed", "--print-speed", "--full-scale", "--multiplier", "--dither",
-                           "--flatland", "--column-offset", "--row-offset", "--frames-per-turn", "--from",
-                           "--frames-from", "--accept-printer", "--freeze", "--report"}) {
-    if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to --pattern; omit it"};
-  }
-}
-
-}  // namespace
-
 void show_pattern(const cli::App& app, const Options& options, const model::Projector& projector) {
-  refuse_options_of_prints(app);
   const PatternOptions& pattern = options.pattern;
   const std::vector<int> order = optics::pattern_order(pattern.plan, projector);
   if (device::names_display(options.output)) {

@@ -59,10 +59,6 @@ std::string identity_text(const Json& identity) {
   return text;
 }
 
-[[noreturn]] void refuse_slices(const std::string& input) {
-  throw Error{Fault::usage, "--plan: " + input + " contains slices, which are shown once, by time; omit the option"};
-}
-
 }  // namespace
 
 std::optional<double> dose_at_threshold_mj_cm3(const model::StackInfo& info, const model::Printer& printer,
@@ -73,11 +69,11 @@ std::optional<double> dose_at_threshold_mj_cm3(const model::StackInfo& info, con
   return turns * *per_radian / full_scale * *threshold;
 }
 
-void print_plan(const Options& options, const model::Printer& printer) {
-  if (is_folder(options.input)) refuse_slices(options.input);
+void print_plan(const cli::App& app, const Options& options, const model::Printer& printer) {
+  if (is_folder(options.input)) app.require_for("slices", options.input);
   io::StackReader reader(options.input);
   const model::StackInfo info = reader.info();
-  if (info.kind == model::Kind::frames) refuse_slices(options.input);
+  app.require_for(info.kind == model::Kind::frames ? "slices" : "sinograms", options.input);
   require_printer(options, info, printer);
   const int whole = turns_to_show(options, info, printer);
   const double turns = whole - options.live.from_deg / 360;  // with light

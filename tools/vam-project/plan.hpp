@@ -18,7 +18,7 @@ namespace vam::project {
 
 /// Reads the sinogram, opens display and light engine, which stay dark, and prints a line each on frames, duration,
 /// light, dose and the two devices. Throws as a live print does before its first frame.
-void print_plan(const Options& options, const model::Printer& printer);
+void print_plan(const cli::App& app, const Options& options, const model::Printer& printer);
 
 /// The lines on the devices alone: all that there is to say of a test pattern.
 void print_devices(const Options& options, const model::Printer& printer);

@@ -114,6 +114,7 @@ std::string hash_of(const std::string& path) { return path == "-" ? "" : io::sha
 // chooses the frame.
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader,
                 Live& live) {
+  app.require_for("sinograms", io::input_name(options.input));
   const int turns = turns_to_show(options, reader.info(), printer);
   const auto differences = require_printer(options, reader.info(), printer);
   const Light light = read_light(options, reader, printer.projector);

@@ -40,9 +40,6 @@ void require_slices(const SliceStack& stack) {
 
 double slices_per_s(const SliceStack& stack, const Options& options) {
   require_slices(stack);
-  if (options.fps && options.print_speed_mm_h) {
-    throw Error{Fault::usage, "--fps, --print-speed: conflict, both set the slice rate; omit one"};
-  }
   if (options.fps) return *options.fps;
   const auto slice_mm = fact(stack.info, "vam:slice_mm");
   const auto speed_mm_h = options.print_speed_mm_h ? options.print_speed_mm_h : fact(stack.info, "vam:speed_mm_h");
@@ -101,12 +98,7 @@ bool is_folder(const std::string& path) {
 
 Frames slices_in_time(const cli::App& app, const Options& options, const model::Printer& printer,
                       const SliceStack& slices) {
-  for (const char* option :
-       {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow", "--from", "--dither"}) {
-    if (!app.given(option)) continue;
-    throw Error{Fault::usage, std::string(option) + ": " + slices.name +
-                                  " contains slices, which are shown once, by time; omit the option"};
-  }
+  app.require_for("slices", slices.name);
   return frames_of(slices, slices_per_s(slices, options), options, printer.projector);
 }
 

@@ -5,6 +5,13 @@
 
 namespace vam::resample_tool {
 
+namespace {
+
+const std::vector<std::string> to_projector{"--geometry vial"};
+const std::vector<std::string> to_bins{"--geometry parallel"};
+
+}  // namespace
+
 void declare(cli::App& app, Options& options) {
   app.positional("SINOGRAM", options.input, "Sinogram stack (EXR): virtual, or of a camera with --geometry parallel.")
       .reads({"--explain"});
@@ -20,24 +27,30 @@ void declare(cli::App& app, Options& options) {
   app.option("--row", "N", options.row, {0, 65535},
              "Write the exact rays of this projector row (0 is the top) instead of horizontal rays: "
              "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.")
-      .needs({"--explain"});
+      .only_with({"--explain"})
+      .only_with(to_projector);
   app.group("Weights");
-  app.flag("--no-fresnel", options.no_fresnel, "--geometry vial: do not divide by the transmittance T.");
-  app.flag("--no-jacobian", options.no_jacobian, "--geometry vial: do not multiply by J.");
-  app.flag("--fresnel", options.fresnel, "--geometry parallel: divide by T.");
-  app.flag("--jacobian", options.jacobian, "--geometry parallel: divide by J.");
-  app.choice("--negative", options.negative, {"clip", "keep"},
-             "--geometry vial: clip negative values to 0, or keep them.");
+  app.flag("--no-fresnel", options.no_fresnel, "Do not divide by the transmittance T.").only_with(to_projector);
+  app.flag("--no-jacobian", options.no_jacobian, "Do not multiply by J.").only_with(to_projector);
+  app.flag("--fresnel", options.fresnel, "Divide by T.").only_with(to_bins);
+  app.flag("--jacobian", options.jacobian, "Divide by J.").only_with(to_bins);
+  app.choice("--negative", options.negative, {"clip", "keep"}, "Clip negative values to 0, or keep them.")
+      .only_with(to_projector)
+      .excludes({"--explain"});
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
              "Distance in columns from projector.axis_column (or the middle of the camera image) to the image of the "
              "axis, positive to the right.");
   app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.");
   app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.");
-  app.group("Detector bins of --geometry parallel");
-  app.option("--bin-width", "MM", options.bin_width_mm, cli::positive, "Width of a detector bin.");
+  app.group("Detector bins");
+  app.option("--bin-width", "MM", options.bin_width_mm, cli::positive, "Width of a detector bin.")
+      .only_with(to_bins)
+      .excludes({"--explain"});
   app.default_is("the slice height, so that voxels are cubes");
-  app.option("--detector-bins", "N", options.bins, {1, 65536}, "Number of detector bins.");
+  app.option("--detector-bins", "N", options.bins, {1, 65536}, "Number of detector bins.")
+      .only_with(to_bins)
+      .excludes({"--explain"});
   app.default_is("all that the camera sees");
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
@@ -48,21 +61,10 @@ void declare(cli::App& app, Options& options) {
 }
 
 void check(const Options& options, const model::Printer& printer) {
-  const bool projector = options.in_vial();
-  const auto refuse = [&](bool given, const char* flag) {
-    if (given) throw Error{Fault::usage, std::string(flag) + ": does not apply to --geometry " + options.geometry};
-  };
-  refuse(projector && options.fresnel, "--fresnel");
-  refuse(projector && options.jacobian, "--jacobian");
-  refuse(projector && options.bin_width_mm, "--bin-width");
-  refuse(projector && options.bins, "--detector-bins");
-  refuse(!projector && options.row, "--row");
   if (options.row && *options.row >= printer.projector.rows) {
     throw Error{Fault::usage, "--row " + std::to_string(*options.row) + ": the projector's rows are 0 ... " +
                                   std::to_string(printer.projector.rows - 1)};
   }
-  refuse(!projector && options.no_fresnel, "--no-fresnel");
-  refuse(!projector && options.no_jacobian, "--no-jacobian");
 }
 
 }  // namespace vam::resample_tool

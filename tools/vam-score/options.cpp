@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-score/options.hpp"
 
-#include "base/error.hpp"
 #include "io/mesh/file.hpp"
 #include "session/grey_target.hpp"
 
@@ -16,9 +15,9 @@ void declare_print(cli::App& app, Options& options) {
       .writes_as(io::written_mesh_endings());
   app.choice("--ply-as", options.print_as, {"mesh", "points"},
              "Content of FILE: the surface of the print, or as PLY its voxels coloured by dose.")
-      .needs({"--mesh"});
+      .only_with({"--mesh"});
   app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold dose of the print's surface.")
-      .needs({"--mesh"});
+      .only_with({"--mesh"});
   app.default_is(
       "the critical dose, else the threshold for which the projections were optimised, else the best threshold");
 }
@@ -46,7 +45,9 @@ void declare(cli::App& app, Options& options) {
   app.option("--lit-fraction", "FILE", options.lit_fraction,
              "Write a volume (grid lit_fraction): the fraction of stage angles from which each voxel is lit.")
       .writes_as({".vdb"});
-  session::add_grey_target(app, options.grey);
+  session::add_grey_target(
+      app, options.grey,
+      {"--critical-dose", "--trim", "--surface", "--absolute", "--sinogram", "--mesh", "--lit-fraction"});
   declare_print(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
@@ -57,14 +58,6 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
   app.usual({"--grid", "--target", "--sinogram", "--require", "--critical-dose", "--surface", "--grey-target", "--mesh",
              "--printer", "--set", "--report"});
-}
-
-void check(const cli::App& app, const Options& options) {
-  if (!options.grey.is_target) return;
-  for (const char* flag :
-       {"--critical-dose", "--trim", "--surface", "--absolute", "--sinogram", "--mesh", "--lit-fraction"}) {
-    if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to --grey-target; omit it"};
-  }
 }
 
 }  // namespace vam::score_tool

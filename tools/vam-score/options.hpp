@@ -29,7 +29,5 @@ struct Options {
 };
 
 void declare(cli::App& app, Options& options);
-/// Throws Fault::usage for options that a grey target has no use for.
-void check(const cli::App& app, const Options& options);
 
 }  // namespace vam::score_tool

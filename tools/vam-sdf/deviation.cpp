@@ -153,15 +153,10 @@ void deviation(const cli::App& app, const Options& options) {
   const Toleranced asked = read_regions(options);
   const std::vector<metrology::Region>& regions = asked.regions;
   const std::vector<model::Condition> conditions = conditions_of(options, asked);
-  if (options.scale && !options.volume.empty()) {
-    throw Error{Fault::usage, "--fit-scale: the shrinkage would be missing in --volume; omit one of them"};
-  }
-  if (options.isovalue && !options.resin_record.empty())
-    throw Error{Fault::usage, "--isovalue, --resin: both determine the isovalue of the print; give only one"};
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
   const model::TriangleSoup design_mesh = session::read_surface(options.design, options.design_isovalue);
-  PrintSurface surface = read_print(options, isovalue);
+  PrintSurface surface = read_print(app, options, isovalue);
   model::TriangleSoup& print = surface.mesh;
   const auto& bodies = surface.bodies;
   if (bodies && bodies->dropped > 0) {

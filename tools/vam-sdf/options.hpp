@@ -71,7 +71,7 @@ struct PrintSurface {
   double mm_per_isovalue = 0;         // how far the surface moves with the isovalue; 0: a mesh
   std::optional<metrology::BodyCount> bodies;
 };
-[[nodiscard]] PrintSurface read_print(const Options& options, std::optional<double> isovalue);
+[[nodiscard]] PrintSurface read_print(const cli::App& app, const Options& options, std::optional<double> isovalue);
 
 /// The deviation around the design's surface as a volume, for vam-slice --compensate. `print` is aligned.
 void write_deviation_volume(const cli::App& app, const Options& options, const model::TriangleSoup& print,

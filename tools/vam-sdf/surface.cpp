@@ -2,7 +2,6 @@
 
 #include "session/surface.hpp"
 
-#include "base/error.hpp"
 #include "base/stats/median.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
@@ -13,13 +12,10 @@
 
 namespace vam::sdf_tool {
 
-PrintSurface read_print(const Options& options, std::optional<double> isovalue) {
+PrintSurface read_print(const cli::App& app, const Options& options, std::optional<double> isovalue) {
   PrintSurface print;
   if (!io::is_volume(options.print)) {
-    if (!options.uncertainty.empty() || options.isovalue_uncertainty > 0) {
-      throw Error{Fault::usage,
-                  options.print + ": is a mesh; --uncertainty and --isovalue-uncertainty need the volume"};
-    }
+    app.require_for("meshes", options.print);
     io::ColouredMesh read = io::read_coloured_mesh(options.print);
     print.mesh = std::move(read.mesh);
     print.uncertainty_mm = std::move(read.uncertainty);

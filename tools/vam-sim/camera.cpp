@@ -63,25 +63,25 @@ void declare_scene(cli::App& app, CameraOptions& o) {
 void declare_resin(cli::App& app, CameraOptions& o) {
   app.group("Resin");
   app.flag("--cure", o.cure, "The print is what the light has cured, instead of --part.");
-  app.option("--cure-voxel", "MM", o.resin.voxel_mm, {0.02, 2}, "Edge of a voxel of the resin.").needs({"--cure"});
+  app.option("--cure-voxel", "MM", o.resin.voxel_mm, {0.02, 2}, "Edge of a voxel of the resin.").only_with({"--cure"});
   app.option("--induction", "FRACTION", o.resin.induction, {0, 0.99},
              "Fraction of the critical dose that the inhibitor takes.")
-      .needs({"--cure"});
+      .only_with({"--cure"});
   app.option("--inhibition-gradient", "FRACTION", o.resin.inhibition_gradient, {-2, 2},
              "Relative change of the inhibitor from the bottom to the top of the voxels.")
-      .needs({"--cure"});
+      .only_with({"--cure"});
   app.option("--inhibitor-diffusion", "MM2/S", o.resin.inhibitor_diffusion_mm2_s, {0, 1},
              "Diffusion coefficient of the inhibitor.")
-      .needs({"--cure"});
+      .only_with({"--cure"});
   app.option("--cure-delay", "S", o.resin.delay_s, {0, 1e4}, "Lifetime of radicals, by which curing follows the light.")
-      .needs({"--cure"});
+      .only_with({"--cure"});
   app.option("--lamp-drift", "1/MIN", o.camera.bench.lamp_drift_per_min, {-10, 10},
              "Relative change of the lamp's intensity per minute of light.")
-      .needs({"--cure"});
+      .only_with({"--cure"});
   app.option("--cured", "FILE.vdb", o.cured,
              "Rewrite this volume at every quarter turn: conversion relative to the gel point, solid from 1.")
       .writes({".vdb"})
-      .needs({"--cure"});
+      .only_with({"--cure"});
 }
 
 void declare_pattern(cli::App& app, CameraOptions& o) {

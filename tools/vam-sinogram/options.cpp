@@ -16,18 +16,19 @@ void declare(cli::App& app, Options& options) {
   app.default_is("as many as cover the grid with its corners");
   app.choice("--filter", options.filter, tomo::window_names(), "Window of the ramp filter.");
   app.option("--cutoff", "FRACTION", options.cutoff, {0, 1000, true},
-             "Cutoff of the window (scale k0 for gaussian and exponential), as a fraction of the Nyquist frequency.");
+             "Cutoff of the window (scale k0 for gaussian and exponential), as a fraction of the Nyquist frequency.")
+      .excludes({"--filter none"});
   app.default_is("1");
   app.choice("--negative", options.negative, tomo::negative_names(),
              "Negative values: keep them, clip them to 0, or subtract the minimum of the stack from all values.");
   app.group("Absorption");
   app.option("--absorption", "PER_MM", options.absorption_per_mm, cli::non_negative,
              "Absorption coefficient MU of the resin: exponential Radon transform.");
-  app.flag("--printer-absorption", options.printer_absorption,
-           "Use resin.absorption_per_mm of the printer file as MU.");
+  app.flag("--printer-absorption", options.printer_absorption, "Use resin.absorption_per_mm of the printer file as MU.")
+      .excludes({"--absorption"});
   app.flag("--at-wall", options.at_wall,
            "Give the values at the inner wall of the printer's vial instead of at the plane through the axis.");
-  app.needs({"--absorption", "--printer-absorption"});
+  app.only_with({"--absorption", "--printer-absorption"});
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);

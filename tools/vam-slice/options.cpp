@@ -15,31 +15,41 @@ namespace vam::slice_tool {
 
 namespace {
 
+const std::vector<std::string> not_a_mesh{"images", "test parts"};
+
 void declare_placement(cli::App& app, Options& options) {
   app.group("Placement, applied in this order");
-  app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.");
+  app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.").not_for(not_a_mesh);
   app.choice("--mirror", options.mirror, {"none", "x", "y", "z"},
-             "Mirror the part, and the file of --insert with it, by negating this coordinate.");
+             "Mirror the part, and the file of --insert with it, by negating this coordinate.")
+      .not_for({"images"});
   app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"},
-             "Axis of the file that points upwards; y in the files of most animation programs.");
-  app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");
+             "Axis of the file that points upwards; y in the files of most animation programs.")
+      .not_for({"images"});
+  app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.").not_for({"images"});
   app.option("--rotate", "X,Y,Z", options.rotate_deg, 3,
-             "Rotation angles in degrees about x, then y, then z, right-handed.");
+             "Rotation angles in degrees about x, then y, then z, right-handed.")
+      .not_for({"images"});
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive,
-             "Scale the part so that its largest dimension is MM.");
+             "Scale the part so that its largest dimension is MM.")
+      .excludes({"--scale"})
+      .not_for({"images"});
   app.flag(
       "--fit-writable", options.placement.fit_writable,
       "Scale the part to fill the writable cylinder, within which resin is lit from all stage angles. Refused where no "
       "voxel would be half covered then.");
+  app.excludes({"--fit", "--no-centre", "--extent resin"}).not_for({"images"});
   app.flag("--no-centre", options.no_centre,
-           "Keep the origin of the file, instead of moving the centre of the bounding box to x = y = z = 0.");
+           "Keep the origin of the file, instead of moving the centre of the bounding box to x = y = z = 0.")
+      .not_for({"images"});
   app.option("--place", "MM|auto", options.place,
              "Vertical offset of the part from the height of the lens (projector.axis_row), in mm of the print, "
              "rounded to whole voxels. auto: the offset at which climbing rays blur its horizontal faces least. The "
              "report contains the offset.");
   app.default_is("0, or the smallest offset at which the part lies within the image");
   app.flag("--any-height", options.any_height,
-           "Allow a part that is taller than the projected image, for vam-optimize --helix or --poses.");
+           "Allow a part that is taller than the projected image, for vam-optimize --helix or --poses.")
+      .excludes({"--place auto"});
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{model::least_stretch, model::most_stretch},
              "Stretch factor along z.");
   app.default_is("1/M_vp of the printer");
@@ -49,24 +59,26 @@ void declare_insert(cli::App& app, Options& options) {
   app.group("Insert, an object to print around");
   app.option("--insert", "MESH", options.insert,
              "Mesh of the insert, in its own size. Its origin is that of PART's file, and it is rotated with PART.")
-      .reads();
+      .reads()
+      .not_for({"images"});
   app.option("--insert-shape", "NAME:KEY=VALUE,...", options.insert_shape,
-             "Insert by name, as --shape; centred on the axis.");
-  app.choice("--insert-unit", options.insert_unit, solid::unit_names(), "Unit of MESH.").needs({"--insert"});
+             "Insert by name, as --shape; centred on the axis.")
+      .excludes({"--insert"});
+  app.choice("--insert-unit", options.insert_unit, solid::unit_names(), "Unit of MESH.").only_with({"--insert"});
   const std::vector<std::string> either{"--insert", "--insert-shape"};
   app.option("--insert-scale", "FACTOR", options.insert_scale, cli::positive, "Scale factor of the insert.")
-      .needs(either);
+      .only_with(either);
   app.option("--insert-rotate", "X,Y,Z", options.insert_rotate_deg, 3,
              "Rotation angles of the insert, as --rotate, instead of those of PART.")
-      .needs(either);
+      .only_with(either);
   app.option("--insert-at", "X,Y,Z", options.insert_at_mm, 3,
              "Position of the centre of the insert's bounding box, in mm of the print, before --place moves it with "
              "the part; x = y = 0 is the axis.")
-      .needs(either);
+      .only_with(either);
   app.option("--cut-insert", "CLEARANCE_MM", options.clearance_mm, cli::non_negative,
              "Subtract the insert from the part, with this clearance all around.")
       .when_left_out("0")
-      .needs(either);
+      .only_with(either);
 }
 
 }  // namespace
@@ -78,21 +90,24 @@ void declare(cli::App& app, Options& options) {
              "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.")
       .form();
   app.choice(
-      "--fill", options.fill, {"auto", "exact", "vote", "wrap"},
-      "Inside test: exact (closed meshes), by majority (vote; meshes with holes), or chosen automatically. wrap: "
-      "replace the mesh by a closed surface around it, for scans whose inside no vote settles.");
+         "--fill", options.fill, {"auto", "exact", "vote", "wrap"},
+         "Inside test: exact (closed meshes), by majority (vote; meshes with holes), or chosen automatically. wrap: "
+         "replace the mesh by a closed surface around it, for scans whose inside no vote settles.")
+      .not_for(not_a_mesh);
   app.option("--wrap", "ALPHA,OFFSET", options.wrap_mm, 2,
              "Of --fill wrap: openings narrower than 2 ALPHA are closed, and the part is larger by up to OFFSET on all "
              "sides, both in mm, OFFSET from ALPHA/100 to ALPHA.")
-      .needs({"--fill"});
+      .only_with({"--fill wrap"});
   app.default_is("2 and 1/8 voxels");
   app.option(
          "--compensate", "SDF.vdb", options.compensate,
          "Correct the mesh by the deviation of its print, a volume of vam-sdf --volume against the same mesh. Once "
          "for each round, in their order; the corrections of the best print are applied, not its own and later ones.")
-      .reads();
+      .reads()
+      .excludes({"--unit", "--scale", "--fit", "--fit-writable"})
+      .not_for(not_a_mesh);
   app.option("--damping", "FRACTION", options.damping, {0.05, 1}, "Fraction of each deviation that is corrected.")
-      .needs({"--compensate"});
+      .only_with({"--compensate"});
   app.option("--voxel", "MM", options.voxel_mm, cli::positive,
              "Edge of a voxel, and of an image pixel. Multiples of projector.pixel_mm are slices of whole rows, which "
              "the projector shows as they are; those between mix neighbouring slices.");
@@ -117,52 +132,12 @@ bool is_folder(const std::string& path) {
 }
 
 void check(const cli::App& app, const Options& options) {
-  if (!options.shape.empty() && options.input != "-") {
-    throw Error{Fault::usage, options.input + ": give either PART or --shape"};
-  }
-  if (!options.compensate.empty()) {
-    for (const std::string flag : {"--unit", "--scale", "--fit", "--fit-writable"}) {
-      if (!app.given(flag)) continue;
-      throw Error{Fault::usage, flag +
-                                    ": --compensate corrects the mesh as vam-sdf had it, in mm; give vam-sdf a mesh "
-                                    "of the printed size"};
-    }
-  }
-  if (options.placement.fit_mm && options.placement.fit_writable) {
-    throw Error{Fault::usage, "--fit-writable: give either --fit or --fit-writable"};
-  }
-  if (options.placement.fit_mm && app.given("--scale")) {
-    throw Error{Fault::usage, "--scale: --fit determines the scale; give either --scale or --fit"};
-  }
-  if (options.any_height && options.place == "auto") {
-    throw Error{Fault::usage, "--place auto: finds a height within the image; omit --any-height"};
-  }
-  if (options.placement.fit_writable && options.no_centre) {
-    throw Error{Fault::usage, "--fit-writable: centres the part; omit --no-centre"};
-  }
-  if (options.placement.fit_writable && options.extent == "resin") {
-    throw Error{Fault::usage, "--fit-writable: scales the part to the writable radius; omit --extent resin"};
-  }
-  if (!options.insert.empty() && !options.insert_shape.empty()) {
-    throw Error{Fault::usage, "--insert-shape: give either --insert or --insert-shape"};
-  }
-  if (options.insert == "-") throw Error{Fault::usage, "--insert: must be a file; standard input is for PART"};
-  if (!options.shape.empty() || is_folder(options.input)) {
-    if (app.given("--unit")) throw Error{Fault::usage, "--unit: applies to meshes only"};
-    if (app.given("--fill")) throw Error{Fault::usage, "--fill: applies to meshes only"};
-    if (app.given("--compensate")) throw Error{Fault::usage, "--compensate: applies to meshes only"};
-  }
-  if (app.given("--wrap") && options.fill != "wrap") throw Error{Fault::usage, "--wrap: give --fill wrap, too"};
   if (const auto& mm = options.wrap_mm; !mm.empty() && !(mm[0] > 0 && mm[1] >= 0.01 * mm[0] && mm[1] <= mm[0])) {
     throw Error{Fault::usage, "--wrap: an offset of " + format_number(mm[1]) + " mm for " + format_number(mm[0]) +
                                   " mm; give ALPHA above 0 and OFFSET from ALPHA/100 to ALPHA"};
   }
-  if (is_folder(options.input)) {
-    for (const char* flag :
-         {"--scale", "--mirror", "--up", "--rotate", "--fit", "--fit-writable", "--no-centre", "--insert"}) {
-      if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to images; use --voxel"};
-    }
-  }
+  if (!options.shape.empty()) return app.require_for("test parts", options.shape);
+  app.require_for(is_folder(options.input) ? "images" : "meshes", options.input);
 }
 
 solid::PlacementAdvice advice(const Options& options) {

@@ -46,7 +46,7 @@ struct Options {
 };
 
 void declare(cli::App& app, Options& options);
-/// Throws Fault::usage for options that contradict each other or what PART is.
+/// Throws Fault::usage for options that do not apply to what PART is.
 void check(const cli::App& app, const Options& options);
 /// Fills in what follows from other options and the printer: units, voxel and stretch.
 void settle(Options& options, const model::Printer& printer);

@@ -29,6 +29,9 @@ std::vector<std::string> outputs() {
   return endings;
 }
 
+const std::vector<std::string> not_volumes{"stacks", "images", "meshes", "traces"};
+const std::vector<std::string> not_sections{"meshes", "traces"};
+
 }  // namespace
 
 void declare(cli::App& app, Options& options) {
@@ -41,45 +44,70 @@ void declare(cli::App& app, Options& options) {
          "Write the figure to FILE: PNG, PDF or SVG, by the ending of its name, or MP4, with --render and --target: a "
          "movie of the print as it grows during the exposure; - is PNG to standard output.")
       .writes(outputs());
-  app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
+  app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.")
+      .writes({".nrrd"})
+      .excludes({"--output", "--plane", "--at", "--sheet", "--target", "--dose-histogram", "--cure-map", "--render",
+                 "--compare", "--colours", "--low", "--high", "--image-size", "--dpi", "--title", "--plain"})
+      .not_for({"images", "meshes", "traces"});
   app.group("Selection");
   app.option("--grid", "NAME", options.grid,
-             "Name of the grid; required if the volume has several, except for a target with its insert.");
-  app.choice("--plane", options.plane, {"axial", "coronal", "sagittal"}, "Orientation of the section of a volume.");
+             "Name of the grid; required if the volume has several, except for a target with its insert.")
+      .not_for(not_volumes);
+  app.choice("--plane", options.plane, {"axial", "coronal", "sagittal"}, "Orientation of the section of a volume.")
+      .not_for(not_volumes);
   app.option("--at", "PLACE", options.view.at, cli::any,
              "Show the section or sinogram slice nearest to PLACE in mm (of the print), or the frame nearest to PLACE "
-             "in degrees.");
+             "in degrees.")
+      .excludes({"--sheet"})
+      .not_for(not_sections);
   app.default_is("the middle one, of a cure map one where much is missing; the first frame");
   app.option("--sheet", "N", options.view.sheet, {1, 400},
-             "Number of evenly spaced sections, slices or frames on one sheet.");
+             "Number of evenly spaced sections, slices or frames on one sheet.")
+      .not_for(not_sections);
   app.option("--target", "FILE", options.target,
              "Volume with the grid 'target', for the outline, --dose-histogram, --cure-map or --render.")
-      .reads();
+      .reads()
+      .not_for(not_volumes);
   app.default_is("for --dose-histogram and --cure-map the grid in FILE, else none");
-  app.flag("--dose-histogram", options.histogram, "Show the dose distributions inside and outside the part.");
+  app.flag("--dose-histogram", options.histogram, "Show the dose distributions inside and outside the part.")
+      .excludes({"--plane", "--at", "--sheet", "--colours"})
+      .not_for(not_volumes);
   app.flag("--cure-map", options.cure,
-           "Show where the dose cures the part, where it is missing and where it overcures.");
+           "Show where the dose cures the part, where it is missing and where it overcures.")
+      .excludes({"--dose-histogram", "--colours", "--low", "--high"})
+      .not_for(not_volumes);
   app.flag("--render", options.render,
            "Show the body in three dimensions; with --target the print beside the target, false and missing cure in "
-           "colour.");
+           "colour.")
+      .excludes({"--dose-histogram", "--cure-map", "--plane", "--at", "--sheet", "--colours", "--low", "--high"})
+      .not_for(not_volumes);
   app.option("--threshold", "DOSE", options.threshold, cli::positive,
-             "Dose, or other value of the grid, from which on it prints, for --cure-map and --render.");
+             "Dose, or other value of the grid, from which on it prints.")
+      .only_with({"--cure-map", "--render"});
   app.default_is("as by vam-score; 0.5 without a target");
   app.option("--compare", "FILE", options.compare,
              "Second volume or trace, shown beside the first; of volumes also the difference.")
-      .reads();
+      .reads()
+      .excludes({"--dose-histogram", "--cure-map", "--render", "--target"})
+      .not_for({"stacks", "images", "meshes"});
   app.group("Appearance");
-  app.choice("--colours", options.view.colours, {"auto", "grey", "viridis", "diverging"}, "Colour map.");
-  app.option("--low", "VALUE", options.view.low, cli::any, "Lower end of the colour map or the histogram.");
+  app.choice("--colours", options.view.colours, {"auto", "grey", "viridis", "diverging"}, "Colour map.")
+      .not_for(not_sections);
+  app.option("--low", "VALUE", options.view.low, cli::any, "Lower end of the colour map or the histogram.")
+      .not_for(not_sections);
   app.default_is("the value below which one pixel in 1000 is, at most 0");
-  app.option("--high", "VALUE", options.view.high, cli::any, "Upper end of the colour map or the histogram.");
+  app.option("--high", "VALUE", options.view.high, cli::any, "Upper end of the colour map or the histogram.")
+      .not_for(not_sections);
   app.default_is("the value that one pixel in 1000 exceeds; 1 for coverage; for the histogram, the extremes");
   app.option("--image-size", "PX", options.view.size, {64, 16384},
-             "Approximate length of the longer side of the image without axes and title.");
+             "Approximate length of the longer side of the image without axes and title.")
+      .not_for({"traces"});
   app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.");
   app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
   app.default_is("names of file and content");
-  app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.");
+  app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.")
+      .excludes({"--sheet", "--dose-histogram", "--cure-map", "--render", "--compare", "--dpi", "--title"})
+      .not_for({"traces"});
   cli::add_printer(app, options.printer);
   app.usual({"--output", "--export", "--grid", "--plane", "--at", "--sheet", "--target", "--dose-histogram",
              "--cure-map", "--render", "--compare", "--title", "--printer", "--set"});
@@ -90,23 +118,10 @@ void check(const Options& options) {
   if (view.low && view.high && *view.low >= *view.high)
     throw Error{Fault::usage,
                 "--low " + format_number(*view.low) + ": must be below --high " + format_number(*view.high)};
-  if (view.at && view.sheet > 1) throw Error{Fault::usage, "--at: cannot be combined with --sheet"};
-  if (options.histogram + options.cure + options.render + !options.compare.empty() > 1)
-    throw Error{Fault::usage, "--dose-histogram, --cure-map, --render and --compare exclude each other; give one"};
-  const bool drawn = options.histogram || options.cure || options.render || !options.compare.empty();
-  if (options.plain && (view.sheet > 1 || drawn)) {
-    throw Error{Fault::usage,
-                "--plain: shows one image only; omit --sheet, --dose-histogram, --cure-map, --render and --compare"};
-  }
-  if (options.threshold && !options.cure && !options.render)
-    throw Error{Fault::usage, "--threshold: requires --cure-map or --render"};
   if (options.plain && plot::is_figure(options.output) && !options.output.ends_with(".png"))
     throw Error{Fault::usage, "--plain: writes pixels; --output must end in .png"};
   if (options.output.ends_with(".mp4") && (!options.render || options.target.empty()))
     throw Error{Fault::usage, options.output + ": a movie requires --render and --target"};
-  if (!options.exported.empty() && options.output != "-") {
-    throw Error{Fault::usage, "--export: writes the values instead of the image; omit --output"};
-  }
 }
 
 }  // namespace vam::view_tool

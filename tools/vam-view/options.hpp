@@ -36,7 +36,7 @@ struct Options {
 [[nodiscard]] std::string file_name(const std::string& path, const std::string& other);
 
 void declare(cli::App& app, Options& options);
-/// Throws Fault::usage for options that contradict each other, and for an output that is an input.
+/// Throws Fault::usage for values that contradict each other.
 void check(const Options& options);
 
 }  // namespace vam::view_tool

@@ -10,6 +10,13 @@
 
 namespace vam::cli {
 
+/// Which options the user may give together.
+struct Rule {
+  std::string value;                    // of the option; empty: whatever it is
+  bool excludes;                        // the conditions; else one of them must hold
+  std::vector<std::string> conditions;  // "--grey-target": given; "--geometry vial": in force
+};
+
 struct Option {
   std::string flag;        // "--voxel"; "-o,--output"
   std::string value_name;  // "MM"; empty for a flag
@@ -18,19 +25,20 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
-  std::string left_out = {};  // the number that stands for none behind the option; empty: there must be a value
-  std::vector<std::vector<std::string>> needs = {};  // one option of each, where this one is given
-  std::function<std::string()> value = {};           // in force
-  bool required = false;                             // in its form of the tool,
-  std::string unless = {};                           // unless this one is given
-  bool form = false;                                 // the synopsis shows the tool with it
-  bool in_job = true;                                // App::job() lists it
-  bool reads = false;                                // names a file that is read
-  bool writes = false;                               // names a file that is written
-  std::vector<std::string> endings = {};             // of which its name has one; empty: any
-  bool any_name = false;                             // or it has none that says another format
-  bool usual = false;                                // --help shows it where others need --help=all,
-  std::string brief = {};                            // in these words; empty: in those of its first sentence
+  std::string left_out = {};     // the number that stands for none behind the option; empty: there must be a value
+  std::vector<Rule> rules = {};  // where this one is given
+  std::vector<std::string> not_for = {};    // kinds of input
+  std::function<std::string()> value = {};  // in force
+  bool required = false;                    // in its form of the tool,
+  std::string unless = {};                  // unless this one is given
+  bool form = false;                        // the synopsis shows the tool with it
+  bool in_job = true;                       // App::job() lists it
+  bool reads = false;                       // names a file that is read
+  bool writes = false;                      // names a file that is written
+  std::vector<std::string> endings = {};    // of which its name has one; empty: any
+  bool any_name = false;                    // or it has none that says another format
+  bool usual = false;                       // --help shows it where others need --help=all,
+  std::string brief = {};                   // in these words; empty: in those of its first sentence
 };
 
 struct Group {
@@ -44,7 +52,7 @@ struct Positional {
   std::string default_text;                               // empty: must be given
   std::function<std::vector<std::string>()> values = {};  // in force
   bool reads = false;                                     // names files that are read,
-  std::vector<std::string> unless = {};                   // unless one of these options is given
+  std::vector<std::string> unless = {};                   // one of these options is given, which exclude it
 };
 
 struct Declaration {
@@ -78,6 +86,9 @@ struct Declaration {
 /// What help and manual say of the option: its help, choices, range, default. One sentence or more each.
 [[nodiscard]] std::vector<std::string> details(const Option& option);
 [[nodiscard]] std::string details(const Positional& positional);
+
+/// "Requires --like.", "Not with --shown.", "Not for meshes.": what the option's rules are.
+[[nodiscard]] std::vector<std::string> rule_texts(const Option& option);
 
 /// Does --help leave options out?
 [[nodiscard]] bool has_usual(const Declaration& tool);

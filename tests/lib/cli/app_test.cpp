@@ -258,19 +258,6 @@ TEST_CASE("the manual lists the variables and statuses of what the tool has") {
   CHECK(page.find(".It 76\nDevice protocol error.\n") != std::string::npos);
 }
 
-TEST_CASE("an option that needs another is refused without it") {
-  for (const bool mesh : {false, true}) {
-    Tool tool;
-    std::string file;
-    bool points = false;
-    tool.app.option("--mesh", "FILE", file, "Mesh.").flag("--points", points, "Points.").needs({"--mesh", "--half"});
-    std::vector<std::string> words{"--points"};
-    if (mesh) words.insert(words.end(), {"--mesh", "a.ply"});
-    const std::string text = written_to(stderr, [&] { CHECK(tool.run(words) == (mesh ? 0 : 64)); });
-    CHECK(text == (mesh ? "" : "vam-demo: --points: requires --mesh or --half\n"));
-  }
-}
-
 TEST_CASE("an option that stands for an operand is a form of its own in the synopsis") {
   const auto printed = [](const std::string& word) {
     std::string part = "-", shape;
