@@ -61,7 +61,8 @@ LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf, const float* 
   record.corner = {leaf.origin().x(), leaf.origin().y(), leaf.origin().z()};
   record.padding = 0;
   record.active = active_of(leaf);
-  std::copy_n(values, record.values.size(), record.values.data());
+  // A negative zero is a zero: OpenVDB reads the inactive ones as background.
+  std::transform(values, values + record.values.size(), record.values.data(), [](float value) { return value + 0.0F; });
   return record;
 }
 

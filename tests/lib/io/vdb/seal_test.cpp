@@ -179,6 +179,16 @@ TEST_CASE("damage sweep: every flipped bit of a sealed volume is detected") {
   }
 }
 
+TEST_CASE("a negative zero is read back as a zero, and the seal holds") {
+  const scratch::Folder folder;
+  const auto grid = model::centred_grid(30, 26, 22, 0.1, 0.4);
+  std::vector<float> values = volumes::ball(grid);
+  for (float& value : values) value = value == 0 ? -0.0F : value;
+  SparseVolume volume = volumes::filled("dose", grid, values);
+  write_volume(folder / "v.vdb", volume);
+  CHECK(volumes::dense(read_volume(folder / "v.vdb", "dose")) == volumes::ball(grid));
+}
+
 TEST_CASE("a mismatch is one line with image or grid, both hashes and a remedy") {
   const scratch::Folder folder;
   stacks::write_stack(folder / "s.exr", stack_of_tools(19, 35, 3), {false, "none"});
