@@ -58,7 +58,8 @@ void declare(cli::App& app, Options& options) {
              "Record of vam-calibrate resin with the gelation threshold I_p, used as isovalue.")
       .reads()
       .not_for({"meshes"});
-  app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
+  app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.")
+      .not_for({"mesh designs"});
   app.option("--min-body", "MM3", options.pieces_mm3, cli::non_negative,
              "Minimum volume of a body that belongs to the print; smaller bodies of a print volume are dropped.")
       .default_is("1 % of the largest body's volume")

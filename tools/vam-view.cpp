@@ -185,6 +185,7 @@ void run(const cli::App& app, Options& options) {
   const auto type = io::known_file_type(options.input);
   app.require_for(kind_of(options.input, type), io::input_name(options.input));
   if (!type) return show_other(app, options);
+  if (options.plain) app.require_for("plain pixels", io::input_name(options.input));
   if (*type == io::FileType::volume) return show_volume(options, app.history());
   show_images(app, options, *type);
 }

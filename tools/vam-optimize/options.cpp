@@ -117,7 +117,8 @@ void declare_constraints(cli::App& app, Options& options) {
       .only_with(grey_or_readers("--band"));
   app.option("--band-volume", "FILE", options.band_volume,
              "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
-      .reads();
+      .reads()
+      .only_with(grey_or_readers("--band"));
   app.default_is("the grid 'tolerance' of the target file, if present");
   app.option("--resin-response", "CURVE", options.response,
              "Response of the resin to the dose: linear (the dose itself), step (from LOW to HIGH), logistic, or a "

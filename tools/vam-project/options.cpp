@@ -125,13 +125,20 @@ void add_patterns(cli::App& app, PatternOptions& options) {
                  "--column-offset", "--row-offset", "--frames-per-turn", "--from", "--frames-from", "--accept-printer",
                  "--freeze", "--report"});
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
-             "Grey level of lines and fields, as a fraction of full grey.");
+             "Grey level of lines and fields, as a fraction of full grey.")
+      .only_with({"--pattern"})
+      .excludes({"--pattern ramp"});
   app.option("--pitch", "PX", options.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.")
-      .default_is("16; 4 for sweep");
-  app.option("--width", "PX", options.width_px, {1, 100000}, "Width of lines.").default_is("1; 4 for sweep");
-  app.option("--steps", "N", options.plan.steps, {2, 65536}, "Levels of the ramp.");
-  app.option("--hold", "S", options.hold_s, {0.001, 86400}, "Duration of each frame.");
-  app.flag("--repeat", options.repeat, "Repeat from the first frame, until a signal.");
+      .default_is("16; 4 for sweep")
+      .only_with({"--pattern grid", "--pattern sweep"});
+  app.option("--width", "PX", options.width_px, {1, 100000}, "Width of lines.")
+      .default_is("1; 4 for sweep")
+      .only_with({"--pattern axis", "--pattern grid", "--pattern sweep", "--pattern row"});
+  app.option("--steps", "N", options.plan.steps, {2, 65536}, "Levels of the ramp.").only_with({"--pattern ramp"});
+  app.option("--hold", "S", options.hold_s, {0.001, 86400}, "Duration of each frame.").only_with({"--pattern"});
+  app.flag("--repeat", options.repeat, "Repeat from the first frame, until a signal.")
+      .only_with({"--pattern"})
+      .not_for({"files"});
 }
 
 }  // namespace

@@ -23,7 +23,9 @@ void declare(cli::App& app, Options& options) {
   app.flag(
          "--explain", options.explain,
          "Write the ray map as CSV instead: x_p_mm,x_v_mm,delta_deg,T,J,weight, one line per column. No input is read.")
-      .form();
+      .form()
+      .excludes({"--interpolation", "--negative", "--angle-offset", "--reverse", "--bin-width", "--detector-bins",
+                 "--half", "--compression"});
   app.option("--row", "N", options.row, {0, 65535},
              "Write the exact rays of this projector row (0 is the top) instead of horizontal rays: "
              "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.")
@@ -35,8 +37,7 @@ void declare(cli::App& app, Options& options) {
   app.flag("--fresnel", options.fresnel, "Divide by T.").only_with(to_bins);
   app.flag("--jacobian", options.jacobian, "Divide by J.").only_with(to_bins);
   app.choice("--negative", options.negative, {"clip", "keep"}, "Clip negative values to 0, or keep them.")
-      .only_with(to_projector)
-      .excludes({"--explain"});
+      .only_with(to_projector);
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
              "Distance in columns from projector.axis_column (or the middle of the camera image) to the image of the "
@@ -44,13 +45,9 @@ void declare(cli::App& app, Options& options) {
   app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.");
   app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.");
   app.group("Detector bins");
-  app.option("--bin-width", "MM", options.bin_width_mm, cli::positive, "Width of a detector bin.")
-      .only_with(to_bins)
-      .excludes({"--explain"});
+  app.option("--bin-width", "MM", options.bin_width_mm, cli::positive, "Width of a detector bin.").only_with(to_bins);
   app.default_is("the slice height, so that voxels are cubes");
-  app.option("--detector-bins", "N", options.bins, {1, 65536}, "Number of detector bins.")
-      .only_with(to_bins)
-      .excludes({"--explain"});
+  app.option("--detector-bins", "N", options.bins, {1, 65536}, "Number of detector bins.").only_with(to_bins);
   app.default_is("all that the camera sees");
   cli::add_printer(app, options.printer);
   app.group("Output and performance");

@@ -13,6 +13,7 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/settings/resin_record.hpp"
+#include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/compare/inspection.hpp"
@@ -155,6 +156,7 @@ void deviation(const cli::App& app, const Options& options) {
   const std::vector<model::Condition> conditions = conditions_of(options, asked);
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
+  if (!io::is_volume(options.design)) app.require_for("mesh designs", options.design);
   const model::TriangleSoup design_mesh = session::read_surface(options.design, options.design_isovalue);
   PrintSurface surface = read_print(app, options, isovalue);
   model::TriangleSoup& print = surface.mesh;

@@ -70,7 +70,7 @@ void declare(cli::App& app, Options& options) {
       .not_for(not_volumes);
   app.default_is("for --dose-histogram and --cure-map the grid in FILE, else none");
   app.flag("--dose-histogram", options.histogram, "Show the dose distributions inside and outside the part.")
-      .excludes({"--plane", "--at", "--sheet", "--colours"})
+      .excludes({"--plane", "--at", "--sheet", "--colours", "--image-size"})
       .not_for(not_volumes);
   app.flag("--cure-map", options.cure,
            "Show where the dose cures the part, where it is missing and where it overcures.")
@@ -101,7 +101,7 @@ void declare(cli::App& app, Options& options) {
   app.default_is("the value that one pixel in 1000 exceeds; 1 for coverage; for the histogram, the extremes");
   app.option("--image-size", "PX", options.view.size, {64, 16384},
              "Approximate length of the longer side of the image without axes and title.")
-      .not_for({"traces"});
+      .not_for({"traces", "plain pixels"});
   app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.");
   app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
   app.default_is("names of file and content");
