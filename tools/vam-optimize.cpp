@@ -58,9 +58,9 @@ void require_memory_for(const session::Scene& scene, const optimize::VolumeTask&
 
 /// Options -> volumes -> light and task -> one pass after the other -> stack.
 void run(const cli::App& app, Options& options) {
-  settle(app, options);
   model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, options.output)) return;
+  settle(app, printer, options);
   printer.projector.axis_column += options.column_offset_px;
   settle_recorded(printer, options);
   settle_response(app, options);

@@ -92,6 +92,26 @@ struct Calibration {
   double valid_hours = 24;  // of new records
 };
 
+/// How vam-optimize computes projections, for experts.
+struct OptimizeSettings {
+  std::string surface = "threshold";          // dose of the part's surface: threshold, free, or voxels: as part or void
+  double surface_margin_mm = 0;               // voxels so near to the surface are unconstrained
+  double void_weight = 1;                     // cost of an error in the void; that in the part is 1
+  std::optional<double> void_band;            // of grey targets; that of --band if absent
+  std::optional<double> softness;             // width of the logistic response, as a dose; the method's if absent
+  double void_dose = 0.5;                     // dose-norm: target dose of the void
+  double min_intensity = 0;                   // fbp, dose-norm: lower bound on projected intensity
+  std::string negative = "clip";              // fbp: clip or offset
+  double power = 2;                           // bclp, pm: exponent of the norm
+  std::string absorption_model = "exact";     // exact, disc or none
+  std::string line_integrals = "footprints";  // footprints, fourier or auto
+  bool blur = true;                           // point spread and diffusion are compensated
+  std::optional<double> diffusion_time_s;     // in which the light arrives; that of stage.turns turns if absent
+  std::optional<double> full_scale;           // intensity at full grey; the largest of all projections if absent
+  bool dither = false;                        // rounding errors go to neighbouring columns and angles
+  int yield_printers = 200;                   // random printers of the yield of --robust
+};
+
 struct Printer {
   Projector projector;
   Vial vial;
@@ -99,6 +119,7 @@ struct Printer {
   Resin resin;
   PrinterStage stage;
   PrinterCamera camera;
+  OptimizeSettings optimize;
   Calibration calibration;
 };
 

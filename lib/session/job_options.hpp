@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "model/printer.hpp"
 #include "model/tolerances.hpp"
 #include "optimize/target/problem.hpp"
 
 namespace vam::session {
 
-/// The names are those of the options.
-struct JobOptions {
+/// The names are those of the options, and of the settings [optimize] of the printer file.
+struct JobOptions : model::OptimizeSettings {
   std::string input = "-";  // begins messages about the target
   std::string geometry = "vial";
   int angles = 360;
@@ -20,19 +21,12 @@ struct JobOptions {
   std::string poses;  // one of the three, or none
   std::optional<double> helix_mm;
   std::string wobble_record;
-  std::optional<double> turns;  // of the print, at full grey
-  std::string absorption_model = "exact";
-  std::string line_integrals = "footprints";
-  bool no_blur = false;
-  std::optional<double> diffusion_time_s;
+  std::optional<double> turns;                          // of the print, at full grey
   std::optional<model::Tolerances> printer_tolerances;  // that the light faces
   optimize::Demands demands;                            // target constraints
-  double surface_margin_mm = 0;
   std::string weights, band_volume;
   std::vector<std::string> delivered;  // doses of the resin before this light
   std::string void_rule = "met";
-  double void_weight = 1;
-  std::optional<double> void_band;
 
   [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };

@@ -169,7 +169,7 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
 }
 
 void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOptions& options) {
-  if (!options.no_blur) model::warn_of_diffusion(scene.printer.resin, diffusion_s(scene, options));
+  if (options.blur) model::warn_of_diffusion(scene.printer.resin, diffusion_s(scene, options));
   if (!options.in_vial()) return;
   warn_of_reach(target, scene.printer, options);
   if (scene.poses.empty()) warn_of_wobble(scene.printer, scene.grid.voxel_mm);
@@ -185,7 +185,7 @@ double diffusion_s(const Scene& scene, const JobOptions& options) {
 namespace {
 
 double blur_px(const model::Resin& resin, const Scene& scene, const JobOptions& options) {
-  if (options.no_blur) return 0;
+  if (!options.blur) return 0;
   return model::spread_mm(resin, diffusion_s(scene, options)) / scene.grid.voxel_mm;
 }
 

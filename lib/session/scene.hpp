@@ -40,7 +40,7 @@ struct Scene {
 /// Warns of a part beyond the writable radius, and of a wobble in the calibration records that the poses leave out.
 void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOptions& options);
 
-/// The printer as the light is computed: its resin is clear with --absorption-model none.
+/// The printer as the light is computed: its resin is clear with optimize.absorption_model none.
 [[nodiscard]] model::Printer modelled(model::Printer printer, const JobOptions& options);
 
 /// Time during which the dose diffuses.

@@ -30,8 +30,8 @@ holds "its report has the deviation of the surface" \
   "$(value auto.json surface.mean_mm) ^ 2 < 0.01 ^ 2 && $(value auto.json surface.rms_mm) < 0.025"
 
 resin='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05'
-quiet "unlimited" vam-optimize --angles 90 $resin --free-surface --max-intensity 0 --report spikes.json part.vdb -o spikes.exr
-quiet "limited by default" vam-optimize --angles 90 $resin --free-surface --report limited.json part.vdb -o limited.exr
+quiet "unlimited" vam-optimize --angles 90 $resin --set optimize.surface=free --max-intensity 0 --report spikes.json part.vdb -o spikes.exr
+quiet "limited by default" vam-optimize --angles 90 $resin --set optimize.surface=free --report limited.json part.vdb -o limited.exr
 holds "a limit prints at least three times as fast" "3 * $(value limited.json duration_s) <= $(value spikes.json duration_s)"
 holds "at nearly the same process window" "$(value limited.json pw) > $(value spikes.json pw) - 0.02"
 quiet "a print of three turns" vam-optimize --angles 90 $resin --turns 3 --report turns.json part.vdb -o turns.exr
@@ -46,8 +46,8 @@ vam-slice --shape cylinder:diameter=4,height=2 --voxel 0.5 -o small.vdb
 quiet '--shortest of another method has the conditions of auto' \
   vam-optimize --method apg --shortest --angles 24 --report small.json small.vdb -o small.exr
 is 'and ends when they are met' "$(value small.json stopped_by)" goal
-vam-optimize --method dose-norm --angles 24 --bits 8 --full-scale 0.01 small.vdb -o small.exr 2>clipped
-ok 'full grey below the peak is a warning' grep -q 'the peak intensity of .* exceeds --full-scale 0.01 and is clipped' clipped
+vam-optimize --method dose-norm --angles 24 --bits 8 --set optimize.full_scale=0.01 small.vdb -o small.exr 2>clipped
+ok 'full grey below the peak is a warning' grep -q 'the peak intensity of .* exceeds optimize.full_scale 0.01 and is clipped' clipped
 vam-slice --shape cylinder:diameter=4,height=2.25 --voxel 0.5 -o cut.vdb  # its end slices are covered by a half or so
 level='--set projector.telecentric=true'
 judged() {  # judged NAME PART PRINTER OPTIONS...: the report and vam-dose | vam-score agree
@@ -64,11 +64,11 @@ judged() {  # judged NAME PART PRINTER OPTIONS...: the report and vam-dose | vam
   done
 }
 judged 'one bit' small.vdb '' --bits 1
-judged 'clipped' small.vdb '' --bits 8 --full-scale 0.01
+judged 'clipped' small.vdb '' --bits 8 --set optimize.full_scale=0.01
 judged 'two bits, level rays' small.vdb "$level" --bits 2
 judged 'half-covered ends, level rays' cut.vdb "$level"
 fails 65 '^vam-optimize: --bits 1: the peak intensity of [0-9.e-]+ rounds to 0 at a full scale of 100; the frames would be dark; use' \
-  vam-optimize --method dose-norm --angles 24 --bits 1 --full-scale 100 part.vdb -o out.exr
+  vam-optimize --method dose-norm --angles 24 --bits 1 --set optimize.full_scale=100 part.vdb -o out.exr
 misuse --shortest --max-intensity vam-optimize --shortest --max-intensity 1 part.vdb -o out.exr
 misuse --shortest --turns vam-optimize --shortest --turns 2 part.vdb -o out.exr
 misuse --shortest '--method' vam-optimize --method fbp --until ver=0 --shortest part.vdb -o out.exr
@@ -99,7 +99,7 @@ quiet "a part in the corners of its volume" vam-optimize --geometry parallel --a
 quiet "has a dose" vam-dose corners.exr --like corners.vdb -o corners-dose.vdb
 quiet "with a parallel beam" vam-optimize --geometry parallel --angles 90 --method apg --iterations 10 boat.vdb -o parallel.exr
 for how in footprints fourier; do
-  quiet "line integrals by $how" vam-optimize --geometry parallel --angles 90 --method apg --iterations 10 --line-integrals $how boat.vdb -o sums.exr
+  quiet "line integrals by $how" vam-optimize --geometry parallel --angles 90 --method apg --iterations 10 --set optimize.line_integrals=$how boat.vdb -o sums.exr
   vam-dose sums.exr --like boat.vdb -o dose.vdb && vam-score dose.vdb --target boat.vdb --report judged-$how.json >table
 done
 # 1e-3 of the largest dose lies between them at most, and a voxel's dose rises by several per cent at the surface.
@@ -137,19 +137,19 @@ fails 65 'outside its columns 0 to 1023' vam-optimize --geometry vial --set proj
 
 absorbing="--set resin.absorption_per_mm=0.1"
 for how in exact disc none; do
-  quiet "absorption: $how" vam-optimize --angles 90 --method apg --iterations 15 --geometry parallel --absorption-model $how $absorbing part.vdb -o sinogram.exr
+  quiet "absorption: $how" vam-optimize --angles 90 --method apg --iterations 15 --geometry parallel --set optimize.absorption_model=$how $absorbing part.vdb -o sinogram.exr
   vam-dose sinogram.exr --like part.vdb $absorbing -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report $how.json >table
 done
 holds "vam-dose confirms the absorption in the loop" "$(value exact.json pw) > $(value none.json pw) + 0.05"
 is "absorption in the loop leaves no wrong voxel" "$(value exact.json ver)" 0.0
 
 blurring="--set resin.psf_mm=0.12"
-for how in "" --no-blur; do
-  quiet "blur: $how" vam-optimize --geometry parallel --angles 90 --iterations 25 --patience 0 $how $blurring part.vdb -o sinogram.exr
-  vam-dose sinogram.exr --like part.vdb $blurring -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report "blur$how.json" >table
+for blur in true false; do
+  quiet "blur: $blur" vam-optimize --geometry parallel --angles 90 --iterations 25 --patience 0 --set optimize.blur=$blur $blurring part.vdb -o sinogram.exr
+  vam-dose sinogram.exr --like part.vdb $blurring -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report "blur-$blur.json" >table
 done
-holds "projections compensated for the blur print" "$(value blur.json pw) > 0 && $(value blur.json ver) == 0"
-holds "projections without compensation do not print" "$(value blur--no-blur.json pw) < 0"
+holds "projections compensated for the blur print" "$(value blur-true.json pw) > 0 && $(value blur-true.json ver) == 0"
+holds "projections without compensation do not print" "$(value blur-false.json pw) < 0"
 
 ok "through pipes" sh -c 'vam-optimize --geometry parallel --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
 ok "the pipe's file is complete" vam-resample piped.exr -o projector.exr
@@ -164,7 +164,7 @@ is "its columns" "$(head -n 1 trace.csv)" iteration,ver,pw,ipdr,cv,iou
 quiet "resuming" vam-optimize --method cal --angles 90 --init cal.exr --iterations 4 --report on.json part.vdb -o on.exr
 quiet "until a goal" vam-optimize --method cal --angles 90 --until 'iou>=0.5' --report goal.json part.vdb -o goal.exr
 is "it stops there" "$(value goal.json stopped_by)" goal
-quiet "grey levels" vam-optimize --method fbp --angles 90 --bits 3 --dither 1 part.vdb -o grey.exr
+quiet "grey levels" vam-optimize --method fbp --angles 90 --bits 3 --set optimize.dither=true part.vdb -o grey.exr
 
 # Interrupted again and again, later each time, until it completes: the same bytes as in one run.
 vam-optimize --angles 30 --iterations 12 --patience 0 --trace whole.csv --report whole.json part.vdb -o whole.exr
@@ -181,7 +181,7 @@ is "its state is removed on completion" "$(ls run.state 2>/dev/null)" ""
 
 # Passes that have not begun when the run is interrupted start from the coarser levels, as they do in one run.
 vam-slice --shape boat --voxel 0.14 -o boat.vdb
-passes() { timeout -s INT "$1" vam-optimize --geometry parallel --angles 60 --no-blur --iterations 12 --patience 0 \
+passes() { timeout -s INT "$1" vam-optimize --geometry parallel --angles 60 --set optimize.blur=false --iterations 12 --patience 0 \
   --checkpoint passes.state boat.vdb -o "$2"; }
 passes 100 passes.exr
 for seconds in 1 1.5 2 2.5 3 60; do
@@ -203,7 +203,7 @@ interrupted run.state
 is "interrupted, it ends by the signal" "$status" 130
 grep -q '^vam-optimize: interrupted; run.state has its state, from which the same command resumes$' .log/interrupted; report $? 'and says how it goes on'
 is "interrupted, it leaves its state and no result" "$(ls run.state never.exr 2>/dev/null)" run.state
-for other in '--angles 90' '--dose-high 0.9' '--weights part.vdb' '--dither 1 --bits 8'; do  # any option counts
+for other in '--angles 90' '--dose-high 0.9' '--weights part.vdb' '--set optimize.dither=true --bits 8'; do  # any option counts
   fails 65 'of another job' vam-optimize $other --checkpoint run.state part.vdb -o out.exr
 done
 fails 65 'of another job' endless --until 'ver<=0' --checkpoint run.state part.vdb -o out.exr
@@ -257,7 +257,7 @@ holds "more intensity has a wider window" "$(sed -n '$p' front.csv | cut -d, -f4
 quiet "of a resin that is not known" vam-optimize --angles 60 --tradeoff plain.csv coarse.vdb -o front.exr
 is "there are no seconds" "$(sed 1d plain.csv | cut -d, -f2,3 | sort -u)" ,
 vam-slice --shape cylinder:diameter=4,height=2 --voxel 0.8 -o tiny.vdb
-quiet "a front as an image, with tolerances" vam-optimize --angles 12 --robust lamp=3% --yield-printers 0 $resin \
+quiet "a front as an image, with tolerances" vam-optimize --angles 12 --robust lamp=3% --set optimize.yield_printers=0 $resin \
   --tradeoff front.png tiny.vdb -o front.exr
 is "it is an image" "$(head -c 8 front.png | od -An -c | tr -d ' ')" '211PNG\r\n032\n'
 fails 64 'front.txt' vam-optimize --tradeoff front.txt coarse.vdb -o out.exr
@@ -296,7 +296,7 @@ misuse --budget --checkpoint vam-optimize --budget 10 --checkpoint b.state part.
 # Printers off their settings.
 off='axis=2px,index=0.02,angle=1deg,radius=0.5%,lamp=2%,psf=0.1mm'
 before=
-robust() { $before vam-optimize --set projector.columns=128 --set projector.axis_column=63.5 --angles 30 --iterations 8 --robust "$off" --yield-printers 4 "$@" small.vdb; }
+robust() { $before vam-optimize --set projector.columns=128 --set projector.axis_column=63.5 --angles 30 --iterations 8 --robust "$off" --set optimize.yield_printers=4 "$@" small.vdb; }
 quiet "for printers off their settings" robust --report robust.json --threads 1 -o robust.exr
 is "each tolerance is judged" "$(grep -c margin_of_threshold robust.json)" 13
 is "a yield is reported" "$(grep -c '"yield": ' robust.json)" 1
@@ -320,7 +320,6 @@ misuse --robust --grey-target vam-optimize --grey-target --robust lamp=3% part.v
 fails 64 "no tolerance is called 'colour'; there are axis" vam-optimize --robust colour=3 part.vdb -o out.exr
 fails 64 "'axis=0.5': the unit must be px; write for example" vam-optimize --robust axis=0.5 part.vdb -o out.exr
 fails 64 "'-1' is not a number above 0 in px" vam-optimize --robust axis=-1px part.vdb -o out.exr
-misuse --yield-printers --robust vam-optimize --yield-printers 5 part.vdb -o out.exr
 python3 "$VAM_SOURCE/tests/tools/scans.py" beam beam
 records='--set calibration.folder=cal'
 fails 64 'no calibration.folder' vam-optimize --robust calibration part.vdb -o out.exr
@@ -329,7 +328,7 @@ fails 65 'cal: has no record of edges, latency or beam' vam-optimize $records --
 fails 64 "'lamp=3': the unit must be %" vam-optimize $records --robust calibration,lamp=3 part.vdb -o out.exr
 vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 $records
 quiet "tolerances of the records" vam-optimize --angles 30 --iterations 10 $records --robust calibration,lamp=3% \
-  --yield-printers 0 --report recorded.json coarse.vdb -o recorded.exr
+  --set optimize.yield_printers=0 --report recorded.json coarse.vdb -o recorded.exr
 is "those that there are" "$(value recorded.json robust.single.0.name) $(value recorded.json robust.single.1.name)" "lamp psf"
 is "the others are named" "$(value recorded.json robust.exact)" "['axis', 'index', 'angle', 'radius']"
 fails 64 'impossible printer' vam-optimize --robust lamp=150% coarse.vdb -o out.exr
@@ -342,9 +341,8 @@ vam-slice --shape torus --voxel 0.09 -o fine.vdb && vam-score fine.vdb --grid ta
 vam-sdf asked.ply design.ply --align none --samples 20000 --report asked-sdf.json >table
 sdf() { python3 -c 'import json, sys; print(json.load(open("asked-sdf.json"))["print_to_design"][sys.argv[1]])' "$1"; }
 holds "the print is as large as the design" "$(sdf mean_mm) >= -0.026 && $(sdf mean_mm) <= 0.026 && $(sdf rms_mm) <= 0.065"
-misuse --free-surface '--method .*apg' vam-optimize --method cal --free-surface part.vdb -o out.exr
-quiet "a band around the surface" vam-optimize --angles 45 --iterations 10 --surface-margin 0.15 --report band.json part.vdb -o band.exr
-quiet "surface voxels constrained, too" vam-optimize --angles 45 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
+quiet "a band around the surface" vam-optimize --angles 45 --iterations 10 --set optimize.surface_margin_mm=0.15 --report band.json part.vdb -o band.exr
+quiet "surface voxels constrained, too" vam-optimize --angles 45 --iterations 10 --set optimize.surface=voxels --report surface.json part.vdb -o surface.exr
 holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"
 quiet "weights of a file" vam-optimize --angles 45 --iterations 5 --weights part.vdb part.vdb -o weights.exr
 printf 'dose,response\n0.2,0\n0.7,0.05\n0.9,0.95\n1.2,1\n' >cure.csv
@@ -373,18 +371,15 @@ for geometry in vial parallel; do
     vam-optimize --geometry $geometry --set resin.absorption_per_mm=20 part.vdb -o out.exr
 done
 fails 64 'absorbed or blocked; use footprints' \
-  vam-optimize --geometry parallel --line-integrals fourier --set resin.absorption_per_mm=0.05 part.vdb -o out.exr
-misuse --line-integrals '--geometry parallel' vam-optimize --line-integrals auto part.vdb -o out.exr
+  vam-optimize --geometry parallel --set optimize.line_integrals=fourier --set resin.absorption_per_mm=0.05 part.vdb -o out.exr
 fails 64 'does not apply around an insert' \
-  vam-optimize --geometry parallel --absorption-model disc --set resin.absorption_per_mm=0.05 handle.vdb -o out.exr
+  vam-optimize --geometry parallel --set optimize.absorption_model=disc --set resin.absorption_per_mm=0.05 handle.vdb -o out.exr
 fails 65 'part and insert share' vam-optimize overlap.vdb -o out.exr
 
 fails 64 'magic. is not one of auto, fbp' vam-optimize --method magic part.vdb -o out.exr
 fails 64 'void dose, 0.9, is not below the least part dose, 0.8' vam-optimize --dose-low 0.9 --dose-high 0.8 part.vdb -o out.exr
 fails 64 "unknown figure 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.exr
-fails 64 '--power' vam-optimize --method pm --power 0.5 part.vdb -o out.exr
-fails 64 '--dither: 2 is out of range; give 1' vam-optimize --bits 4 --dither 2 part.vdb -o out.exr
-misuse --full-scale --bits vam-optimize --full-scale 1 part.vdb -o out.exr
+fails 64 'optimize.power' vam-optimize --method pm --set optimize.power=0.5 part.vdb -o out.exr
 fails 64 '--angles' vam-optimize --angles 0 part.vdb -o out.exr
 fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 64 'as --output does; name a file for one of them' vam-optimize part.vdb --report -

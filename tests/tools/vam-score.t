@@ -136,7 +136,7 @@ for rule in met below free; do
 done
 # A band of its own in the void, and one for each voxel: 0.3 everywhere, as of a dose of a disc that all is in.
 set -- --grey-target --void met --band 0.2
-vam-optimize "$@" --void-band 0.5 --angles 60 --iterations 10 --report want.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o void.vdb
+vam-optimize "$@" --set optimize.void_band=0.5 --angles 60 --iterations 10 --report want.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o void.vdb
 vam-score "$@" --void-band 0.5 void.vdb --target coarse.vdb --report is.json >.log/score
 holds 'with a band of the void the error rate is that of vam-optimize' "($(json is.json ver) - $(json want.json ver)) ^ 2 < 1e-8"
 grep -q 'are within their bands around the target' .log/score; report $? 'and the verdict says so'

@@ -12,8 +12,8 @@
 
 namespace vam::optimize_tool {
 
-/// Turns and seconds for a dose with these metrics, where `peak` intensity (or --full-scale) is full grey. None where
-/// the resin's critical dose is not known, nothing is lit, no window is left, or frames are shown once.
+/// Turns and seconds for a dose with these metrics, where `peak` intensity (or optimize.full_scale) is full grey. None
+/// where the resin's critical dose is not known, nothing is lit, no window is left, or frames are shown once.
 [[nodiscard]] std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, double peak,
                                                              const model::Printer& printer,
                                                              const model::StackInfo& info, const Options& options);

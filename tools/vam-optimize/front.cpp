@@ -18,8 +18,7 @@ namespace vam::optimize_tool {
 
 optimize::Show make_show(const model::Printer& printer, const Options& options) {
   const resin::GreyLevels levels = grey_levels(printer, options.bits.value_or(printer.projector.bits));
-  return [levels, full_scale = options.full_scale,
-          dithered = options.dither_turns.has_value()](const std::vector<Image>& frames) {
+  return [levels, full_scale = options.full_scale, dithered = options.dither](const std::vector<Image>& frames) {
     std::vector<Image> shown;
     optimize::Quantiser quantiser(levels, full_scale, dithered, [&](const Image& image) { shown.push_back(image); });
     for (const Image& frame : frames) quantiser.add(frame);

@@ -11,8 +11,8 @@
 
 namespace vam::optimize_tool {
 
-/// Frames in the grey levels of --bits or of the projector, the brightest pixel at full grey unless --full-scale says
-/// otherwise. Throws Error when the response cannot be read.
+/// Frames in the grey levels of --bits or of the projector, the brightest pixel at full grey unless optimize.full_scale
+/// says otherwise. Throws Error when the response cannot be read.
 [[nodiscard]] optimize::Show make_show(const model::Printer& printer, const Options& options);
 
 /// A name that ends in .png: window and IoU of the limits against the duration, or against mean / peak intensity unless

@@ -45,18 +45,6 @@ std::string default_iterations() {
   return join(texts, ", ");
 }
 
-/// "0.03 (cal), 0.05 (bclp, --grey-target)"
-std::string default_softness() {
-  std::map<double, std::vector<std::string>> names;
-  for (const auto& entry : optimize::method_table()) {
-    if (optimize::reads(entry, "--softness")) names[entry.softness].push_back(entry.name);
-  }
-  names[optimize::usual_softness].emplace_back("--grey-target");
-  std::vector<std::string> texts;
-  for (const auto& [width, methods] : names) texts.push_back(format_number(width) + " (" + join(methods, ", ") + ")");
-  return join(texts, ", ");
-}
-
 void declare_poses(cli::App& app, Options& options) {
   app.group("Poses of vial and part");
   app.option("--poses", "FILE", options.poses,
@@ -84,14 +72,6 @@ void declare_constraints(cli::App& app, Options& options) {
              "LOW: upper bound on the dose of void voxels.");
   app.option("--dose-high", "DOSE", options.demands.window.high, cli::positive,
              "HIGH: lower bound on the dose of part voxels.");
-  app.option("--surface-margin", "MM", options.surface_margin_mm, cli::non_negative,
-             "Leave voxels within this distance of the part's surface unconstrained.");
-  app.flag("--free-surface", options.demands.free_surface,
-           "Do not constrain the dose on the part's surface to the threshold: the process window is often wider, "
-           "and the print smaller by half a voxel all around.")
-      .only_with(readers("--free-surface"));
-  app.flag("--surface", options.demands.surface,
-           "Constrain surface voxels, too: as part if at least half covered, else as void.");
   app.option("--weights", "FILE", options.weights,
              "Volume (VDB) with a grid 'weight', or with a single grid: relative cost of an error in each voxel. 0 "
              "leaves the voxel unconstrained.")
@@ -99,19 +79,11 @@ void declare_constraints(cli::App& app, Options& options) {
   app.default_is("the grid 'weight' of the target file, if present");
   app.flag("--grey-target", options.demands.grey,
            "The target specifies a dose (or response) for every voxel, to be met within --band.")
-      .only_with(methods_that([](const optimize::MethodEntry& entry) { return entry.grey; }))
-      .excludes({"--surface-margin", "--surface"});
+      .only_with(methods_that([](const optimize::MethodEntry& entry) { return entry.grey; }));
   app.choice("--void", options.void_rule, {"met", "below", "free"},
              "Void, where the target is 0: must be 0 within --band (met) or not exceed --dose-low "
              "(below), or is unconstrained (free).")
       .only_with({"--grey-target"});
-  app.option("--void-weight", "W", options.void_weight, cli::positive,
-             "Relative cost of an error in the void; that in the part is 1. Multiplies --weights.")
-      .excludes({"--void below", "--void free"});
-  app.option("--void-band", "EPSILON", options.void_band, cli::non_negative, "--band in the void.")
-      .only_with({"--grey-target"})
-      .excludes({"--void below", "--void free"});
-  app.default_is("--band");
   app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
              "Maximum deviation of the resin's response from the target.")
       .only_with(grey_or_readers("--band"));
@@ -125,9 +97,6 @@ void declare_constraints(cli::App& app, Options& options) {
              "CSV file with columns dose,response, which also sets LOW and HIGH.")
       .only_with(grey_or_readers("--resin-response"));
   app.default_is("logistic; linear with --grey-target");
-  app.option("--softness", "GAMMA", options.softness, cli::positive, "Width of the logistic response, as a dose.")
-      .only_with(grey_or_readers("--softness"));
-  app.default_is(default_softness());
 }
 
 void declare_stopping(cli::App& app, Options& options) {
@@ -179,15 +148,6 @@ void declare_stopping(cli::App& app, Options& options) {
 
 void declare_parameters(cli::App& app, Options& options) {
   app.group("Method parameters");
-  app.option("--void-dose", "B", options.how.void_dose, {0, 1}, "Target dose of the void.")
-      .only_with(readers("--void-dose"));
-  app.option("--min-intensity", "VALUE", options.how.min_intensity, cli::any, "Lower bound on projected intensity.")
-      .only_with(readers("--min-intensity"));
-  app.choice(
-         "--negative", options.negative, {"clip", "offset"},
-         "Set negative intensities to the lower bound, or subtract the minimum of a slice from all its intensities.")
-      .only_with(readers("--negative"));
-  app.option("--power", "P", options.how.power, {1, 20}, "Exponent of the norm.").only_with(readers("--power"));
   app.option("--max-intensity", "VALUE", options.max_intensity, cli::non_negative,
              "Upper bound on projected intensity; 0 is none.")
       .only_with(readers("--max-intensity"));
@@ -198,11 +158,12 @@ void declare_parameters(cli::App& app, Options& options) {
 
 /// How long the print takes, which the brightest pixel determines.
 void declare_duration(cli::App& app, Options& options) {
-  app.option("--turns", "N", options.turns, cli::positive,
-             "Turns in which the print must be complete, with the brightest pixel at full grey: determines "
-             "--max-intensity from resin.critical_dose_mj_cm3, resin.absorption_per_mm and "
-             "projector.max_intensity_mw_cm2, and --diffusion-time. (vam-project --turns sets the number of turns "
-             "shown.)")
+  app.option(
+         "--turns", "N", options.turns, cli::positive,
+         "Turns in which the print must be complete, with the brightest pixel at full grey: determines "
+         "--max-intensity from resin.critical_dose_mj_cm3, resin.absorption_per_mm and "
+         "projector.max_intensity_mw_cm2, and optimize.diffusion_time_s. (vam-project --turns sets the number of turns "
+         "shown.)")
       .only_with(readers("--max-intensity"))
       .excludes({"--max-intensity"});
   app.brief("Turns in which the print must be complete.");
@@ -261,29 +222,6 @@ void declare_tolerances(cli::App& app, Options& options) {
       .only_with(readers("--robust"))
       .excludes({"--grey-target"});
   app.brief("Print well also if the printer deviates by these, e.g. 'axis=0.5px,lamp=3%'.");
-  app.option(
-      "--yield-printers", "N", options.yield_printers, {0, 100000},
-      "Number of random printers for the yield of --robust, each quantity distributed uniformly within its tolerance.");
-  app.only_with({"--robust"}).not_in_job();
-}
-
-void declare_beam(cli::App& app, Options& options) {
-  app.group("Beam and resin");
-  app.choice("--absorption-model", options.absorption_model, {"exact", "disc", "none"},
-             "Absorption by the resin (resin.absorption_per_mm): exact; corrected once by the dose of a uniform disc, "
-             "for parallel beams; or neglected.")
-      .only_with(parallel, "disc");
-  app.choice(
-      "--line-integrals", options.line_integrals, {"footprints", "fourier", "auto"},
-      "Parallel beam in clear resin: sums along rays by the footprints of the voxels, as in vam-dose; by Fourier "
-      "slices, to 1e-3 of the largest dose and several times as fast for large slices; or by the faster of both, "
-      "by an estimate from sizes and numbers. Figures of merit are those of the doses so computed; vam-dose and "
-      "vam-score judge by footprints.");
-  app.only_with(parallel).excludes({"--certify"});
-  app.flag("--no-blur", options.no_blur, "Do not compensate for point spread and diffusion.");
-  app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
-             "Time in which the light arrives, and the dose diffuses.");
-  app.default_is("the duration of stage.turns turns");
 }
 
 void declare_grey_levels(cli::App& app, Options& options) {
@@ -291,14 +229,6 @@ void declare_grey_levels(cli::App& app, Options& options) {
   app.option("--bits", "N", options.bits, {1, 16},
              "Quantise intensities to the grey levels of this bit depth, through projector.response. The report "
              "describes the intensities that are written.");
-  app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.")
-      .only_with({"--bits"});
-  app.default_is("the largest of all projections");
-  app.option(
-         "--dither", "N", options.dither_turns, {1, 1},
-         "Carry the rounding error over to neighbouring columns and angles, as vam-project --dither N; N is 1, as a "
-         "sinogram has the frames of one turn.")
-      .only_with({"--bits"});
 }
 
 }  // namespace
@@ -334,7 +264,6 @@ void declare(cli::App& app, Options& options) {
   declare_duration(app, options);
   declare_tolerances(app, options);
   declare_proof(app, options);
-  declare_beam(app, options);
   declare_grey_levels(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");

@@ -18,7 +18,6 @@ struct Options : session::JobOptions {
   std::string output = "-";
   std::string method = "auto";
   std::string response = "logistic";
-  std::optional<double> softness;
   std::optional<int> iterations;  // stopping criteria
   optimize::Limits limits;
   std::string until;
@@ -37,12 +36,8 @@ struct Options : session::JobOptions {
   optimize::Raising raising;
   std::string robust;
   bool recorded_tolerances = false;  // of the printer, from the calibration records
-  int yield_printers = 200;
-  std::string negative = "clip";
-  std::optional<int> bits;  // the projector's grey levels
-  std::optional<double> full_scale;
+  std::optional<int> bits;           // the projector's grey levels
   double column_offset_px = 0;
-  std::optional<int> dither_turns;
   cli::PrinterOptions printer;
   std::string report;
   io::StackOptions stack;
@@ -52,9 +47,9 @@ struct Options : session::JobOptions {
 void settle_angles(const cli::App& app, Options& options);
 
 void declare(cli::App& app, Options& options);
-/// Fills in what follows from other options, no file opened. Throws Fault::usage for options that contradict each
-/// other.
-void settle(const cli::App& app, Options& options);
+/// Fills in what follows from the printer file's settings and from other options, no other file opened. Throws
+/// Fault::usage for values that cannot be.
+void settle(const cli::App& app, const model::Printer& printer, Options& options);
 /// The tolerances of calibration records where --robust asks for them and names no others; one line on a terminal says
 /// which. Throws as io::recorded_tolerances does.
 void settle_recorded(const model::Printer& printer, Options& options);

@@ -111,7 +111,10 @@ void settle_limit(Options& options, const optimize::MethodEntry& method) {
 
 }  // namespace
 
-void settle(const cli::App& app, Options& options) {
+void settle(const cli::App& app, const model::Printer& printer, Options& options) {
+  static_cast<model::OptimizeSettings&>(options) = printer.optimize;
+  if (options.in_vial() || !options.certify.empty()) options.line_integrals = "footprints";  // which prove bounds, too
+  if (options.in_vial() && options.absorption_model == "disc") options.absorption_model = "exact";
   settle_auto(app, options);
   const optimize::MethodEntry& method = optimize::method_entry(options.method);
   optimize::check(options.demands);
@@ -119,9 +122,13 @@ void settle(const cli::App& app, Options& options) {
   settle_tolerances(app, options);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.demands.void_below = options.void_rule == "below";
+  options.demands.surface = options.surface == "voxels";
+  options.demands.free_surface = options.surface == "free" || !optimize::reads(method, "optimize.surface");
   options.how.offset = options.negative == "offset";
+  options.how.void_dose = options.void_dose;
+  options.how.min_intensity = options.min_intensity;
+  options.how.power = options.power;
   settle_limit(options, method);
-  if (!optimize::reads(method, "--free-surface")) options.demands.free_surface = true;
   options.limits.iterations = options.iterations.value_or(method.iterations);
   if (options.budget_s) options.limits.deadline = deadline_of(options);
   options.tradeoff.empty() ? settle_raising(app, options) : settle_tradeoff(options);

@@ -20,7 +20,7 @@ Sink::Sink(const Options& options, const model::Printer& printer, const model::S
       full_scale_(options.full_scale),
       out_(options.output, info, options.stack) {
   if (!options.bits) return;
-  levels_.emplace(grey_levels(printer, *options.bits), options.full_scale, options.dither_turns.has_value(),
+  levels_.emplace(grey_levels(printer, *options.bits), options.full_scale, options.dither,
                   [this](const Image& image) { write(image); });
 }
 
@@ -48,10 +48,10 @@ void Sink::require_light(double peak) const {
   if (!(most_ > 0)) {
     throw Error{Fault::data, "--bits " + std::to_string(*bits_) + ": the peak intensity of " + format_number(peak, 3) +
                                  " rounds to 0 at a full scale of " + format_number(full, 3) +
-                                 "; the frames would be dark; use a smaller --full-scale or more bits"};
+                                 "; the frames would be dark; use a smaller optimize.full_scale or more bits"};
   }
   if (peak <= full) return;
-  warn("the peak intensity of " + format_number(peak, 3) + " exceeds --full-scale " + format_number(full, 3) +
+  warn("the peak intensity of " + format_number(peak, 3) + " exceeds optimize.full_scale " + format_number(full, 3) +
        " and is clipped");
 }
 

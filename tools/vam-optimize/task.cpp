@@ -137,7 +137,7 @@ optimize::Trial make_trial(const session::Scene& scene, const model::StackInfo& 
   trial.info = info;
   trial.grid = scene.grid;
   trial.seconds = session::diffusion_s(scene, options);
-  trial.blur = !options.no_blur;
+  trial.blur = options.blur;
   trial.threshold = options.demands.window.threshold();
   trial.printers = options.yield_printers;
   return trial;

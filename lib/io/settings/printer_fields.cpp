@@ -87,6 +87,22 @@ const std::vector<PrinterField> fields{
     {"camera", "axis_row", at<&Printer::camera, &PrinterCamera::axis_row>, "row level with the lens, where z = 0; the middle row if absent", -65536, 131072},
     {"camera", "tilt_deg", at<&Printer::camera, &PrinterCamera::tilt_deg>, "tilt of the axis in the images, its lower end towards higher columns", -180, 180},
     {"camera", "flat", at<&Printer::camera, &PrinterCamera::flat>, "flat field (EXR), relative to this file; empty: none"},
+    {"optimize", "surface", at<&Printer::optimize, &OptimizeSettings::surface>, "dose of the part's surface: threshold, free (unconstrained), or voxels (as part or void by coverage)", 0, 0, false, {"threshold", "free", "voxels"}},
+    {"optimize", "surface_margin_mm", at<&Printer::optimize, &OptimizeSettings::surface_margin_mm>, "voxels within this distance of the part's surface are unconstrained", 0, 1e6},
+    {"optimize", "void_weight", at<&Printer::optimize, &OptimizeSettings::void_weight>, "relative cost of an error in the void; that in the part is 1", 0, 1e300, true},
+    {"optimize", "void_band", at<&Printer::optimize, &OptimizeSettings::void_band>, "grey targets: maximum deviation in the void; default: that of --band", 0, 1e300},
+    {"optimize", "softness", at<&Printer::optimize, &OptimizeSettings::softness>, "width of the logistic response, as a dose; default: the method's", 0, 1e300, true},
+    {"optimize", "void_dose", at<&Printer::optimize, &OptimizeSettings::void_dose>, "dose-norm: target dose of the void", 0, 1},
+    {"optimize", "min_intensity", at<&Printer::optimize, &OptimizeSettings::min_intensity>, "fbp, dose-norm: lower bound on projected intensity"},
+    {"optimize", "negative", at<&Printer::optimize, &OptimizeSettings::negative>, "fbp: negative intensities are set to the lower bound (clip), or a slice is raised by its minimum (offset)", 0, 0, false, {"clip", "offset"}},
+    {"optimize", "power", at<&Printer::optimize, &OptimizeSettings::power>, "bclp, pm: exponent of the norm", 1, 20},
+    {"optimize", "absorption_model", at<&Printer::optimize, &OptimizeSettings::absorption_model>, "absorption by the resin: exact, disc (of parallel beams: by the dose of a uniform disc) or none", 0, 0, false, {"exact", "disc", "none"}},
+    {"optimize", "line_integrals", at<&Printer::optimize, &OptimizeSettings::line_integrals>, "sums along parallel beams in clear resin, without --certify: footprints, fourier or auto (the faster)", 0, 0, false, {"footprints", "fourier", "auto"}},
+    {"optimize", "blur", at<&Printer::optimize, &OptimizeSettings::blur>, "compensate for point spread and diffusion"},
+    {"optimize", "diffusion_time_s", at<&Printer::optimize, &OptimizeSettings::diffusion_time_s>, "time in which the light arrives; default: the duration of stage.turns turns", 0, 1e300},
+    {"optimize", "full_scale", at<&Printer::optimize, &OptimizeSettings::full_scale>, "--bits: intensity at full grey; default: the largest of all projections", 0, 1e300, true},
+    {"optimize", "dither", at<&Printer::optimize, &OptimizeSettings::dither>, "--bits: carry the rounding error over to neighbouring columns and angles"},
+    {"optimize", "yield_printers", at<&Printer::optimize, &OptimizeSettings::yield_printers>, "--robust: number of random printers for the yield", 0, 100000},
     {"calibration", "folder", at<&Printer::calibration, &Calibration::folder>, "folder of the records, relative to this file; empty: none are used"},
     {"calibration", "instrument", at<&Printer::calibration, &Calibration::instrument>, "name of this printer; records of another printer are refused"},
     {"calibration", "vial", at<&Printer::calibration, &Calibration::vial>, "name of the vial in use; edges and axis records of another vial are refused"},
@@ -168,7 +184,7 @@ std::string objection(const PrinterField& field, const Slot& slot) {
 }
 
 std::string contradiction(const Printer& printer) {
-  const auto& [projector, vial, bath, resin, stage, camera, calibration] = printer;
+  const auto& [projector, vial, bath, resin, stage, camera, optimize, calibration] = printer;
   if (vial.wall_mm >= vial.radius_mm) {
     return "vial.wall_mm " + mm_text(vial.wall_mm) + " leaves no room in vial.radius_mm " + mm_text(vial.radius_mm);
   }

@@ -224,7 +224,7 @@ MethodEntry apg_method() {
           "then it widens the window.",
           60,
           true,
-          {"--max-intensity", "--robust", "--free-surface", "--delivered"},
+          {"--max-intensity", "--robust", "optimize.surface", "--delivered"},
           make<Apg>,
           make_robust};
 }

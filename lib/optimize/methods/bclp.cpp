@@ -47,7 +47,7 @@ MethodEntry bclp_method() {
           .summary = "Minimises the Lp norm of the resin's response outside a band around the target.",
           .iterations = 60,
           .grey = true,
-          .options = {"--band", "--resin-response", "--softness", "--power", "--max-intensity"},
+          .options = {"--band", "--resin-response", "optimize.softness", "optimize.power", "--max-intensity"},
           .make = make<Bclp>};
 }
 

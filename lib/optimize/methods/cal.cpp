@@ -106,7 +106,7 @@ MethodEntry cal_method() {
           "Projected gradient descent on the error of the print, with the gelation threshold in the loop.",
           30,
           false,
-          {"--resin-response", "--softness", "--max-intensity"},
+          {"--resin-response", "optimize.softness", "--max-intensity"},
           make<Cal>,
           nullptr,
           softness};

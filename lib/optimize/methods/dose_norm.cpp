@@ -81,7 +81,7 @@ MethodEntry dose_norm_method() {
           "a small process window.",
           1,
           false,
-          {"--void-dose", "--min-intensity"},
+          {"optimize.void_dose", "optimize.min_intensity"},
           make<DoseNorm>};
 }
 

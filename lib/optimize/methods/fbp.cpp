@@ -42,7 +42,7 @@ MethodEntry fbp_method() {
           .summary = "Filtered back-projection; negative intensities are set to the lower bound, or offset.",
           .iterations = 0,
           .grey = false,
-          .options = {"--min-intensity", "--negative"},
+          .options = {"optimize.min_intensity", "optimize.negative"},
           .make = make<Fbp>};
 }
 

@@ -85,7 +85,7 @@ struct MethodEntry {
   std::string summary;               // sentences
   int iterations;                    // default of --iterations
   bool grey;                         // supports grey targets
-  std::vector<std::string> options;  // of vam-optimize that not every method reads
+  std::vector<std::string> options;  // of vam-optimize, and settings, that not every method reads
   std::unique_ptr<Method> (*make)(const MethodOptions&);
   std::unique_ptr<Method> (*make_robust)(const MethodOptions&) = nullptr;  // that faces scenarios, where it can
   double softness = usual_softness;                                        // default width of the logistic response

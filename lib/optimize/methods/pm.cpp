@@ -34,7 +34,7 @@ MethodEntry pm_method() {
           .summary = "Minimises the penalty on doses on the wrong side of LOW and HIGH, to the power P.",
           .iterations = 60,
           .grey = true,
-          .options = {"--power", "--max-intensity"},
+          .options = {"optimize.power", "--max-intensity"},
           .make = make<Pm>};
 }
 

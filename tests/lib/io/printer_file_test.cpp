@@ -205,11 +205,11 @@ TEST_CASE("a printer file by hand is warned of where its end looks cut off, but 
   };
   CHECK(parse_printer("[vial]\nradius_mm = 11", "p").vial.radius_mm == 11);  // accepted all the same
   CHECK(has(said("[projector]\nfps = 7\n[vial]\nradius_mm = 1"),
-            "a.toml: ends within a line, as if it was cut off, without [bath], [resin], [stage], [camera], "
+            "a.toml: ends within a line, as if it was cut off, without [bath], [resin], [stage], [camera], [optimize], "
             "[calibration]; complete its last line\n"));
   const std::string three = "[projector]\nfps = 7\n[vial]\nradius_mm = 11\n[resin]\nindex = 1.5\n";
   CHECK(has(said(three),
-            "ends after [resin], as if it was cut off, without [bath], [stage], [camera], [calibration]; "
+            "ends after [resin], as if it was cut off, without [bath], [stage], [camera], [optimize], [calibration]; "
             "add what is missing, or the last line '# end of the settings' if nothing is\n"));
   CHECK(has(said("[stage]\nturns = 2\n\n[camera]\n# fps = 2\n"), "ends with the heading [camera]"));
   CHECK(has(sign_of_cut(" [ projector ] # a\r\nfps = 7\n[vial]\nwall_mm = 1\n[ resin ]\nindex = 1.5\n"),
