@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "cli/app.hpp"
 #include "io/inspect/provenance.hpp"
 #include "io/settings/printer_file.hpp"

@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/settings/report.hpp"

@@ -2,7 +2,7 @@
 // vam-dose: simulates the dose of a print.
 #include <malloc.h>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"

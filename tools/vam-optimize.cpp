@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "base/aligned_memory.hpp"
-#include "base/log.hpp"
-#include "base/memory.hpp"
-#include "base/per_slice.hpp"
-#include "base/text.hpp"
+#include "base/compute/aligned_memory.hpp"
+#include "base/compute/memory.hpp"
+#include "base/compute/per_slice.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"

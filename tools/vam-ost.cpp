@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"

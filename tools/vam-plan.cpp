@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-plan: whether and how a part can be printed, in seconds.
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"

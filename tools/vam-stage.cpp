@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "cli/app.hpp"
 #include "device/open/stage.hpp"
 #include "device/os/event_log.hpp"

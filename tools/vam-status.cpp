@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
+#include "base/text/printable.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "device/os/interrupt.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"

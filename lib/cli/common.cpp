@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/common.hpp"
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 
 namespace vam::cli {
 

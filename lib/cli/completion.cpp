@@ -2,7 +2,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "cli/private/declaration.hpp"
 #include "cli/private/words.hpp"
 

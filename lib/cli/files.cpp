@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "base/printer_path.hpp"
 #include "base/sha256.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "cli/private/app_state.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "cli/private/declaration.hpp"
 
 namespace vam::cli {

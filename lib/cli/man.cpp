@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "cli/private/declaration.hpp"
 
 namespace vam::cli {

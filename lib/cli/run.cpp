@@ -17,12 +17,12 @@
 #include <optional>
 #include <set>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/memory.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
 #include "base/system_error.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "cli/app.hpp"
 #include "cli/private/app_state.hpp"
 #include "cli/private/values.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/grid.hpp"
 
 namespace vam::model {

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::model {
 

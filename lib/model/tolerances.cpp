@@ -8,7 +8,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/random.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::model {
 

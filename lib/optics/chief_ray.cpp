@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "optics/private/fresnel.hpp"
 #include "optics/writable_radius.hpp"
 

@@ -8,7 +8,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "optics/private/refuse_negative.hpp"
 #include "optics/private/sample_taps.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "optics/chief_ray.hpp"
 
 namespace vam::optics {

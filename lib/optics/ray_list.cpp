@@ -4,7 +4,7 @@
 #include <ostream>
 
 #include "base/constants.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/rows.hpp"
 #include "optics/skew_ray.hpp"
 

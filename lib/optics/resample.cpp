@@ -8,11 +8,11 @@
 #include <cstddef>
 #include <string>
 
+#include "base/compute/parallel.hpp"
+#include "base/compute/simd.hpp"
+#include "base/compute/slab.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/simd.hpp"
-#include "base/slab.hpp"
 #include "optics/private/resample_kernel.hpp"
 
 namespace vam::optics {

@@ -7,7 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "optics/private/resample_taps.hpp"
 #include "optics/resample.hpp"
 

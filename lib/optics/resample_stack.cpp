@@ -7,7 +7,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "optics/writable_radius.hpp"
 
 namespace vam::optics {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::plot {
 

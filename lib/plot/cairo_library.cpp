@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
 #include "base/shared_library.hpp"
 #include "base/system_error.hpp"
 

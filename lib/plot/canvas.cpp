@@ -10,10 +10,10 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/memory.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "plot/private/cairo_library.hpp"
 #include "plot/private/letters.hpp"
 

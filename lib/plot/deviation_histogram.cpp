@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/deviation_histogram.hpp"
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::plot {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"
 

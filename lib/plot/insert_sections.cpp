@@ -7,9 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::plot {
 

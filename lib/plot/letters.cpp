@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/private/letters.hpp"
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 
 namespace vam::plot {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "verdict/defect_voxels.hpp"
 
 namespace vam::plot {

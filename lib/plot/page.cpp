@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-#include "base/base64.hpp"
-#include "base/printable.hpp"
 #include "base/sha256.hpp"
+#include "base/text/base64.hpp"
+#include "base/text/printable.hpp"
 #include "io/image/image_file.hpp"
 
 namespace vam::plot {

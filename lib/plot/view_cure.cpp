@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "plot/missing.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"
 

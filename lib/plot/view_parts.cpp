@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::plot::views {
 

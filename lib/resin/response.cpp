@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::resin {
 

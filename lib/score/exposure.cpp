@@ -7,8 +7,8 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/json.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::score {
 

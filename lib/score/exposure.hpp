@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/image.hpp"
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/printer.hpp"
 
 namespace vam::score {

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "base/json_fwd.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/json_fwd.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/printer.hpp"
 
 namespace vam::score {

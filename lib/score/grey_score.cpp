@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/figure_text.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/figure_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::score {
 

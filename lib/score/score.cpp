@@ -6,13 +6,13 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/figure_text.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/figure_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "score/exposure_plan.hpp"
 
 namespace vam::score {

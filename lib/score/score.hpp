@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/circle.hpp"
-#include "model/dose_metrics.hpp"
-#include "model/outside.hpp"
+#include "model/dose/dose_metrics.hpp"
+#include "model/dose/outside.hpp"
 #include "model/printer.hpp"
 #include "score/exposure_plan.hpp"
 #include "verdict/print_pieces.hpp"

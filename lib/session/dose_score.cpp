@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/memory.hpp"
 #include "base/index.hpp"
-#include "base/memory.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 #include "io/vdb/covered.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 #include "model/metadata.hpp"
 #include "optics/writable_radius.hpp"

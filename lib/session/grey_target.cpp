@@ -2,11 +2,11 @@
 #include "session/grey_target.hpp"
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
-#include "model/grey_share.hpp"
+#include "model/dose/grey_share.hpp"
 #include "model/metadata.hpp"
 
 namespace vam::session {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"

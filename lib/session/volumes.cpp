@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/index.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
+#include "base/text/printable.hpp"
 #include "io/stream/input_name.hpp"
 #include "model/grid_place.hpp"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "tomo/private/radon_plan.hpp"
 
 namespace vam::tomo {

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::tomo {
 

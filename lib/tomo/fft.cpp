@@ -6,9 +6,9 @@
 #include <mutex>
 #include <new>
 
-#include "base/aligned_memory.hpp"
+#include "base/compute/aligned_memory.hpp"
+#include "base/compute/slab.hpp"
 #include "base/error.hpp"
-#include "base/slab.hpp"
 
 namespace vam::tomo {
 

@@ -6,9 +6,9 @@
 #include <complex>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "tomo/private/fft.hpp"
 
 namespace vam::tomo {

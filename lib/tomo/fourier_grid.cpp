@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "tomo/private/gridding.hpp"
 
 namespace vam::tomo {

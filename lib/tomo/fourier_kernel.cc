@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once per instruction set (base/simd.hpp). Both directions work out the same weights from the same numbers,
-// so that they are transposes of each other to the rounding of sums.
+// Compiled once per instruction set (base/compute/simd.hpp). Both directions work out the same weights from the same
+// numbers, so that they are transposes of each other to the rounding of sums.
 #include "tomo/private/fourier_kernel.hpp"
 
-#include "base/kernel_vector.hpp"
+#include "base/compute/kernel_vector.hpp"
 
 namespace vam::tomo::VAM_SIMD {
 

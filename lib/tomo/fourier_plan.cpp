@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "tomo/private/gridding.hpp"
 
 namespace vam::tomo {

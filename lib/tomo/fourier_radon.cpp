@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <mutex>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "tomo/private/fourier_grid.hpp"
 
 namespace vam::tomo {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <span>
 
-#include "base/simd.hpp"
-#include "base/slab.hpp"
+#include "base/compute/simd.hpp"
+#include "base/compute/slab.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::tomo {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 
 namespace vam::tomo {
 

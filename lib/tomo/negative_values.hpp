@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 
 namespace vam::tomo {
 

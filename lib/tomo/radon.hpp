@@ -6,8 +6,8 @@
 
 #include <span>
 
-#include "base/simd.hpp"
-#include "base/slab.hpp"
+#include "base/compute/simd.hpp"
+#include "base/compute/slab.hpp"
 
 namespace vam::tomo {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once per instruction set (base/simd.hpp). A call builds a table of weights for two outputs and eight rows in
-// one vector, then applies it to up to four slabs: no branch, no gather, no index arithmetic in the inner loop.
+// Compiled once per instruction set (base/compute/simd.hpp). A call builds a table of weights for two outputs and eight
+// rows in one vector, then applies it to up to four slabs: no branch, no gather, no index arithmetic in the inner loop.
 #include "tomo/private/radon_kernel.hpp"
 
-#include "base/kernel_vector.hpp"
+#include "base/compute/kernel_vector.hpp"
 
 namespace vam::tomo::VAM_SIMD {
 

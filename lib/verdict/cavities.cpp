@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "verdict/private/bit_slice.hpp"
 #include "verdict/private/pieces.hpp"
 

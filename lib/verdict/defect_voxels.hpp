@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::verdict {
 

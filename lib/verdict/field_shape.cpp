@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::verdict {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "verdict/private/bit_slice.hpp"
 #include "verdict/private/field_shape.hpp"
 #include "verdict/private/pieces.hpp"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::verdict {
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "verdict/defect_voxels.hpp"
 
 namespace vam::verdict {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::verdict {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "base/json_fwd.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/json_fwd.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "verdict/print_pieces.hpp"
 #include "verdict/unresolved.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "model/printer.hpp"
 #include "optics/resample.hpp"
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "base/parallel.hpp"
-#include "base/per_slice.hpp"
+#include "base/compute/parallel.hpp"
+#include "base/compute/per_slice.hpp"
 #include "light/operators/private/vial_operator.hpp"
 #include "optics/writable_radius.hpp"
 

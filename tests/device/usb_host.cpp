@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/address.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "sim/controllers/dlp.hpp"

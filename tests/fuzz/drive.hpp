@@ -2,7 +2,7 @@
 // All that may be asked and ordered of a stage.
 #pragma once
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/stage.hpp"
 #include "fuzz/fuzz.hpp"
 

@@ -2,7 +2,7 @@
 // The answers of a relay, before and during a print.
 #include "device/safety/relay.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "fuzz/answers.hpp"
 

@@ -205,13 +205,13 @@ for folder in re.findall(r'^([\w/]+):', (root / 'lib/layers.txt').read_text(), r
 for section, key in re.findall(r'^    \{"(\w+)", "(\w+)", at<', used, re.M):
     if not re.search(rf'^\.It Va {section}\.{key}\b', formats, re.M):
         faults.append(f'man/vam-formats.7: the printer file\'s {section}.{key} is missing')
-versions = dict(re.findall(r'^    \{"([\w -]+)", (\d+)\},', (root / 'lib/base/format_version.hpp').read_text(), re.M))
+versions = dict(re.findall(r'^    \{"([\w -]+)", (\d+)\},', (root / 'lib/base/text/format_version.hpp').read_text(), re.M))
 for kind, number in sorted(versions.items()):
     if not re.search(rf'\b{kind}/{number}\b|^\.It {kind} Ta .* Ta {number}$', formats, re.M):
         faults.append(f'man/vam-formats.7: version {number} of {kind} is missing')
 for kind, number in sorted(set(re.findall(r'"(vam-[a-z-]+)/(\d+)\\?"', used + formats))):
     if versions.get(kind) != number:
-        faults.append(f'lib/base/format_version.hpp: has no version {number} of {kind}, which is written')
+        faults.append(f'lib/base/text/format_version.hpp: has no version {number} of {kind}, which is written')
 
 print(*faults, sep='\n', end='\n' if faults else '')
 sys.exit(bool(faults))

@@ -14,9 +14,9 @@ missing() {  # missing FILE INCLUDE WHAT: found, where FILE has no longer this l
   cp without "tree/$1"
   echo "includes: $1: $3" >>wanted
 }
-missing lib/base/json_text.cpp '<vector>' 'std::vector needs <vector>'
+missing lib/base/text/json_text.cpp '<vector>' 'std::vector needs <vector>'
 missing lib/optics/slice_place.cpp '"base/error.hpp"' 'Error needs lib/base/error.hpp'
-missing tools/vam-ost/live.cpp '"base/text.hpp"' 'format_number needs lib/base/text.hpp'
+missing tools/vam-ost/live.cpp '"base/text/text.hpp"' 'format_number needs lib/base/text/text.hpp'
 missing lib/io/settings/printer_text.cpp '<toml++/toml.h>' 'toml needs <toml++/...>'
 missing tests/lib/optics/chief_ray_test.cpp '<random>' 'std::mt19937 needs <random>'
 check tree 2>faults && report 1 'the check finds faults'

@@ -21,9 +21,9 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
 #include "base/sha256.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"

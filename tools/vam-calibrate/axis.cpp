@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {

@@ -3,9 +3,9 @@
 #include "metrology/calibrate/beam.hpp"
 
 #include "base/error.hpp"
-#include "base/image_size.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/image_size.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/image/view_source.hpp"
 #include "metrology/calibrate/flat.hpp"
 #include "vam-calibrate/scan.hpp"

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/report.hpp"
 #include "metrology/compare/surface_dose.hpp"
 #include "model/metadata.hpp"

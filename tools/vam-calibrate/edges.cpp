@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/vial_place.hpp"

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/flip_rules.hpp"
 #include "io/stream/stream.hpp"

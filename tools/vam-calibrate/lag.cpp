@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/os/angle_sample.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/calibrate/recorded_angle_fit.hpp"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
-#include "base/utc.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "vam-calibrate/scan.hpp"
 

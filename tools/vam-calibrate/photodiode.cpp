@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "cli/common.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/report.hpp"

@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
 #include "base/sha256.hpp"
-#include "base/text.hpp"
-#include "base/utc.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
+#include "base/text/utc.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/calibration_record.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/printer_match.hpp"
 #include "io/stream/file_type.hpp"
 #include "session/surface.hpp"

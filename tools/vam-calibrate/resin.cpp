@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate resin: the scattered intensity at which the resin gels, from the volume of a printed standard.
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/report.hpp"
 #include "io/vdb/vdb.hpp"

@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/image/view_source.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-calibrate/scan.hpp"

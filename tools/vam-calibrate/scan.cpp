@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/utc.hpp"
+#include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/printer_file.hpp"
 

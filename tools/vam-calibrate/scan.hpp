@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/json.hpp"
 #include "base/stats/measured.hpp"
+#include "base/text/json.hpp"
 #include "cli/common.hpp"
 #include "metrology/calibrate/axis.hpp"
 #include "model/mesh.hpp"

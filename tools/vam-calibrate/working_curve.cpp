@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
 #include "base/stats/median.hpp"
+#include "base/text/json.hpp"
 #include "io/settings/report.hpp"
 #include "metrology/cure/curing_curve.hpp"
 #include "model/metadata.hpp"

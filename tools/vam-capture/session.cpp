@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/open/camera.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"

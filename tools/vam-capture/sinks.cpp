@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/image/capture_folder.hpp"
 
 namespace vam::capture_tool {

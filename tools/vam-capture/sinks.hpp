@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/camera/capture.hpp"
 #include "io/exr/stack.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 #include "io/array/array_writer.hpp"
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"

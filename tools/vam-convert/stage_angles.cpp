@@ -7,10 +7,10 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::convert_tool {
 

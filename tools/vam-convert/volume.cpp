@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/text.hpp"
 #include "io/array/array_reader.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/magnification.hpp"
 #include "vam-convert/images.hpp"
 

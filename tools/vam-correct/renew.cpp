@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "cli/companion.hpp"
 
 namespace vam::correct_tool {

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/stream/stream.hpp"
 #include "resin/curethrough/gaps.hpp"

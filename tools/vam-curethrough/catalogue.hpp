@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "resin/curethrough/part_columns.hpp"
 #include "vam-curethrough/print.hpp"
 

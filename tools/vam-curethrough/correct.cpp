@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "cli/common.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/frame_folder.hpp"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::curethrough {
 

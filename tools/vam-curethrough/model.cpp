@@ -5,16 +5,16 @@
 #include <optional>
 #include <string>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/metadata.hpp"
 #include "resin/curethrough/cure_map.hpp"
 #include "resin/curethrough/stack_dose.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 #include "model/metadata.hpp"

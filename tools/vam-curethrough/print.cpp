@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "session/printer.hpp"
 
 namespace vam::curethrough {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/image_file.hpp"
 

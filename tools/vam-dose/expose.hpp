@@ -7,8 +7,8 @@
 
 #include "io/vdb/vdb.hpp"
 #include "light/simulation/display_range.hpp"
-#include "model/dose_metrics.hpp"
-#include "model/outside.hpp"
+#include "model/dose/dose_metrics.hpp"
+#include "model/dose/outside.hpp"
 #include "model/printer.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/light.hpp"

@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 #include "light/operators/insert.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::dose_tool {
 

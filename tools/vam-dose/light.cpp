@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "io/stream/stream.hpp"
 #include "resin/dither.hpp"

@@ -12,7 +12,7 @@
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/grids/poses.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "optics/writable_radius.hpp"
 
 namespace vam::dose_tool {

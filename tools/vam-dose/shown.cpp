@@ -11,9 +11,9 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"

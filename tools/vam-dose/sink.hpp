@@ -8,8 +8,8 @@
 
 #include "io/vdb/vdb.hpp"
 #include "model/circle.hpp"
-#include "model/dose_metrics.hpp"
-#include "model/outside.hpp"
+#include "model/dose/dose_metrics.hpp"
+#include "model/dose/outside.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/place.hpp"

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/absolute_dose.hpp"

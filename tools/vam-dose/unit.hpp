@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
 #include "score/exposure_plan.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/log_lines.hpp"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "model/coarser.hpp"
 #include "optimize/run/volume.hpp"

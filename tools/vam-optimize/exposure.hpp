@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
 #include "score/exposure_plan.hpp"

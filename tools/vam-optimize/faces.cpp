@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/covered.hpp"
 #include "light/grids/blurred_faces.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
 

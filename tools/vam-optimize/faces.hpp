@@ -2,7 +2,7 @@
 // Level faces that rays that climb cannot print sharply.
 #pragma once
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/vdb/vdb.hpp"
 #include "optimize/run/volume.hpp"
 #include "session/scene.hpp"

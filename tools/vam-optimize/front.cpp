@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/plot.hpp"
 #include "plot/save.hpp"

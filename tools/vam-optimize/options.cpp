@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 

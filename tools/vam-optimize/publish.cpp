@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/slab.hpp"
-#include "base/text.hpp"
+#include "base/compute/slab.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"

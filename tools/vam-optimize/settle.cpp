@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/recorded_tolerances.hpp"

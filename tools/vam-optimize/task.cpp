@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "base/compute/per_slice.hpp"
 #include "base/error.hpp"
-#include "base/per_slice.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/stack_pieces.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"

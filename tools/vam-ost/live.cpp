@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/format_version.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/json.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/image/view_queue.hpp"
 #include "io/settings/json_log.hpp"
 #include "io/stream/stream.hpp"

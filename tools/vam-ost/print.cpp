@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
 #include "io/settings/resin_record.hpp"

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "cli/app.hpp"
 #include "metrology/cure/bodies.hpp"
 #include "metrology/cure/cured.hpp"

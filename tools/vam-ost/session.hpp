@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "cli/app.hpp"
 #include "io/image/view_source.hpp"
 #include "io/vdb/vdb.hpp"

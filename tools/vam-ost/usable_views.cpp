@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
 
 namespace vam::ost_tool {
 

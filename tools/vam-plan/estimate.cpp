@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/coarser.hpp"
-#include "model/outside.hpp"
+#include "model/dose/outside.hpp"
 #include "optics/writable_radius.hpp"
 #include "optimize/run/preview.hpp"
 #include "resin/absolute_dose.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/memory.hpp"
+#include "base/compute/memory.hpp"
 #include "model/grid_size.hpp"
 
 namespace vam::plan_tool {

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
-#include "model/dose_spread.hpp"
+#include "model/dose/dose_spread.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
 #include "session/surface.hpp"

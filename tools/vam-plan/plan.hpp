@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "solid/voxel/part.hpp"

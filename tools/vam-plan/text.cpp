@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plan as a table, and as JSON.
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "solid/voxel/placement.hpp"
 #include "solid/voxel/trapped_resin.hpp"
 #include "solid/voxel/wall.hpp"

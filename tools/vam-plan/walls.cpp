@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/log.hpp"
+#include "base/log/log.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "solid/voxel/wall.hpp"
 #include "vam-plan/filled.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-project/files.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/image/frame_sink.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <numeric>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
 #include "device/open/relay.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/synced_log.hpp"
 #include "device/projector/light_engine.hpp"

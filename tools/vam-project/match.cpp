@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
 #include "io/stream/input_name.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/image/frame_sink.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
 #include "device/open/relay.hpp"

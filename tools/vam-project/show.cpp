@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/dither.hpp"
 #include "session/printer.hpp"

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "base/image.hpp"
-#include "base/json_fwd.hpp"
 #include "base/pixel_rect.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/image/frame_sink.hpp"
 #include "model/printer.hpp"
 #include "resin/response.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/stream/input_name.hpp"
 #include "optics/slice_place.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "cli/app.hpp"
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"

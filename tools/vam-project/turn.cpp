@@ -9,9 +9,9 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/log.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/text.hpp"
 #include "model/metadata.hpp"
 #include "optics/flatland_movie.hpp"
 #include "vam-project/match.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "model/metadata.hpp"

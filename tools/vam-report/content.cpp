@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "base/base64.hpp"
-#include "base/json.hpp"
-#include "base/printable.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/base64.hpp"
+#include "base/text/json.hpp"
+#include "base/text/printable.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/page.hpp"

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/deviation_histogram.hpp"

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/base64.hpp"
-#include "base/json.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/base64.hpp"
+#include "base/text/json.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "plot/canvas.hpp"
 #include "plot/colour_map.hpp"
 #include "solid/mesh/geometry.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
 #include "model/metadata.hpp"

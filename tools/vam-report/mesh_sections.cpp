@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "vam-report/meshes.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-report/page_data.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 
 namespace vam::report_tool {
 

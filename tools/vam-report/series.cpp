@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-report/series.hpp"
 
-#include "base/base64.hpp"
-#include "base/json.hpp"
-#include "base/printable.hpp"
+#include "base/text/base64.hpp"
+#include "base/text/json.hpp"
+#include "base/text/printable.hpp"
 #include "io/image/image_file.hpp"
 #include "plot/page.hpp"
 #include "vam-report/page_data.hpp"

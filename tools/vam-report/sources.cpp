@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/figure_text.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/figure_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/inspect/provenance.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/sealed_text.hpp"

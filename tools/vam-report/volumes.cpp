@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "model/metadata.hpp"
 #include "plot/page.hpp"
 #include "plot/view.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
 #include "model/metadata.hpp"
 #include "session/surface.hpp"

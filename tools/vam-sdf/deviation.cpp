@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/report.hpp"

@@ -5,8 +5,8 @@
 #include <array>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "metrology/compare/datum.hpp"
 
 namespace vam::sdf_tool {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "session/surface.hpp"
 #include "solid/mesh/signed_distance.hpp"
 

@@ -8,9 +8,9 @@
 #include <map>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"

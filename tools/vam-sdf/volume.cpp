@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-sdf --volume: how far the print stands outside its design, for the next design.
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/grid_size.hpp"
 #include "solid/mesh/repair.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "cli/app.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/port/lines.hpp"

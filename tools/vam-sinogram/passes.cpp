@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <future>
 
+#include "base/compute/memory.hpp"
 #include "base/index.hpp"
-#include "base/memory.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 #include "model/grid_size.hpp"
 
 namespace vam::sinogram_tool {

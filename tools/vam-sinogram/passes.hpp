@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "base/compute/slab.hpp"
 #include "base/image.hpp"
-#include "base/slab.hpp"
 #include "io/vdb/vdb.hpp"
 #include "tomo/filtered_projections.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-slice --compensate: the deviations of prints, taken off the design before it is placed.
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/memory.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"

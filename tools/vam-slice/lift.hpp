@@ -2,7 +2,7 @@
 // --place: the height of the part in the image.
 #pragma once
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/printer.hpp"
 #include "solid/voxel/part.hpp"
 #include "vam-slice/options.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/magnification.hpp"
 #include "model/metadata.hpp"
 #include "solid/voxel/size_doubt.hpp"

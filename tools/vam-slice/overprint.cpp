@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "solid/voxel/insert_fit.hpp"
 
 namespace vam::slice_tool {

@@ -2,7 +2,7 @@
 // A part and the insert it is printed around.
 #pragma once
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/vdb/vdb.hpp"
 #include "solid/voxel/part.hpp"
 #include "vam-slice/options.hpp"

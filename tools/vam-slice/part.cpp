@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "session/surface.hpp"

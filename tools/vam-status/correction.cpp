@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/metadata.hpp"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/base64.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/base64.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "plot/axis.hpp"
 #include "plot/colour_map.hpp"

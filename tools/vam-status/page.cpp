@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/log_lines.hpp"

@@ -14,10 +14,10 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/printable.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/resumption.hpp"
 #include "io/settings/run_sums.hpp"

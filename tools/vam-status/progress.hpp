@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/settings/flip_log.hpp"
 #include "model/printer.hpp"
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "plot/missing.hpp"
 #include "plot/render.hpp"
 #include "session/surface.hpp"

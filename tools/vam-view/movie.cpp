@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/text.hpp"
 #include "io/image/movie.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/render.hpp"
 #include "session/surface.hpp"

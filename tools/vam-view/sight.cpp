@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "session/surface.hpp"
 
 namespace vam::view_tool {

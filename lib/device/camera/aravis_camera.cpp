@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/private/aravis_clock.hpp"
 #include "device/camera/private/aravis_levels.hpp"

@@ -3,7 +3,7 @@
 
 #include <arv.h>
 
-#include "base/log.hpp"
+#include "base/log/log.hpp"
 #include "device/camera/private/aravis_problem.hpp"
 
 namespace vam::device {

@@ -8,7 +8,7 @@
 #include <initializer_list>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/camera/private/aravis_problem.hpp"
 #include "device/camera/private/read_back.hpp"
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/json_fwd.hpp"
 #include "base/pixels.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/camera/stamp.hpp"
 #include "device/os/address.hpp"
 #include "device/os/clock.hpp"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/camera/camera.hpp"
 #include "device/stage/angle_source.hpp"
 

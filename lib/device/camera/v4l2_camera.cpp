@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"

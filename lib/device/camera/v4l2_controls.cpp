@@ -12,8 +12,8 @@
 #include <string>
 
 #include "base/index.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 #include "device/camera/private/read_back.hpp"
 
 namespace vam::device {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::device {
 

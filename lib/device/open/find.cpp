@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/camera/find_cameras.hpp"
 #include "device/open/stage.hpp"
 #include "device/os/clock.hpp"

@@ -6,9 +6,9 @@
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "base/format_version.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 
 namespace vam::device {
 

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/format_version.hpp"
-#include "base/json.hpp"
 #include "base/system_error.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/os/line_writer.hpp"

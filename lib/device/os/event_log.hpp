@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::device {
 

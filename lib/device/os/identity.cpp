@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 
 namespace vam::device {
 

@@ -2,7 +2,7 @@
 // Identity reported by a device, and the mark of simulated devices.
 #pragma once
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::device {
 

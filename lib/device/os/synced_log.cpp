@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
 #include "device/os/event_log.hpp"
 
 namespace vam::device {

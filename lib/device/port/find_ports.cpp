@@ -10,7 +10,7 @@
 #include <memory>
 #include <string_view>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/port/private/usb_text.hpp"
 #include "device/port/serial_port.hpp"
 #include "device/port/usb_kinds.hpp"

@@ -13,8 +13,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::device {
 

@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/projector/display_backends.hpp"
 #include "device/projector/private/sdl_library.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/identity.hpp"
 #include "device/port/usb_kinds.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/projector/private/drm_output.hpp"
 #include "device/projector/private/sdl_library.hpp"
 

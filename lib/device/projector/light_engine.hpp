@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"
 #include "device/port/usb_link.hpp"

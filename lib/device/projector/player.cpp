@@ -7,8 +7,8 @@
 #include <deque>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 
 namespace vam::device {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/projector/display.hpp"
 #include "device/projector/lamp.hpp"
 #include "device/stage/angle_source.hpp"

@@ -13,8 +13,8 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
 #include "base/system_error.hpp"
+#include "base/text/json.hpp"
 #include "device/safety/private/guardian_child.hpp"
 
 namespace vam::device {

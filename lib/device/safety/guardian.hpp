@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::device {
 

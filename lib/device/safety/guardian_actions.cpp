@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/port/usb_link.hpp"
 
 namespace vam::device {

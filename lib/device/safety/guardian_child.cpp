@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/process_name.hpp"
 #include "device/os/realtime.hpp"

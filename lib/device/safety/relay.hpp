@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"
 #include "device/port/port.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/safety/stop_order.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/safety/guardian_actions.hpp"
 
 namespace vam::device {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/safety/guardian.hpp"
 
 namespace vam::device {

@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/system_error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 
 namespace vam::device {

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/stage/private/shown.hpp"
 
 namespace vam::device {

@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <utility>
 
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/port/serial_port.hpp"
 #include "device/safety/stop_order.hpp"
 

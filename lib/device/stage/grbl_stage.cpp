@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/safety/stop_order.hpp"
 #include "device/stage/private/line_link.hpp"
 #include "device/stage/private/shown.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/private/line_link.hpp"
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/stage/private/shown.hpp"
 
 namespace vam::device {

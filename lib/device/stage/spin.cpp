@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "device/stage/angle_fit.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/private/stop_on_exit.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/os/address.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"

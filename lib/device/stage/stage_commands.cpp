@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/os/identity.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/private/stop_on_exit.hpp"

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/safety/stop_order.hpp"
 #include "device/stage/private/line_link.hpp"
 

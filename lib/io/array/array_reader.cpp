@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/memory.hpp"
 #include "io/array/private/array_parser.hpp"
 #include "io/array/private/mrc_head.hpp"
 #include "io/array/private/npy_head.hpp"

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 
 namespace vam::io::arrays {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/zip_end.hpp"
 
 namespace vam::io::arrays {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/format_version.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::io::arrays {
 

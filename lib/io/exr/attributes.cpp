@@ -15,9 +15,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/format_version.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/seal.hpp"
 #include "model/metadata.hpp"
 

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/exr/private/rows.hpp"
 
 namespace vam::io::exr {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/simd.hpp"
-#include "base/text.hpp"
+#include "base/compute/simd.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/private/range_kernel.hpp"
 
 namespace vam::io::exr {

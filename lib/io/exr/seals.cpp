@@ -8,7 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/private/attributes.hpp"
 
 namespace vam::io::exr {

@@ -5,7 +5,7 @@
 #include <exception>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/exr/private/format.hpp"
 #include "io/stream/finite.hpp"
 #include "io/stream/sandboxed_reader.hpp"

@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/format_version.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
+#include "base/text/format_version.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/intensities.hpp"
 #include "io/stream/signature.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/seal.hpp"

@@ -11,11 +11,11 @@
 #include <optional>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/format_version.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/format.hpp"
 #include "io/exr/private/intensities.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/hdf5/private/hdf5_file.hpp"
 #include "io/hdf5/private/hdf5_images.hpp"
 #include "io/hdf5/private/hdf5_tree.hpp"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 
 namespace vam::io::hdf5 {
 

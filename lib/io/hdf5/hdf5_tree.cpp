@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::io::hdf5 {
 

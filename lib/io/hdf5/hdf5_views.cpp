@@ -3,7 +3,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/hdf5/private/hdf5_tree.hpp"
 
 namespace vam::io::hdf5 {

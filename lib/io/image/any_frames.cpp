@@ -10,8 +10,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/single_image.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"

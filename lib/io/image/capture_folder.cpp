@@ -13,10 +13,10 @@
 
 #include "base/error.hpp"
 #include "base/fingerprint.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
 #include "base/system_error.hpp"
+#include "base/text/json.hpp"
+#include "base/text/printable.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/capture_manifest.hpp"
 #include "io/stream/log_lines.hpp"

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
 #include "base/pixels.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/stream/seal.hpp"
 
 namespace vam::io {

@@ -6,9 +6,9 @@
 
 #include "base/error.hpp"
 #include "base/fingerprint.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
 #include "base/system_error.hpp"
+#include "base/text/printable.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/capture_manifest.hpp"

@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::io {
 

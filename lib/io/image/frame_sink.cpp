@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/image/frame_folder.hpp"
 #include "io/image/private/video.hpp"
 

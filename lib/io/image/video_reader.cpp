@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/format_version.hpp"
+#include "base/text/format_version.hpp"
 #include "io/image/private/av_handles.hpp"
 #include "io/image/private/matroska.hpp"
 #include "io/image/private/video.hpp"

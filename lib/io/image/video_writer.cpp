@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/format_version.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
+#include "base/compute/parallel.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/text.hpp"
 #include "io/image/private/av_handles.hpp"
 #include "io/image/private/ffv1.hpp"
 #include "io/image/private/video.hpp"

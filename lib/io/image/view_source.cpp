@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"

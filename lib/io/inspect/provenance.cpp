@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/image/capture_folder.hpp"

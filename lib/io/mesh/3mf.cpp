@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
+#include "base/compute/memory.hpp"
 #include "base/index.hpp"
-#include "base/memory.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/model_part.hpp"
 #include "io/mesh/private/zip_archive.hpp"

@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/memory.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/sandboxed_reader.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/text.hpp"
 #include "io/stream/stream.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/text.hpp"
 

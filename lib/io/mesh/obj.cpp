@@ -2,7 +2,7 @@
 // OBJ: of its lines those of vertices and faces are read, of a face the vertices.
 #include <utility>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/text.hpp"
 

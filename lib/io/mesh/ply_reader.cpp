@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/text.hpp"
 

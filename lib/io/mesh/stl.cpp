@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "base/index.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/text.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/zip_end.hpp"
 

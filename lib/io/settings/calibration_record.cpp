@@ -12,12 +12,12 @@
 #include <system_error>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
-#include "base/utc.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
+#include "base/text/utc.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"

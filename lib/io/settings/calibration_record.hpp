@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/printer.hpp"
 
 namespace vam::io {

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 

@@ -10,9 +10,9 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "base/json_fwd.hpp"
 #include "base/sha256.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/stream/log_lines.hpp"
 
 namespace vam::io {

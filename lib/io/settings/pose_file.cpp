@@ -5,11 +5,11 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
-#include "base/utc.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
+#include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/csv_table.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/private/printer_fields.hpp"
 

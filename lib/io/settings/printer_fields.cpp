@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "model/device_schemes.hpp"
 
 namespace vam::io {

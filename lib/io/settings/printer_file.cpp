@@ -13,13 +13,13 @@
 #include <sstream>
 
 #include "base/error.hpp"
-#include "base/format_version.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/log/log.hpp"
 #include "base/printer_path.hpp"
 #include "base/system_error.hpp"
-#include "base/text.hpp"
-#include "base/utc.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
+#include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/private/printer_end.hpp"
 #include "io/settings/private/printer_fields.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/private/printer_fields.hpp"
 

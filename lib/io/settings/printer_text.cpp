@@ -5,8 +5,8 @@
 #include <charconv>
 #include <sstream>
 
-#include "base/format_version.hpp"
-#include "base/text.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/private/printer_end.hpp"
 #include "io/settings/private/printer_fields.hpp"

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "base/format_version.hpp"
-#include "base/json_fwd.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::io {
 

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

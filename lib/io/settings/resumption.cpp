@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"

@@ -5,11 +5,11 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
 #include "base/system_error.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/resumption.hpp"
 #include "io/settings/sealed_text.hpp"

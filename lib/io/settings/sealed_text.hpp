@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::io {
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "base/memory.hpp"
+#include "base/compute/memory.hpp"
 
 namespace vam::io {
 

@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/system_error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/private/endless.hpp"
 #include "io/stream/private/pipe.hpp"

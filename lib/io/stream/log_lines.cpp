@@ -6,9 +6,9 @@
 #include <cerrno>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
 #include "base/system_error.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 
 namespace vam::io {
 

@@ -9,8 +9,8 @@
 #include <climits>
 #include <cstdlib>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "base/system_error.hpp"
 #include "io/stream/private/pipe.hpp"
 #include "io/stream/private/temporary.hpp"

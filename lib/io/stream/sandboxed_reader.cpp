@@ -16,8 +16,8 @@
 #include <new>
 #include <utility>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "base/system_error.hpp"
 #include "io/stream/private/confine.hpp"
 #include "io/stream/private/shared_buffers.hpp"

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cstdio>
 
-#include "base/simd.hpp"
+#include "base/compute/simd.hpp"
 #include "io/stream/private/hash_kernel.hpp"
 
 namespace vam::io {

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/passage.hpp"
 #include "io/vdb/vdb.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "model/coarser.hpp"
 
 namespace vam::io {

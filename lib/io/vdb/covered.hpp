@@ -3,7 +3,7 @@
 #pragma once
 
 #include "io/vdb/vdb.hpp"
-#include "model/outside.hpp"
+#include "model/dose/outside.hpp"
 
 namespace vam::io {
 

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/format_version.hpp"
 #include "base/index.hpp"
-#include "base/printable.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/printable.hpp"
 #include "io/stream/seal.hpp"
 #include "model/metadata.hpp"
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/grid.hpp"

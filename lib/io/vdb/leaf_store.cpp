@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "base/compute/slab.hpp"
 #include "base/index.hpp"
-#include "base/slab.hpp"
 
 namespace vam::io {
 

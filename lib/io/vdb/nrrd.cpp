@@ -5,9 +5,9 @@
 #include <bit>
 #include <vector>
 
-#include "base/format_version.hpp"
-#include "base/printable.hpp"
-#include "base/text.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

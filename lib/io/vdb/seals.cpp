@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "base/format_version.hpp"
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/printable.hpp"
+#include "base/text/format_version.hpp"
+#include "base/text/printable.hpp"
 #include "io/vdb/private/facts.hpp"
 
 namespace vam::io {

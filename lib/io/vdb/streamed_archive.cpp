@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/stream/finite.hpp"
 #include "io/vdb/private/archive.hpp"
 #include "io/vdb/private/facts.hpp"

@@ -12,10 +12,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/stream/finite.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/private/grid.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/facts.hpp"

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/format_version.hpp"
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
+#include "base/text/format_version.hpp"
 #include "io/stream/stream.hpp"
 #include "io/stream/stream_buffers.hpp"
 #include "io/vdb/private/facts.hpp"

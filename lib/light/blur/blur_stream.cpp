@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "light/blur/gaussian_blur.hpp"
 
 namespace vam::light {

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"
 #include "optics/writable_radius.hpp"

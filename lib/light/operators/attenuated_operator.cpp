@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/private/attenuated_operator.hpp"
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 #include "tomo/axis_transmission.hpp"
 
 namespace vam::light {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/per_slice.hpp"
 #include "base/index.hpp"
-#include "base/per_slice.hpp"
 #include "light/blur/gaussian_blur.hpp"
 
 namespace vam::light {

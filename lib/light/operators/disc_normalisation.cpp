@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
 #include "model/circle.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::light {
 

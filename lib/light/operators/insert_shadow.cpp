@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "light/operators/insert.hpp"
 
 namespace vam::light {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "base/compute/per_slice.hpp"
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/per_slice.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
 #include "light/operators/private/parallel_operator.hpp"
 #include "light/operators/private/shadowed_operator.hpp"

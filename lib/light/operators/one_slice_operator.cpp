@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "base/parallel.hpp"
-#include "base/per_slice.hpp"
+#include "base/compute/parallel.hpp"
+#include "base/compute/per_slice.hpp"
 
 namespace vam::light {
 

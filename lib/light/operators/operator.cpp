@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 
 namespace vam::light {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 
 namespace vam::light {
 

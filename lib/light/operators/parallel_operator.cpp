@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "light/operators/private/one_slice_operator.hpp"
 
 namespace vam::light {

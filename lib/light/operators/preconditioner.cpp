@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 
 namespace vam::light {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/private/rays_kernel.hpp"
 
-#include "base/kernel_vector.hpp"
+#include "base/compute/kernel_vector.hpp"
 
 namespace vam::light::VAM_SIMD {
 

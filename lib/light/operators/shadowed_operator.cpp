@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "model/absorption.hpp"
 #include "model/circle.hpp"
 #include "tomo/axis_transmission.hpp"

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/compute/simd.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/simd.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "light/operators/private/columns_kernel.hpp"
 
 namespace vam::light {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "light/operators/private/tile_light.hpp"
 #include "optics/skew_ray.hpp"
 

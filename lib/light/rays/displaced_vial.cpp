@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
 #include "base/constants.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "light/rays/private/skew_ray_dose.hpp"
 
 namespace vam::light {

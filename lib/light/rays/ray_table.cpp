@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "light/rays/private/chief_ray_dose.hpp"
 #include "optics/writable_radius.hpp"
 

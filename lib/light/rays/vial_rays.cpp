@@ -7,12 +7,12 @@
 #include <numbers>
 #include <string>
 
+#include "base/compute/simd.hpp"
+#include "base/compute/slab_lanes.hpp"
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/simd.hpp"
-#include "base/slab_lanes.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/absorption.hpp"
 #include "model/circle.hpp"
 #include "optics/skew_ray.hpp"

@@ -9,7 +9,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
 

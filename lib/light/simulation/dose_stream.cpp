@@ -5,9 +5,9 @@
 #include <iterator>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
+#include "base/compute/per_slice.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/per_slice.hpp"
 #include "light/operators/insert.hpp"
 #include "light/operators/operator.hpp"
 #include "light/simulation/private/simulation_state.hpp"

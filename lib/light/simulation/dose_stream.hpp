@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "base/compute/slab.hpp"
 #include "base/image.hpp"
-#include "base/slab.hpp"
 #include "light/simulation/simulation.hpp"
 
 namespace vam::light {

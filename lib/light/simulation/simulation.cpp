@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "base/compute/parallel.hpp"
+#include "base/compute/per_slice.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/per_slice.hpp"
 #include "light/operators/insert.hpp"
 #include "light/simulation/private/simulation_state.hpp"
 

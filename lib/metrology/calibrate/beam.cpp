@@ -9,7 +9,7 @@
 #include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/normal.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
 #include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"

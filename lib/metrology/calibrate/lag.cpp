@@ -5,7 +5,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::metrology {
 

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "metrology/calibrate/private/blinks.hpp"
 
 namespace vam::metrology {

@@ -8,7 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "metrology/calibrate/private/edges.hpp"
 #include "metrology/calibrate/private/vial_radius.hpp"
 

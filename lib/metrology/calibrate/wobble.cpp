@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::metrology {
 

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
 #include "base/stats/curve_fit.hpp"
+#include "base/text/json.hpp"
 #include "solid/mesh/geometry.hpp"
 
 namespace vam::metrology {

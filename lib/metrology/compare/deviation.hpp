@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/mesh.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/mesh/surface_samples.hpp"

@@ -9,9 +9,9 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/json.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "metrology/compare/private/outline.hpp"
 
 namespace vam::metrology {

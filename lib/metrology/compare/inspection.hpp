@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "metrology/compare/deviation.hpp"
 #include "metrology/compare/regions.hpp"
 #include "solid/mesh/signed_distance.hpp"

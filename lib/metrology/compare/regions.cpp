@@ -7,8 +7,8 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/mesh/surface_samples.hpp"
 

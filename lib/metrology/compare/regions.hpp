@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "metrology/compare/deviation.hpp"
 #include "metrology/compare/fits.hpp"
 #include "solid/mesh/geometry.hpp"

@@ -9,7 +9,7 @@
 
 #include "base/constants.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "solid/mesh/align.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/surface_samples.hpp"

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "metrology/compare/emboss.hpp"
 
 namespace vam::metrology {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "model/value_at.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/surface_samples.hpp"

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "base/json_fwd.hpp"
 #include "base/stats/measured.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/index.hpp"
-#include "base/json.hpp"
 #include "base/stats/student.hpp"
+#include "base/text/json.hpp"
 
 namespace vam::metrology {
 

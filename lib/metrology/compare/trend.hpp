@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::metrology {
 

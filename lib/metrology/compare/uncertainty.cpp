@@ -7,11 +7,11 @@
 #include <numbers>
 #include <optional>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 #include "base/random.hpp"
+#include "base/text/json.hpp"
 #include "solid/mesh/pose_response.hpp"
 #include "solid/mesh/surface_samples.hpp"
 

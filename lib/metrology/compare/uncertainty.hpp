@@ -2,7 +2,7 @@
 // The expanded uncertainty of all figures of a print [GUM08; physics §8].
 #pragma once
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "metrology/compare/inspection.hpp"
 #include "metrology/compare/surface_errors.hpp"
 

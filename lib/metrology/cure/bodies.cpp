@@ -6,11 +6,11 @@
 #include <numeric>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/parallel.hpp"
 #include "base/stats/median.hpp"
+#include "base/text/json.hpp"
 
 namespace vam::metrology {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/parallel.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/json.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/value_at.hpp"
 
 namespace vam::metrology {

@@ -7,9 +7,9 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
 #include "base/stats/curve_fit.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "model/value_at.hpp"
 
 namespace vam::metrology {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/json_fwd.hpp"
 #include "base/stats/measured.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {

@@ -3,7 +3,7 @@
 // it.
 #pragma once
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::metrology {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "metrology/cure/scatter_curve.hpp"
 #include "model/grid.hpp"
 

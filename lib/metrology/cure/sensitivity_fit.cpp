@@ -5,9 +5,9 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "metrology/cure/sensitivity.hpp"
 #include "model/value_at.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/image.hpp"
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <span>
 
+#include "base/compute/parallel.hpp"
+#include "base/compute/simd.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/simd.hpp"
 #include "metrology/ost/private/climb_kernel.hpp"
 
 namespace vam::metrology {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "base/stats/median.hpp"
 #include "base/stats/range.hpp"
 #include "metrology/ost/private/body_paths.hpp"

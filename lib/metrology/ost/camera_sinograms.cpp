@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/cubic.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::metrology {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 
 namespace vam::metrology {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/image.hpp"
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::metrology {
 

@@ -10,9 +10,9 @@
 #include <cstddef>
 #include <limits>
 
+#include "base/compute/parallel.hpp"
 #include "base/constants.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/median.hpp"
 #include "metrology/ost/private/angle_grid.hpp"

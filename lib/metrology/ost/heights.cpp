@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/cubic.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "optics/skew_ray.hpp"
 #include "optics/writable_radius.hpp"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::metrology {
 

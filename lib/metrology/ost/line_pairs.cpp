@@ -5,8 +5,8 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
 #include "metrology/ost/private/moved_views.hpp"

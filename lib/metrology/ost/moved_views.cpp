@@ -6,8 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "base/stats/median.hpp"
 #include "metrology/ost/private/specks.hpp"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
+#include "base/compute/per_slice.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/per_slice.hpp"
 #include "base/stats/median.hpp"
 #include "tomo/filter.hpp"
 

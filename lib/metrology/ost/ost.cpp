@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
+#include "base/compute/per_slice.hpp"
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/per_slice.hpp"
-#include "base/progress.hpp"
-#include "base/text.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/text.hpp"
 #include "metrology/ost/flicker.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/bubbles.hpp"

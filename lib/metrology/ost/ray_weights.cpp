@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "metrology/ost/private/ost_state.hpp"
 #include "model/absorption.hpp"
 #include "model/circle.hpp"

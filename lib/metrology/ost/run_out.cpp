@@ -9,7 +9,7 @@
 
 #include "base/constants.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "metrology/ost/flicker.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/private/angle_grid.hpp"

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 
 namespace vam::metrology {
 

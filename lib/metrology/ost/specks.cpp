@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "base/stats/median.hpp"
 
 namespace vam::metrology {

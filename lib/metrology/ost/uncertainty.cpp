@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "metrology/ost/private/ost_state.hpp"
 #include "metrology/ost/view_noise.hpp"
 

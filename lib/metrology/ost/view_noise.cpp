@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/median.hpp"

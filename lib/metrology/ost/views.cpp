@@ -8,13 +8,13 @@
 #include <span>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/image_size.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "base/stats/median.hpp"
 #include "base/stats/range.hpp"
-#include "base/text.hpp"
+#include "base/text/image_size.hpp"
+#include "base/text/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/cubic.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/image.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "model/stack.hpp"
 
 namespace vam::optics {

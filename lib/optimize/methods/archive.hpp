@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 
 namespace vam::optimize {
 

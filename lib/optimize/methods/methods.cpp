@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/private/safeguard.hpp"

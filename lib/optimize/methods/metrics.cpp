@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/index.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::optimize {
 

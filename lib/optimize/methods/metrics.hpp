@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "optimize/target/problem.hpp"
 
 namespace vam::optimize {

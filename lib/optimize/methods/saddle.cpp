@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 
 namespace vam::optimize {
 

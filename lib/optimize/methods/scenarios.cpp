@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 #include "base/random.hpp"
 #include "light/operators/blurred_operator.hpp"
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <utility>
 
-#include "base/per_slice.hpp"
-#include "base/progress.hpp"
+#include "base/compute/per_slice.hpp"
+#include "base/log/progress.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/saddle.hpp"
 #include "optimize/methods/step_length.hpp"

@@ -8,7 +8,7 @@
 
 #include "base/image.hpp"
 #include "light/operators/operator.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "optimize/methods/method.hpp"
 
 namespace vam::optimize {

@@ -2,8 +2,8 @@
 #include "optimize/run/interruption.hpp"
 
 #include "base/error.hpp"
-#include "base/format_version.hpp"
 #include "base/index.hpp"
+#include "base/text/format_version.hpp"
 
 namespace vam::optimize {
 

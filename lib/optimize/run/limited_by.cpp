@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "base/json.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::optimize {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {

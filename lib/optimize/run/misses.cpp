@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::optimize {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 
 namespace vam::optimize {
 

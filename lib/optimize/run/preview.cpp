@@ -8,7 +8,7 @@
 #include "light/operators/make_operator.hpp"
 #include "light/rays/vial_setup.hpp"
 #include "model/conditions.hpp"
-#include "model/dose_spread.hpp"
+#include "model/dose/dose_spread.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/run/shown.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "model/figures.hpp"
+#include "model/dose/figures.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/slice_figures.hpp"
 

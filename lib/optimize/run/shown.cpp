@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "model/figures.hpp"
+#include "model/dose/figures.hpp"
 #include "optimize/run/private/jobs.hpp"
 #include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/run_totals.hpp"

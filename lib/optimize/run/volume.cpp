@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "optimize/run/private/light_pieces.hpp"
 #include "optimize/run/private/pass_run.hpp"
 

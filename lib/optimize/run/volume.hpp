@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/json_fwd.hpp"
-#include "model/outside.hpp"
+#include "base/text/json_fwd.hpp"
+#include "model/dose/outside.hpp"
 #include "model/piece.hpp"
 #include "optimize/run/certify.hpp"
 #include "optimize/run/even_dose.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <sstream>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
-#include "model/figures.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/figures.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "optimize/run/volume.hpp"
 

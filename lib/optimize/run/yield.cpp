@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
+#include "base/text/json.hpp"
 #include "light/blur/blur_stream.hpp"
 #include "light/simulation/simulation.hpp"
-#include "model/dose_spread.hpp"
+#include "model/dose/dose_spread.hpp"
 #include "model/magnification.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/target/exclusions.hpp"

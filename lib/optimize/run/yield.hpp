@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/json_fwd.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/json_fwd.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/stack.hpp"
 #include "model/tolerances.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::optimize {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 #include "model/circle.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "optimize/target/cure_curve.hpp"
 
 namespace vam::optimize {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::optimize {
 

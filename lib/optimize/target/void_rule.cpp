@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::optimize {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once per instruction set (base/simd.hpp). Across the pixels of a row there is no branch: where a column is
-// in its part is already in the two offsets.
+// Compiled once per instruction set (base/compute/simd.hpp). Across the pixels of a row there is no branch: where a
+// column is in its part is already in the two offsets.
 #include "resin/curethrough/private/correction_kernel.hpp"
 
 namespace vam::resin::VAM_SIMD {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 
 namespace vam::resin {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::resin {
 

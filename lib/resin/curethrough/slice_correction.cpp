@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
+#include "base/compute/simd.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/simd.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "resin/curethrough/private/correction_kernel.hpp"
 
 namespace vam::resin {

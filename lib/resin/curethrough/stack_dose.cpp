@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::resin {
 

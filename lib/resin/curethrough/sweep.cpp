@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <string>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "resin/curethrough/column_correction.hpp"
 
 namespace vam::resin {

@@ -5,8 +5,8 @@
 
 #include <array>
 
-#include "base/json.hpp"
-#include "base/json_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 
 namespace vam::sim {
 

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "sim/bench/print.hpp"
 
 namespace vam::sim {

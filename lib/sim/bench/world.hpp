@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "sim/bench/log_tail.hpp"
 #include "sim/bench/scene.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "base/error.hpp"
 #include "base/fingerprint.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "sim/cameras/open_camera.hpp"
 #include "sim/controllers/options.hpp"

@@ -17,8 +17,8 @@
 #include "base/error.hpp"
 #include "base/fingerprint.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
 #include "sim/cameras/makers.hpp"
 #include "sim/cameras/private/gv_clock.hpp"
 

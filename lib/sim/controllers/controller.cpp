@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 
 namespace vam::sim {
 

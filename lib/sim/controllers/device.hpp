@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "device/os/clock.hpp"
 #include "device/port/port.hpp"
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "sim/controllers/private/controller.hpp"
 
 namespace vam::sim {

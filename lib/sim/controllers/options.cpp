@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "device/os/event_log.hpp"
 
 namespace vam::sim {

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "sim/controllers/private/controller.hpp"
 
 namespace vam::sim {

@@ -4,9 +4,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/icp.hpp"
 #include "solid/mesh/private/overlap_search.hpp"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 
 namespace vam::solid {
 

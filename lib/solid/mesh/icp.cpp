@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "base/stats/median.hpp"
 #include "solid/mesh/surface_samples.hpp"
 

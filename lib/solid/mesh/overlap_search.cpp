@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 
 namespace vam::solid {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "solid/mesh/private/separate_solids.hpp"
 #include "solid/mesh/surface_samples.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/stats/median.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/orient.hpp"
 #include "solid/mesh/private/overlap.hpp"

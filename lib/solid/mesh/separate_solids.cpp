@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "solid/mesh/private/topology.hpp"
 
 namespace vam::solid {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "solid/mesh/private/triangle_tree.hpp"
 #include "solid/mesh/private/winding.hpp"
 

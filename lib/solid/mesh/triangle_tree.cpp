@@ -6,8 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::solid {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 #include "solid/shapes/field.hpp"
 #include "solid/shapes/private/cell_fraction.hpp"
 #include "solid/shapes/private/lattice_values.hpp"

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <span>
 
+#include "base/compute/simd.hpp"
 #include "base/index.hpp"
-#include "base/simd.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "solid/shapes/private/builders.hpp"
 #include "solid/shapes/private/gyroid_kernel.hpp"
 #include "solid/shapes/private/sdf.hpp"

@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "solid/mesh/distance_band.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/signed_distance.hpp"

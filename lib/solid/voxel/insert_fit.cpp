@@ -5,12 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::solid {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "solid/voxel/part.hpp"
 

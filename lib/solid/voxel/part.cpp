@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/parallel.hpp"
-#include "base/text.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "solid/mesh/part_surface.hpp"
 #include "solid/shapes/shapes.hpp"
 #include "solid/voxel/trapped_resin.hpp"

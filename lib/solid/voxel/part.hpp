@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/image.hpp"
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "model/part_surface.hpp"

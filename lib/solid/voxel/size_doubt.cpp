@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::solid {
 

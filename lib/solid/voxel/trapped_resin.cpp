@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::solid {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "verdict/cavities.hpp"
 
 namespace vam::solid {

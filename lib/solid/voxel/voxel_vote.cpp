@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/parallel.hpp"
 
 namespace vam::solid {
 

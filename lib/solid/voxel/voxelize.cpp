@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "solid/voxel/private/coverage.hpp"
 #include "solid/voxel/private/union_row.hpp"
 #include "solid/voxel/private/voxel_vote.hpp"

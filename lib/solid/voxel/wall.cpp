@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.hpp"
-#include "model/dose_metrics.hpp"
+#include "base/compute/parallel.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "solid/voxel/private/neck.hpp"
 
 namespace vam::solid {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "base/vector3.hpp"
 #include "solid/mesh/holes.hpp"
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "base/simd.hpp"
-#include "base/slab.hpp"
+#include "base/compute/simd.hpp"
+#include "base/compute/slab.hpp"
 #include "tomo/private/fft.hpp"
 #include "tomo/private/fourier_kernel.hpp"
 #include "tomo/private/fourier_plan.hpp"

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-#include "base/slab_lanes.hpp"
+#include "base/compute/slab_lanes.hpp"
 #include "tomo/footprint.hpp"
 
 namespace vam::tomo {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "base/simd.hpp"
+#include "base/compute/simd.hpp"
 #include "tomo/private/radon_kernel.hpp"
 #include "tomo/radon.hpp"
 

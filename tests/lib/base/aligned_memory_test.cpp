@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/aligned_memory.hpp"
+#include "base/compute/aligned_memory.hpp"
 
 #include <doctest/doctest.h>
 #include <stdlib.h>
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <string>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
 
 using namespace vam;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/figure_text.hpp"
+#include "base/text/figure_text.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/format_version.hpp"
+#include "base/text/format_version.hpp"
 
 #include <doctest/doctest.h>
 
-#include "base/json.hpp"
-#include "base/json_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 #include "fault_of.hpp"
 
 using namespace vam;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/memory.hpp"
+#include "base/compute/memory.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two slabs of 3 x 2 voxels: value 1 + index in the slice + 10 slice, against sums and extremes by hand.
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 
 #include <doctest/doctest.h>
 

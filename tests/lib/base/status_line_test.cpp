@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The line of progress on a terminal, which a child of this process writes to.
-#include "base/status_line.hpp"
+#include "base/log/status_line.hpp"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -16,8 +16,8 @@
 #include <string>
 #include <thread>
 
-#include "base/log.hpp"
-#include "base/progress.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
 
 using namespace vam;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/utc.hpp"
+#include "base/text/utc.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
-#include "base/log.hpp"
-#include "base/progress.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
 #include "cli/private/words.hpp"
 #include "lib/cli/demo.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/capture.hpp"
 #include "device/camera/private/frame_count.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "fault_of.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 #include "fault_of.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/round_trips.hpp"
 #include "device/stage/spin.hpp"
 #include "fault_of.hpp"

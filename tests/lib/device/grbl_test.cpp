@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/grbl_stage.hpp"
 #include "device/stage/spin.hpp"
 #include "fault_of.hpp"

@@ -14,7 +14,7 @@
 #include <iterator>
 #include <string>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "device/safety/stop_order.hpp"

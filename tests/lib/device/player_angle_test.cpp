@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/open/display.hpp"
 #include "device/projector/player.hpp"
 #include "device/stage/private/ripple_filter.hpp"

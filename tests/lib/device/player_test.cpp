@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/open/display.hpp"
 #include "device/projector/light_engine.hpp"
 #include "fault_of.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/projector/relayed_lamp.hpp"
 #include "fault_of.hpp"
 #include "lib/device/virtual_stage.hpp"

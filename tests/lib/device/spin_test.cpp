@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/angle_fit.hpp"
 #include "fault_of.hpp"
 #include "lib/device/virtual_stage.hpp"

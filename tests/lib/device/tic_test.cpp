@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/tic_stage.hpp"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "fault_of.hpp"
 #include "lib/device/fake_v4l2.hpp"

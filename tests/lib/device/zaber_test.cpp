@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/zaber_stage.hpp"
 #include "fault_of.hpp"

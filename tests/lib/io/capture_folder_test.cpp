@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/fingerprint.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/image/image_file.hpp"
 #include "lib/io/scratch.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "fault_of.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/pose_file.hpp"

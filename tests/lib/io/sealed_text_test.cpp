@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "fault_of.hpp"
 #include "io/stream/seal.hpp"
 

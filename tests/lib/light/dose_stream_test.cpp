@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "light/grids/poses.hpp"
 #include "light/operators/operator.hpp"
 #include "light/simulation/private/simulation_state.hpp"

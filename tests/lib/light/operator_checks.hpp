@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 #include "light/operators/operator.hpp"
 #include "optimize/methods/method.hpp"
 #include "oracle/part_2d.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/simulation/display_range.hpp"

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "base/compute/per_slice.hpp"
+#include "base/compute/slab.hpp"
 #include "base/image.hpp"
-#include "base/per_slice.hpp"
-#include "base/slab.hpp"
 #include "light/operators/private/vial_operator.hpp"
 
 namespace parts {

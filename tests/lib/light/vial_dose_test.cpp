@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_dose.hpp"
 

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "lib/meshes.hpp"
 #include "metrology/compare/datum.hpp"
 #include "metrology/compare/trend.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "fault_of.hpp"
 
 using namespace vam;

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "metrology/ost/views.hpp"
 #include "model/printer.hpp"
 #include "oracle/camera_views.hpp"

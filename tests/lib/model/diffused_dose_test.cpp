@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/dose_spread.hpp"
+#include "model/dose/dose_spread.hpp"
 
 namespace {
 constexpr vam::oracle::SlitPrint slit{.slit_mm = 0.5, .diffusion_mm2_s = 1e-4, .seconds = 180};

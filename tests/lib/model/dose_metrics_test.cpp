@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 #include "model/conditions.hpp"
-#include "model/figures.hpp"
+#include "model/dose/figures.hpp"
 
 using namespace vam::model;
 

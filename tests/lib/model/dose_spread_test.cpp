@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Diffusion of the dose, against the sum of what many flashes leave.
-#include "model/dose_spread.hpp"
+#include "model/dose/dose_spread.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/grey_share.hpp"
+#include "model/dose/grey_share.hpp"
 
 #include <doctest/doctest.h>
 

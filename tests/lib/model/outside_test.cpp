@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/outside.hpp"
+#include "model/dose/outside.hpp"
 
 #include <doctest/doctest.h>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 
 using namespace vam::model;
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/writable_radius.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lib/optimize/printed_part.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "oracle/skew_dose.hpp"
 
 using namespace vam;

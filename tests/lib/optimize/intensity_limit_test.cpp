@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "lib/optimize/volumes.hpp"
 #include "optimize/methods/metrics.hpp"

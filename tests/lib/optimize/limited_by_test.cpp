@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "lib/optimize/volumes.hpp"
 #include "oracle/part_2d.hpp"
 

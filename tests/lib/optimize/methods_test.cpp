@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "lib/optimize/parts.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/private/loss.hpp"

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/parallel.hpp"
+#include "base/text/json.hpp"
 #include "light/operators/make_operator.hpp"
 #include "light/simulation/simulation.hpp"
 #include "model/tolerances.hpp"

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <random>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "resin/curethrough/column_correction.hpp"
 
 using namespace vam;

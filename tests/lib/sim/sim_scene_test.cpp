@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "sim/bench/scene.hpp"
 #include "sim/bench/world.hpp"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 using namespace vam;
 using namespace vam::solid;

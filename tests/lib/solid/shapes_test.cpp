@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "solid/shapes/private/cell_fraction.hpp"
 
 using namespace vam;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "oracle/convex.hpp"
 #include "oracle/meshes.hpp"
 #include "solid/mesh/repair.hpp"

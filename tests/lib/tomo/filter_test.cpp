@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "tomo/private/fft.hpp"
 
 using namespace vam;

@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 
 using namespace vam;
 using namespace vam::tomo;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "oracle/strip_radon.hpp"
 
 using namespace vam;

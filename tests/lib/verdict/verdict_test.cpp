@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "base/json.hpp"
-#include "base/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
 
 using namespace vam;
 using namespace vam::verdict;

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "base/json_fwd.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/stream/seal.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {

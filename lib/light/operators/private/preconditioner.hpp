@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 #include "tomo/filter.hpp"
 
 namespace vam::light {

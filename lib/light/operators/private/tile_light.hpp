@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 #include "light/operators/operator.hpp"
 #include "light/operators/private/insert_shadow.hpp"
 #include "light/operators/private/rays_kernel.hpp"

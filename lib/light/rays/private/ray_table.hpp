@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 #include "light/rays/private/taps_kernel.hpp"
 #include "optics/chief_ray.hpp"
 

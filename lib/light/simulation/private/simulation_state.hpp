@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/compute/slab.hpp"
 #include "base/image.hpp"
-#include "base/slab.hpp"
 #include "light/operators/make_operator.hpp"
 #include "light/operators/operator.hpp"
 #include "light/simulation/simulation.hpp"

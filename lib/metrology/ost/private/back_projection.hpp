@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {

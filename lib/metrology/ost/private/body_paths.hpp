@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/aligned_memory.hpp"
+#include "base/compute/aligned_memory.hpp"
 #include "metrology/ost/private/back_projection.hpp"
 #include "model/grid.hpp"
 

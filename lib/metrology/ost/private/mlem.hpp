@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "base/slab.hpp"
+#include "base/compute/slab.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::metrology {

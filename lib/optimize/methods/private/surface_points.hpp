@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/target/problem.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/per_slice.hpp"
+#include "base/compute/per_slice.hpp"
 
 namespace vam::optimize {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/outside.hpp"
+#include "model/dose/outside.hpp"
 #include "optimize/target/problem.hpp"
 #include "optimize/target/slice_reader.hpp"
 #include "verdict/print_pieces.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "optimize/run/private/jobs.hpp"
 
 namespace vam::optimize {

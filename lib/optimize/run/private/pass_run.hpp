@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "base/progress.hpp"
+#include "base/log/progress.hpp"
 #include "optimize/run/private/jobs.hpp"
 #include "optimize/run/private/output_queue.hpp"
 #include "optimize/run/private/pass_setup.hpp"

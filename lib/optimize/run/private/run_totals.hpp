@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "optimize/methods/archive.hpp"
 #include "optimize/run/private/jobs.hpp"
 #include "optimize/run/slice_figures.hpp"

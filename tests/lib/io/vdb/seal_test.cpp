@@ -19,7 +19,7 @@
 #include <random>
 #include <string>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "fault_of.hpp"
 #include "lib/io/exr_stacks.hpp"
 #include "lib/io/vdb_volumes.hpp"

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "lib/io/vdb_volumes.hpp"
 
 using namespace vam;
