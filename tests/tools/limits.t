@@ -73,7 +73,7 @@ print("OFF\n%d %d 0" % (4 * n, 4 * n))
 for i in range(n): print("0 0 %d\n1 0 %d\n0 1 %d\n0.2 0.2 %f" % (i, i, i, i + 0.5))
 for i in range(0, 4 * n, 4): print("3 %d %d %d\n3 %d %d %d\n3 %d %d %d\n3 %d %d %d" % (i, i + 2, i + 1, i, i + 1, i + 3, i + 1, i + 2, i + 3, i + 2, i, i + 3))' >many.off
   for mib in $(seq 110 10 180); do
-    sh -c "ulimit -v $((mib * 1024)); exec vam-sdf many.off part.vdb --isovalue 0.5 --align none -o bounded.ply" >bounded 2>&1; status=$?
+    sh -c "ulimit -v $((mib * 1024)); exec vam-sdf many.off part.vdb --align none -o bounded.ply" >bounded 2>&1; status=$?
     case "$status $(grep -v warning: bounded | grep -Ec '^vam-sdf: .*(MiB of addresses are in use, the limit is [0-9]+ MiB; raise it|limit of [0-9]+ MiB of addresses leaves; raise it|raise its limits?) .ulimit|shared libraries')" in '71 1' | '127 1') ;;
       *) odd=$((odd + 1)); echo "# $mib MiB: $status"; sed 's/^/# /' bounded ;;
     esac
@@ -134,7 +134,7 @@ vam-convert part.vdb -o few.npy
 vam-convert few.mkv --geometry parallel --pixel 1 -o few-new.exr
 vam-project few.exr --printer printer.toml -o few-frames/
 vam-check part.vdb few-sino.exr printer.toml few.mkv
-vam-sdf box.off part.vdb --isovalue 0.5 --samples 2000 -o few.ply
+vam-sdf box.off part.vdb --samples 2000 -o few.ply
 vam-convert join few-sino.exr -o few-new.exr
 vam-plan box.off
 vam-report part.vdb few-sino.exr -o few.html
