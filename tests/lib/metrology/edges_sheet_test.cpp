@@ -40,6 +40,7 @@ model::Printer printer_of(const vam::oracle::SheetBench& bench) {
   printer.camera.distance_mm = bench.camera_mm.value_or(printer.camera.distance_mm);
   printer.camera.azimuth_deg = bench.camera_rad * 180 / std::numbers::pi;
   printer.camera.index_resin = bench.resin_index;
+  printer.camera.absorption_per_mm = bench.seen_absorption_per_mm;
   return printer;
 }
 
@@ -102,14 +103,17 @@ TEST_CASE("Vial edges by traced strips: axis within 0.01 px, radius within 1 um,
   }
 }
 
-TEST_CASE("Vial edges by traced strips: other cameras, a glass wall, light that spreads in height") {
+TEST_CASE(
+    "Vial edges by traced strips: other cameras, absorbed on its way to one, a glass wall, light that spreads in "
+    "height") {
   const vam::oracle::SheetBench bench{.absorption_per_mm = 0.05};
-  std::vector<vam::oracle::SheetBench> benches(4, bench);
+  std::vector<vam::oracle::SheetBench> benches(5, bench);
   benches[0].camera_rad *= -1;
   benches[1].camera_rad *= 5.0 / 6;
   benches[2].wall_mm = 1;
   benches[2].glass_index = 1.47;
   benches[3].rows_spread = true;
+  benches[4].seen_absorption_per_mm = 0.05;
   for (const auto& other : benches) check(other, 1);
 }
 
