@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"
@@ -18,10 +19,11 @@ namespace vam::metrology {
 namespace {
 
 constexpr double earliest_s = -0.02;  // a camera that stamps late makes the light seem early
-constexpr double coarse_s = 0.5 * rise_s;
+constexpr double coarse_s = 0.5 * unsure_s;
 constexpr std::size_t steps = 640;      // up to 0.3 s
 constexpr double clearly = 3;           // standard deviations
-constexpr double rise_sigma_ms = 0.03;  // of the unknown course of the light while it comes: by 1,000 simulated scans
+constexpr double fast_s = 0.00025;      // time constant of a light that is taken to come at once
+constexpr double rise_sigma_ms = 0.03;  // of the course of the light while it comes: by 1,000 simulated scans
 
 double at_step(std::size_t i) { return earliest_s + coarse_s * static_cast<double>(i); }
 
@@ -62,15 +64,15 @@ struct Valley {
   Line line;
 };
 
-// The lowest misfit between two latencies, by golden section.
+// The lowest misfit between two values, by golden section.
 template <class Misfit>
-double lowest(const Misfit& misfit, double low, double high) {
+double lowest(const Misfit& misfit, double low, double high, double width = 1e-6) {
   constexpr double golden = 0.6180339887498949;
   double a = high - golden * (high - low);
   double b = low + golden * (high - low);
   double at_a = misfit(a);
   double at_b = misfit(b);
-  while (high - low > 1e-6) {
+  while (high - low > width) {
     const bool left = at_a < at_b;
     (left ? high : low) = left ? b : a;
     (left ? b : a) = left ? a : b;
@@ -81,26 +83,72 @@ double lowest(const Misfit& misfit, double low, double high) {
   return 0.5 * (low + high);
 }
 
+Valley valley_between(const BlinkScan& scan, const Blinks& blinks, double low_s, double high_s) {
+  const auto line_at = [&](double latency_s) { return straight(blinks.lit_parts(latency_s), scan.light); };
+  const double latency_s = lowest([&](double at_s) { return line_at(at_s).misfit; }, low_s, high_s);
+  return {latency_s, line_at(latency_s)};
+}
+
 // Every valley of the misfit from one end to the other, and beside them its course at coarse steps.
 struct Landscape {
+  double rise_s = 0;
   std::vector<double> misfit;  // a step beyond either end: infinite
   std::vector<Valley> valleys;
 };
 
-Landscape survey(const BlinkScan& scan, const Blinks& blinks) {
-  const auto line_at = [&](double latency_s) { return straight(blinks.lit_parts(latency_s), scan.light); };
+Landscape survey(const BlinkScan& scan, double rise_s) {
   constexpr double beyond = std::numeric_limits<double>::infinity();
-  Landscape all;
-  all.misfit.push_back(beyond);
-  for (std::size_t i = 0; i <= steps; ++i) all.misfit.push_back(line_at(at_step(i)).misfit);
+  const Blinks blinks(scan, rise_s);
+  Landscape all{rise_s, {beyond}, {}};
+  for (std::size_t i = 0; i <= steps; ++i) {
+    all.misfit.push_back(straight(blinks.lit_parts(at_step(i)), scan.light).misfit);
+  }
   all.misfit.push_back(beyond);
   for (std::size_t i = 0; i <= steps; ++i) {
     if (all.misfit[i + 1] > all.misfit[i] || all.misfit[i + 1] > all.misfit[i + 2]) continue;
-    const auto misfit_at = [&](double latency_s) { return line_at(latency_s).misfit; };
-    const double latency_s = lowest(misfit_at, at_step(i) - coarse_s, at_step(i) + coarse_s);
-    all.valleys.push_back({latency_s, line_at(latency_s)});
+    all.valleys.push_back(valley_between(scan, blinks, at_step(i) - coarse_s, at_step(i) + coarse_s));
   }
   return all;
+}
+
+Valley deepest(const Landscape& all) {
+  return *std::min_element(all.valleys.begin(), all.valleys.end(),
+                           [](const Valley& a, const Valley& b) { return a.line.misfit < b.line.misfit; });
+}
+
+// By how many standard deviations of the difference the other fits worse [VUO89].
+double worse_by(const Line& other, const Line& best) {
+  const auto n = static_cast<double>(best.square.size());
+  const double mean = (other.misfit - best.misfit) / n;
+  double variance = 0;
+  for (std::size_t i = 0; i < best.square.size(); ++i) {
+    variance += std::pow(other.square[i] - best.square[i] - mean, 2) / n;
+  }
+  return mean / std::sqrt(std::max(variance / n, 1e-300));
+}
+
+// Of the time constant that fits best of a few that are far apart; a longer one only where it is clearly better.
+Landscape survey_all(const BlinkScan& scan) {
+  Landscape best = survey(scan, fast_s);
+  for (const double rise_s : {0.002, 0.008}) {
+    Landscape other = survey(scan, rise_s);
+    if (worse_by(deepest(best).line, deepest(other).line) >= clearly) best = std::move(other);
+  }
+  return best;
+}
+
+// The valley of the time constant that fits best about that landscape's.
+Valley refined(const BlinkScan& scan, const Landscape& all, double& rise_s) {
+  const Valley rough = deepest(all);
+  const auto valley = [&](double rise) {
+    const double about_s = std::abs(rise - all.rise_s) + coarse_s;
+    return valley_between(scan, Blinks(scan, rise), rough.latency_s - about_s, rough.latency_s + about_s);
+  };
+  rise_s = all.rise_s;
+  if (rise_s == fast_s) return rough;
+  rise_s = std::exp(lowest([&](double log_rise) { return valley(std::exp(log_rise)).line.misfit; },
+                           std::log(rise_s / 4), std::log(rise_s * 4), 0.02));
+  return valley(rise_s);
 }
 
 // The deepest but for those in the best one's own: where blinks explain more than half of what the best explain.
@@ -119,19 +167,8 @@ const Valley* runner_up(const Landscape& all, const Valley& best, double unexpla
   return second;
 }
 
-// By how many standard deviations of the difference the other fits worse [VUO89].
-double worse_by(const Line& other, const Line& best) {
-  const auto n = static_cast<double>(best.square.size());
-  const double mean = (other.misfit - best.misfit) / n;
-  double variance = 0;
-  for (std::size_t i = 0; i < best.square.size(); ++i) {
-    variance += std::pow(other.square[i] - best.square[i] - mean, 2) / n;
-  }
-  return mean / std::sqrt(std::max(variance / n, 1e-300));
-}
-
 void refuse_unseen(const BlinkScan& scan, const Stretch& open) {
-  if (open.width_s() <= rise_s) return;
+  if (open.width_s() <= unsure_s) return;
   std::vector<double> period_s;
   for (std::size_t n = 0; n + 1 < scan.begin_s.size(); ++n) period_s.push_back(scan.begin_s[n + 1] - scan.begin_s[n]);
   // Exposures begin at moments of the screen's frame that are so far apart; the golden section of that walks over all.
@@ -151,17 +188,16 @@ Latency measure_latency(const BlinkScan& scan) {
     throw Error{Fault::data, "latency: " + std::to_string(scan.begin_s.size()) + " frames and " +
                                  std::to_string(scan.lit_s.size()) + " flashes; at least 8 and 1 are needed"};
   }
-  const Blinks blinks(scan);
-  const Landscape all = survey(scan, blinks);
-  const Valley& best = *std::min_element(all.valleys.begin(), all.valleys.end(), [](const Valley& a, const Valley& b) {
-    return a.line.misfit < b.line.misfit;
-  });
+  const Landscape all = survey_all(scan);
+  double rise_s = 0;
+  const Valley best = refined(scan, all, rise_s);
+  const Blinks blinks(scan, rise_s);
   const double scatter = std::sqrt(best.line.misfit / static_cast<double>(scan.light.size()));
   if (!(best.line.light > 5 * scatter)) {
     throw Error{Fault::data, "latency: the blinking screen is not visible to the camera; light " +
                                  format_number(best.line.light, 3) + ", scatter " + format_number(scatter, 3)};
   }
-  const Stretch open = unseen_stretch(scan, best.latency_s);
+  const Stretch open = unseen_stretch(scan, best.latency_s, rise_s);
   refuse_unseen(scan, open);
   const double unexplained = straight(std::vector<double>(scan.light.size()), scan.light).misfit;
   const Valley* second = runner_up(all, best, unexplained);

@@ -9,25 +9,26 @@
 
 namespace vam::metrology {
 
-/// During which the light comes or goes, and the width of stretches of latencies that may stay open. Of a light that
-/// comes at once or by a time constant of up to 1.5 ms the moment is found all the same.
-inline constexpr double rise_s = 0.001;
+/// Width of stretches of latencies that may stay open.
+inline constexpr double unsure_s = 0.001;
 
-/// The light of a screen that blinks, 0 to 1, as a running integral.
+/// The light of a screen that blinks, 0 to 1, which approaches what is shown exponentially, as a running integral.
 class Blinks {
  public:
-  explicit Blinks(const BlinkScan& scan);
-  /// The part of each exposure during which the light, delayed, was on.
+  /// rise_s: the time constant.
+  Blinks(const BlinkScan& scan, double rise_s);
+  /// The part of each exposure during which the light was on. The latency is that of the light's middle: its delay and
+  /// the time constant.
   [[nodiscard]] std::vector<double> lit_parts(double latency_s) const;
 
  private:
-  [[nodiscard]] double integral(double t_s) const;        // of the light
-  [[nodiscard]] double twice_integral(double t_s) const;  // of that with sudden changes
+  [[nodiscard]] double integral(double t_s) const;  // of the light
 
   const BlinkScan& scan_;
+  double rise_s_;
   double origin_s_;
-  std::vector<double> change_s_;                        // when it comes and goes in turn, since the origin
-  std::vector<double> lit_before_s_, twice_before_s2_;  // the integral of sudden changes until then, and its own
+  std::vector<double> change_s_;              // when it comes and goes in turn, since the origin
+  std::vector<double> lit_before_s_, level_;  // the integral of what is shown until then, and the light there
 };
 
 /// A stretch of latencies for which no exposure meets a change of the light: all of it fits alike.
@@ -36,7 +37,8 @@ struct Stretch {
   [[nodiscard]] double width_s() const { return to_s - from_s; }
 };
 
-/// The widest that comes within rise_s of the latency; of no width where exposures meet changes all around it.
-[[nodiscard]] Stretch unseen_stretch(const BlinkScan& scan, double latency_s);
+/// The widest that comes within unsure_s of the latency or while light of that time constant comes; of no width where
+/// exposures meet changes all around it.
+[[nodiscard]] Stretch unseen_stretch(const BlinkScan& scan, double latency_s, double rise_s);
 
 }  // namespace vam::metrology
