@@ -54,6 +54,7 @@ struct Resin {
   double psf_mm = 0;  // Gaussian sigma of the beam, across it and along z
   double diffusion_mm2_s = 0;
   std::optional<double> dose_lifetime_s;  // of what diffuses; empty: it outlives the print
+  double dark_s = 0;                      // from the end of the print until the part is rinsed
 };
 
 struct PrinterStage {

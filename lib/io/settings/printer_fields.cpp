@@ -65,6 +65,7 @@ const std::vector<PrinterField> fields{
     {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 10},
     {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "diffusion coefficient of what absorbed the dose, not of oxygen", 0, 0.1},
     {"resin", "dose_lifetime_s", at<&Printer::resin, &Resin::dose_lifetime_s>, "lifetime of what diffuses; not set: it outlives the print", 0, 1e9, true},
+    {"resin", "dark_s", at<&Printer::resin, &Resin::dark_s>, "from the end of the print until the part is rinsed", 0, 1e6},
     {"stage", "device", at<&Printer::stage, &PrinterStage::device>, comment_on(model::stage_schemes), 0, 0, false, {}, schemes_of(model::stage_schemes)},
     {"stage", "speed_deg_s", at<&Printer::stage, &PrinterStage::speed_deg_s>, "rotation speed", 0.001, 1e6},
     {"stage", "turns", at<&Printer::stage, &PrinterStage::turns>, "turns of one print", 1, 1e6},

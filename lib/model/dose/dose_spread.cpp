@@ -10,13 +10,15 @@ namespace vam::model {
 
 namespace {
 
-/// Mean time from when light came to the end of what it made, or of the print.
+/// Mean time from when light came to the end of what it made, or of the dark after the print.
 double mean_age_s(const Resin& resin, double seconds) {
-  if (!resin.dose_lifetime_s) return 0.5 * seconds;
+  if (!resin.dose_lifetime_s) return 0.5 * seconds + resin.dark_s;
   const double lifetime_s = *resin.dose_lifetime_s;
   const double lives = seconds / lifetime_s;
-  if (lives < 1e-3) return seconds * (0.5 - lives / 6 * (1 - lives / 4));  // where the other form has no digits left
-  return lifetime_s * (1 + std::expm1(-lives) / lives);
+  const double lit_s = lives < 1e-3
+                           ? seconds * (0.5 - lives / 6 * (1 - lives / 4))  // the other form has no digits left
+                           : lifetime_s * (1 + std::expm1(-lives) / lives);
+  return lit_s * std::exp(-resin.dark_s / lifetime_s) - lifetime_s * std::expm1(-resin.dark_s / lifetime_s);
 }
 
 }  // namespace

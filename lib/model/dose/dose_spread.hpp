@@ -6,8 +6,9 @@
 
 namespace vam::model {
 
-/// Mean square, in mm2 along one axis, of how far what absorbed the light has diffused at the end of a print of
-/// `seconds`, lit evenly throughout: it diffuses from when it was lit until it dies or the print ends.
+/// Mean square, in mm2 along one axis, of how far what absorbed the light has diffused when the part is rinsed, after a
+/// print of `seconds`, lit evenly throughout, and the dark: it diffuses from when it was lit until it dies or is
+/// rinsed.
 [[nodiscard]] double diffused_mm2(const Resin& resin, double seconds);
 
 /// Standard deviation in mm along one axis, by the point spread of the beam and diffusion together.
