@@ -42,6 +42,7 @@ struct CameraOptions {
   std::string log;
   bool cure = false;
   sim::SimResin resin;
+  std::optional<double> cure_delay_s;
   std::string cured;
   cli::PrinterOptions printer;
   bool with_parent = false;
@@ -73,7 +74,8 @@ void declare_resin(cli::App& app, CameraOptions& o) {
   app.option("--inhibitor-diffusion", "MM2/S", o.resin.inhibitor_diffusion_mm2_s, {0, 1},
              "Diffusion coefficient of the inhibitor.")
       .only_with({"--cure"});
-  app.option("--cure-delay", "S", o.resin.delay_s, {0, 1e4}, "Lifetime of radicals, by which curing follows the light.")
+  app.option("--cure-delay", "S", o.cure_delay_s, {0, 1e4}, "Lifetime of radicals, by which curing follows the light.")
+      .default_is("resin.dose_lifetime_s, or 3")
       .only_with({"--cure"});
   app.option("--lamp-drift", "1/MIN", o.camera.bench.lamp_drift_per_min, {-10, 10},
              "Relative change of the lamp's intensity per minute of light.")
@@ -224,6 +226,8 @@ std::vector<GreyImage> images(const CameraOptions& o, const model::Projector& pr
 void cure(const cli::App& app, CameraOptions& o) {
   auto& camera = o.camera;
   camera.bench.resin = o.resin;
+  const auto& lifetime_s = camera.bench.printer.resin.dose_lifetime_s;  // as plans have it
+  camera.bench.resin->delay_s = o.cure_delay_s.value_or(lifetime_s.value_or(o.resin.delay_s));
   camera.bench.glow = 0;              // its filter
   (void)sim::SimPrint(camera.bench);  // a printer that does not do ends the program before it serves a camera
   if (o.cured.empty()) return;
