@@ -108,7 +108,7 @@ double heaviest(const ResamplePlan& plan) {
 
 bool on(const Detector& detector, double column) { return column > -0.4 && column < detector.columns - 0.6; }
 
-/// Columns that traced rays reach, and of which the plan has nothing.
+/// Columns within reach by the chief rays that traced ones judge below, and of which the plan has nothing.
 int uncovered(const Rig& rig, const ResamplePlan& plan, bool to_virtual) {
   const double inside = (1 - 1e-6) * reach_mm(rig.view);
   int missing = 0;
