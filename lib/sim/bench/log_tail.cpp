@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 
@@ -24,7 +25,11 @@ void LogTail::read_on(std::vector<Json>& lines) {
     rest_ += piece.data();
     if (!rest_.ends_with('\n')) continue;  // or a zero byte, as a fault of the disk leaves them
     Json event = parse_json(rest_);
-    if (event.is_object()) lines.push_back(std::move(event));
+    if (event.is_object()) {
+      const std::string why = schema_objection(text_at(event, "schema"));
+      if (!why.empty()) throw Error{Fault::data, path_ + ": " + why};
+      lines.push_back(std::move(event));
+    }
     rest_.clear();
   }
 }

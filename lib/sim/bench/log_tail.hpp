@@ -14,7 +14,7 @@ namespace vam::sim {
 
 /// The lines that have come to a log since the last look; a log that does not exist yet has none. Where a new file has
 /// taken its name, as when a run begins again in the same folder, the old one's last lines come first, then the new
-/// one's.
+/// one's. Throws Fault::data for lines of a version that is not read.
 class LogTail {
  public:
   explicit LogTail(std::string path) : path_(std::move(path)) {}
