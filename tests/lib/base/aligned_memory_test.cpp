@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/compute/aligned_memory.hpp"
 
-#include <doctest/doctest.h>
 #include <stdlib.h>
 
-#include <cstdint>
 #include <cstring>
-#include <string>
 
-#include "base/compute/memory.hpp"
-#include "base/error.hpp"
+#include "base/memory.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

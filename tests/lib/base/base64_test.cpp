@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/base64.hpp"
 
-#include <doctest/doctest.h>
-
 #include <string_view>
+
+#include "testing.hpp"
 
 TEST_CASE("base64 as the examples of RFC 4648, section 10") {
   CHECK(vam::base64("").empty());

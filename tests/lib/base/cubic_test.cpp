@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/cubic.hpp"
 
-#include <doctest/doctest.h>
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/figure_text.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
+#include "testing.hpp"
 
 using namespace vam;
 

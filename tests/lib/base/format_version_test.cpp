@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/format_version.hpp"
 
-#include <doctest/doctest.h>
-
-#include "base/text/json.hpp"
-#include "base/text/json_text.hpp"
-#include "fault_of.hpp"
+#include "base/json.hpp"
+#include "base/json_text.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/json_text.hpp"
 
-#include <doctest/doctest.h>
-
 #include <ctime>
-#include <string>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

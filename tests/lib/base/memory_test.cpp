@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/compute/memory.hpp"
 
-#include <doctest/doctest.h>
 #include <sys/resource.h>
 
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/compute/parallel.hpp"
 
-#include <doctest/doctest.h>
-
 #include <atomic>
 #include <stdexcept>
-#include <vector>
+
+#include "testing.hpp"
 
 TEST_CASE("parallel_for visits every index once") {
   std::vector<std::atomic<int>> visits(1000);

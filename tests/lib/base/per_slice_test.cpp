@@ -2,9 +2,7 @@
 // Two slabs of 3 x 2 voxels: value 1 + index in the slice + 10 slice, against sums and extremes by hand.
 #include "base/compute/per_slice.hpp"
 
-#include <doctest/doctest.h>
-
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

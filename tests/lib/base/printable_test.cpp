@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/printable.hpp"
 
-#include <doctest/doctest.h>
-
-#include <string>
 #include <string_view>
+
+#include "testing.hpp"
 
 TEST_CASE("control characters are shown, not sent") {
   CHECK(vam::printable("a b\n\t\x1b[31m\x7f") == "a b\\n\\t\\x1b[31m\\x7f");

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/stats/range.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <random>
-#include <vector>
+#include "testing.hpp"
 
 using vam::stats::range_of;
 

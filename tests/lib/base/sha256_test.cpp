@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/sha256.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
+#include "testing.hpp"
 
 using vam::Sha256;
 using vam::sha256;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/shared_library.hpp"
 
-#include <doctest/doctest.h>
 #include <sys/resource.h>
 
-#include "base/error.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

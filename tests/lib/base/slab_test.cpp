@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/compute/slab.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <numeric>
-#include <vector>
+
+#include "testing.hpp"
 
 using namespace vam;
 

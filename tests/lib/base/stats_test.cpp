@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
 #include "base/stats/normal.hpp"
 #include "base/stats/student.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::stats;

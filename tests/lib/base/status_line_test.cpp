@@ -2,22 +2,18 @@
 // The line of progress on a terminal, which a child of this process writes to.
 #include "base/log/status_line.hpp"
 
-#include <doctest/doctest.h>
 #include <fcntl.h>
 #include <pty.h>
 #include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <functional>
-#include <string>
 #include <thread>
 
-#include "base/log/log.hpp"
-#include "base/log/progress.hpp"
+#include "base/log.hpp"
+#include "base/progress.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

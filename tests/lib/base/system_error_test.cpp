@@ -2,10 +2,9 @@
 // Errors of system calls.
 #include "base/system_error.hpp"
 
-#include <doctest/doctest.h>
-
 #include <cerrno>
-#include <string>
+
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/utc.hpp"
 
-#include <doctest/doctest.h>
-
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/app.hpp"
 
-#include <doctest/doctest.h>
-
 #include <cstring>
-#include <optional>
 
-#include "base/error.hpp"
 #include "cli/private/declaration.hpp"
 #include "lib/cli/demo.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::cli;

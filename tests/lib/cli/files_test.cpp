@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that a tool reads and writes.
-#include <doctest/doctest.h>
 #include <unistd.h>
 
 #include <fstream>
 
 #include "lib/cli/demo.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::cli;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include "base/log/log.hpp"
-#include "base/log/progress.hpp"
+#include "base/log.hpp"
+#include "base/progress.hpp"
 #include "cli/private/words.hpp"
 #include "lib/cli/demo.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::cli;

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Options that need and exclude each other, and kinds of input.
-#include <doctest/doctest.h>
-
-#include <string>
-#include <vector>
-
 #include "lib/cli/demo.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::cli;

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/angle_fit.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/camera/camera.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <random>
 #include <set>
 #include <utility>
-#include <vector>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/capture.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
 #include "device/camera/private/read_clock.hpp"
 #include "device/open/camera.hpp"
-#include "fault_of.hpp"
 #include "sim/cameras/camera.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

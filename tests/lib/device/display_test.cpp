@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/open/display.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/controllers/dlp.hpp"
 
-#include <doctest/doctest.h>
-
-#include <functional>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/safety/guardian_actions.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/stage/round_trips.hpp"
 #include "device/stage/spin.hpp"
-#include "fault_of.hpp"
 #include "lib/device/virtual_stage.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

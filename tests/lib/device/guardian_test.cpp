@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/safety/guardian.hpp"
 
-#include <doctest/doctest.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <csignal>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <string>
 
 #include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "device/safety/stop_order.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/private/line_link.hpp"
 
-#include <doctest/doctest.h>
-
 #include <memory>
-#include <string>
+
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/os/lock.hpp"
 
-#include <doctest/doctest.h>
 #include <grp.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <string>
 
-#include "base/error.hpp"
 #include "device/os/device_listing.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using device::DeviceLock;

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which frame a screen shows: that of the stage's angle while it is on.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/projector/player.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
 #include "lib/device/virtual_stage.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

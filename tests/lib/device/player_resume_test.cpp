@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A print in two parts gives the light of one in whole.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "device/open/display.hpp"
 #include "device/projector/player.hpp"
 #include "lib/device/steady_angle.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/projector/player.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <vector>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/projector/light_engine.hpp"
-#include "fault_of.hpp"
 #include "lib/device/steady_angle.hpp"
 #include "sim/controllers/dlp.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

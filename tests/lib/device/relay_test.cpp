@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/safety/relay.hpp"
 
-#include <doctest/doctest.h>
-
 #include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/projector/relayed_lamp.hpp"
-#include "fault_of.hpp"
 #include "lib/device/virtual_stage.hpp"
 #include "sim/controllers/relay.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

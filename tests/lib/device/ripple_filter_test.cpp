@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/private/ripple_filter.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <vector>
-
 #include "device/stage/angle_fit.hpp"
+#include "testing.hpp"
 
 using namespace vam::device;
 

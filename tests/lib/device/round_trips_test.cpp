@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/round_trips.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <random>
 #include <utility>
 
 #include "device/stage/angle_fit.hpp"
 #include "device/stage/private/ripple_filter.hpp"
+#include "testing.hpp"
 
 using namespace vam::device;
 

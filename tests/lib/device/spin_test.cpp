@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/spin.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <functional>
-#include <vector>
-
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/stage/angle_fit.hpp"
-#include "fault_of.hpp"
 #include "lib/device/virtual_stage.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

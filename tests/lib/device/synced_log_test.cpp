@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/os/synced_log.hpp"
 
-#include <doctest/doctest.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/os/event_log.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/controllers/tic.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/tic_stage.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
 #include <linux/videodev2.h>
 #include <pty.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
-#include <functional>
 #include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/camera/camera_backends.hpp"
-#include "fault_of.hpp"
 #include "lib/device/fake_v4l2.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

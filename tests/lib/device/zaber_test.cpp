@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/controllers/zaber.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <memory>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/zaber_stage.hpp"
-#include "fault_of.hpp"
 #include "lib/device/virtual_stage.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;

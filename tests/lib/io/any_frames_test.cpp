@@ -6,17 +6,15 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <doctest/doctest.h>
 
 #include <limits>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/video.hpp"
 #include "io/image/view_source.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

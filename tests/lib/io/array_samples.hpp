@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "fault_of.hpp"
 #include "io/array/array_reader.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 namespace samples {
 

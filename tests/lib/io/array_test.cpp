@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // NumPy arrays, whose bytes are put together here by the format's description (numpy.lib.format).
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstdint>
 #include <limits>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "io/array/array_reader.hpp"
 #include "io/array/array_writer.hpp"
 #include "io/array/private/array_parser.hpp"
@@ -15,6 +9,7 @@
 #include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

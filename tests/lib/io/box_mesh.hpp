@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "fault_of.hpp"
 #include "io/mesh/file.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
 #include "model/mesh.hpp"
+#include "testing.hpp"
 
 namespace samples {
 

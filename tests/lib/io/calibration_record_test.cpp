@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/calibration_record.hpp"
 
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "base/text/json.hpp"
-#include "base/text/utc.hpp"
-#include "fault_of.hpp"
+#include "base/json.hpp"
+#include "base/utc.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -2,14 +2,13 @@
 // A folder of camera frames that a later capture goes on with.
 #include "io/image/capture_folder.hpp"
 
-#include <doctest/doctest.h>
-
 #include <limits>
 
 #include "base/fingerprint.hpp"
 #include "base/text/json.hpp"
 #include "io/image/image_file.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

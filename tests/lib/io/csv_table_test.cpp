@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/csv_table.hpp"
 
-#include <doctest/doctest.h>
-
-#include "base/error.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <string>
 
 #include "lib/io/exr_stacks.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

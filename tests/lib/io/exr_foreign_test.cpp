@@ -7,16 +7,12 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <doctest/doctest.h>
 
-#include <cstdint>
-#include <functional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "io/exr/single_image.hpp"
 #include "lib/io/exr_stacks.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <fstream>
-#include <string>
 #include <thread>
 
 #include "lib/io/exr_stacks.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -3,15 +3,12 @@
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <thread>
-#include <vector>
 
 #include "io/exr/stack.hpp"
 #include "lib/io/exr_stacks.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/flip_log.hpp"
 
-#include <doctest/doctest.h>
-
 #include <filesystem>
 #include <fstream>
 
 #include "base/sha256.hpp"
-#include "fault_of.hpp"
 #include "io/stream/stream.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using vam::Fault;
 using vam::io::read_showing;

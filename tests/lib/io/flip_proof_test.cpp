@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
 #include <filesystem>
-#include <string>
 
 #include "base/sha256.hpp"
-#include "fault_of.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/log_cross_check.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using vam::Fault;
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/flip_rules.hpp"
 
-#include <doctest/doctest.h>
-
-#include <string>
-
-#include "base/text/json.hpp"
-#include "fault_of.hpp"
+#include "base/json.hpp"
+#include "testing.hpp"
 
 using vam::Fault;
 using vam::Json;

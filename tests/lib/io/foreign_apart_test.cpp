@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Images, and stacks of other programs, are parsed in a child; what comes out is the same as without one.
-#include <doctest/doctest.h>
 #include <sys/resource.h>
-
-#include <string>
 
 #include "io/image/image_file.hpp"
 #include "io/stream/seal.hpp"
 #include "lib/io/exr_stacks.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes of other programs, put together here by their formats' descriptions: NRRD (teem), MRC2014, TIFF 6.0.
-#include <doctest/doctest.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <vector>
-
-#include "fault_of.hpp"
 #include "io/array/array_reader.hpp"
 #include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files, written here by the library itself: what is in them is known without reading them by our own code.
-#include <doctest/doctest.h>
 #include <hdf5.h>
 
-#include <cmath>
 #include <limits>
 #include <numeric>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "io/array/array_reader.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image/image_file.hpp"
 
-#include <doctest/doctest.h>
 #include <zlib.h>
 
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <utility>
-#include <vector>
 
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "lib/io/cpu_time.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using vam::GreyImage;
 using namespace vam::io;

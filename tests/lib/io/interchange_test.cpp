@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The programs that others use on these formats open what is written here.
-#include <doctest/doctest.h>
-
 #include <cstdlib>
-#include <string>
 
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

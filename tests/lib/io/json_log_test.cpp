@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/json_log.hpp"
 
-#include <doctest/doctest.h>
-
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

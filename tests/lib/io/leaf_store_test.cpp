@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes beyond what is kept in memory: 39,304 leaves, of which 16,384 keep their values.
-#include <doctest/doctest.h>
-
 #include <cstdlib>
-#include <string>
-#include <vector>
 
-#include "base/error.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using vam::Error;
 using vam::Fault;

@@ -2,15 +2,12 @@
 // Logs that somebody may still be writing.
 #include "io/stream/log_lines.hpp"
 
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -2,15 +2,10 @@
 // Matroska files put together here by RFC 8794: elements of identifier, size and content.
 #include "io/image/private/matroska.hpp"
 
-#include <doctest/doctest.h>
 #include <zlib.h>
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "fault_of.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using vam::Fault;
 

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-
-#include "fault_of.hpp"
 #include "io/mesh/file.hpp"
 #include "lib/io/box_mesh.hpp"
 #include "lib/io/cpu_time.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
+#include "testing.hpp"
 
 using namespace samples;
 using vam::io::read_mesh;

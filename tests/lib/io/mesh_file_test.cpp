@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
 #include <cctype>
 #include <chrono>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <map>
 
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "lib/io/box_mesh.hpp"
 #include "lib/io/cpu_time.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
+#include "testing.hpp"
 
 using vam::io::read_mesh;
 using vam::model::TriangleSoup;

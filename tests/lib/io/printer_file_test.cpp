@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/printer_file.hpp"
 
-#include <doctest/doctest.h>
-
 #include <cstdlib>
 #include <utility>
 
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/response_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using vam::Error;
 using vam::Fault;

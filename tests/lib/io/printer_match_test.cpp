@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/printer_match.hpp"
 
-#include <doctest/doctest.h>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "io/settings/printer_file.hpp"
+#include "testing.hpp"
 
 using vam::Fault;
 using vam::io::light_differences;

@@ -2,16 +2,13 @@
 // Tolerances from calibration records.
 #include "io/settings/recorded_tolerances.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <filesystem>
 
-#include "base/text/json.hpp"
-#include "fault_of.hpp"
+#include "base/json.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/pose_file.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -2,24 +2,19 @@
 // The child that parses foreign bytes: what it sends arrives, and whatever happens to it is one line and status 65.
 #include "io/stream/sandboxed_reader.hpp"
 
-#include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "io/stream/private/confine.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using vam::Error;
 using vam::Fault;

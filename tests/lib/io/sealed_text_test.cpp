@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/sealed_text.hpp"
 
-#include <doctest/doctest.h>
-
-#include <string>
-
-#include "base/text/json.hpp"
-#include "fault_of.hpp"
+#include "base/json.hpp"
 #include "io/stream/seal.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

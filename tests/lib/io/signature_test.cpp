@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/stream/signature.hpp"
 
-#include <doctest/doctest.h>
-
-#include <string>
+#include "testing.hpp"
 
 using namespace vam;
 using io::foreign_format;

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/stream/stream.hpp"
 
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include <algorithm>
-#include <array>
 #include <csignal>
 #include <thread>
 
 #include "io/stream/output_folder.hpp"
 #include "io/stream/private/temporary.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 using namespace vam::io;
 using scratch::slurp;

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image/private/video.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.hpp"
 #include "io/image/private/ffv1.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using vam::GreyImage;

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/blur/blur_stream.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "light/blur/gaussian_blur.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

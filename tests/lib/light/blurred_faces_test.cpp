@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/grids/blurred_faces.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "light/grids/face_blur.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/blurred_operator.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
@@ -14,6 +9,7 @@
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <vector>
-
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vial_dose.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/skew_dose.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/simulation/dose_stream.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <cstddef>
-#include <vector>
 
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "light/grids/poses.hpp"
 #include "light/operators/operator.hpp"
 #include "light/simulation/private/simulation_state.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/grids/face_blur.hpp"
 
-#include <doctest/doctest.h>
-
-#include <vector>
-
 #include "model/magnification.hpp"
 #include "optics/skew_ray.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/grids/flat_faces.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The grids of doses and of lit resin.
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "fault_of.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "model/rows.hpp"
 #include "optics/skew_ray.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <vector>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "light/simulation/simulation.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
 #include "oracle/walked_dose.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/insert.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <limits>
-#include <vector>
+
+#include "testing.hpp"
 
 using namespace vam::light;
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/grids/lit_grid.hpp"
 
-#include <doctest/doctest.h>
-
-#include <vector>
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/make_operator.hpp"
 
-#include <doctest/doctest.h>
-
-#include <numbers>
 #include <variant>
 
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
 #include "light/operators/private/parallel_operator.hpp"
 #include "light/operators/private/shadowed_operator.hpp"
 #include "light/operators/private/vial_operator.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <cmath>
-
 #include "lib/light/operator_checks.hpp"
 #include "lib/optimize/parts.hpp"
 #include "light/operators/private/parallel_operator.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of [RAY21] as numbers: what each missing correction does to the dose of a disc grid (period 35 px, radius
 // 8 px, n = 1.53, throw ratio 1.8, 1024 columns, vial radius 212.37 px). Everything in pixels.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "lib/light/vial_dose.hpp"
 #include "optics/resample.hpp"
+#include "testing.hpp"
 #include "tomo/fbp.hpp"
 
 using namespace vam;

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/grids/poses.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/rays/vial_setup.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;

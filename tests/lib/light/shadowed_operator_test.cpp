@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/private/shadowed_operator.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "lib/light/operator_checks.hpp"
 #include "lib/optimize/parts.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/simulation/simulation.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
-
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/simulation/display_range.hpp"
@@ -16,6 +9,7 @@
 #include "optics/writable_radius.hpp"
 #include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::score;

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lib/light/vial_dose.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <vector>
-
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_dose.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optics;

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/operators/private/vial_operator.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_dose.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/cure/bodies.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <numeric>
 
-#include "base/error.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

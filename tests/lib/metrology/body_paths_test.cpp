@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
-#include <vector>
 
 #include "base/index.hpp"
 #include "metrology/ost/private/hidden_rays.hpp"
 #include "metrology/ost/private/one_density_body.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "fault_of.hpp"
 #include "lib/metrology/coverage.hpp"
 #include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/private/edges.hpp"
 #include "metrology/calibrate/vial_place.hpp"
 #include "oracle/calibration_scans.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

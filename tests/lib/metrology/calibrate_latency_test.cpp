@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The latency out of simulated blinks: any camera, any screen; which are refused, and why.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <optional>
-#include <random>
-#include <string>
-#include <vector>
 
-#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/stats/measured.hpp"
-#include "fault_of.hpp"
 #include "lib/metrology/coverage.hpp"
 #include "metrology/calibrate/latency.hpp"
 #include "optics/patterns.hpp"
 #include "oracle/blinking_screen.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Response, flat field, beam and camera axis: 200 scans of each, and what is refused.
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-
-#include "fault_of.hpp"
 #include "lib/metrology/coverage.hpp"
 #include "metrology/calibrate/axis.hpp"
 #include "metrology/calibrate/beam.hpp"
@@ -15,6 +9,7 @@
 #include "metrology/calibrate/response.hpp"
 #include "metrology/calibrate/wobble.hpp"
 #include "oracle/calibration_scans.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

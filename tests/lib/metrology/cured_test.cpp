@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/cure/cured.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-
-#include "base/error.hpp"
 #include "metrology/cure/threshold.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

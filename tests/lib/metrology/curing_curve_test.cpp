@@ -2,19 +2,13 @@
 // The working curve of scattering, on the simulated resin, whose kinetics are other equations than those of the fit.
 #include "metrology/cure/curing_curve.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-#include "fault_of.hpp"
 #include "lib/curing_bench.hpp"
 #include "light/simulation/simulation.hpp"
 #include "metrology/ost/ost.hpp"
 #include "model/magnification.hpp"
 #include "resin/absolute_dose.hpp"
 #include "sim/bench/print.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

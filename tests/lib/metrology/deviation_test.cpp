@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/compare/deviation.hpp"
 
-#include <doctest/doctest.h>
-
-#include "base/error.hpp"
 #include "lib/meshes.hpp"
 #include "solid/mesh/signed_distance.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A dirty bench, seen by an independent renderer: every row has the figure that is right as its bar.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
 #include <span>
-#include <string>
 
 #include "base/stats/median.hpp"
 #include "lib/metrology/bench_printer.hpp"
@@ -19,6 +13,7 @@
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/surface_samples.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

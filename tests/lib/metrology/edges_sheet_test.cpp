@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vial edges in resin that absorbs, against the oracle's sheet of strips, in air, where a camera sees part of it.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <random>
-#include <vector>
-
 #include "metrology/calibrate/vial_place.hpp"
 #include "model/printer.hpp"
 #include "oracle/sheet_views.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/compare/emboss.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
-#include <random>
 
 #include "base/constants.hpp"
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -2,21 +2,14 @@
 // Faces, bores and walls whose form is known, and uncertainties against repeated prints.
 #include "metrology/compare/inspection.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <random>
-
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "lib/meshes.hpp"
 #include "metrology/compare/datum.hpp"
 #include "metrology/compare/trend.hpp"
 #include "metrology/compare/uncertainty.hpp"
 #include "solid/mesh/align.hpp"
 #include "solid/mesh/signed_distance.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -2,12 +2,7 @@
 // Statistical refinement of slices.
 #include "metrology/ost/private/mlem.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
+#include "testing.hpp"
 
 using namespace vam;
 

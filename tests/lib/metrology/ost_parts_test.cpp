@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whole parts through the camera: glass, resin, noise and 4 x 4 binning.
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
-
 #include "lib/metrology/synthetic_views.hpp"
 #include "metrology/ost/ost.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/ost/ost.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-
 #include "base/constants.hpp"
 #include "base/vector3.hpp"
 #include "lib/metrology/synthetic_views.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -1,13 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stated uncertainty of a reconstruction against repeated noisy views of an independent renderer.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-#include <string>
-
 #include "lib/metrology/bench_printer.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/surface_uncertainty.hpp"
@@ -15,6 +7,7 @@
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

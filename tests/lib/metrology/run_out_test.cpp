@@ -2,19 +2,13 @@
 // Run-out of the vial, seen by an independent renderer: fitted with deviations that hold, and removed.
 #include "metrology/ost/run_out.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-
 #include "lib/metrology/bench_printer.hpp"
 #include "metrology/cure/bodies.hpp"
 #include "metrology/ost/ost.hpp"
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/surface_samples.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

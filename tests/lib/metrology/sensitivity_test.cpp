@@ -2,13 +2,8 @@
 // The sensitivity of a print, on densities that follow from a known one.
 #include "metrology/cure/sensitivity.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
-
-#include "base/text/json.hpp"
-#include "fault_of.hpp"
+#include "base/json.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -2,12 +2,9 @@
 // What a camera sees of a thin lit sheet, against the sum over all its columns.
 #include "metrology/calibrate/private/sight_lines.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
 #include "base/constants.hpp"
 #include "model/printer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

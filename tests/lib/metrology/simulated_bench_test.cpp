@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The fits on images of the simulated bench: what the simulator has set is what they find.
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <utility>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "metrology/calibrate/beam.hpp"
 #include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/vial_place.hpp"
 #include "optics/patterns.hpp"
 #include "sim/bench/scene.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -2,14 +2,8 @@
 // Specks are told from bubbles that stay long, and rays that they hide at both ends are filled.
 #include "metrology/ost/private/specks.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "base/index.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

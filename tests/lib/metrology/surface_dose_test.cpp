@@ -2,12 +2,8 @@
 // The dose on the surface of a ball in a dose that falls off from its centre.
 #include "metrology/compare/surface_dose.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "fault_of.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

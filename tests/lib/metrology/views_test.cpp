@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/ost/views.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-
 #include "base/constants.hpp"
-#include "base/error.hpp"
 #include "metrology/ost/axis.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

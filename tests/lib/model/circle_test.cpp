@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/circle.hpp"
 
-#include <doctest/doctest.h>
-
-#include <array>
-
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam::model;
 

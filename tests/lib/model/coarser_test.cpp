@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/coarser.hpp"
 
-#include <doctest/doctest.h>
+#include "testing.hpp"
 
 using namespace vam::model;
 

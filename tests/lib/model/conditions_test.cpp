@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/conditions.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <string>
+#include "testing.hpp"
 
 using vam::model::holds;
 

@@ -2,12 +2,8 @@
 // Diffusion during a print, against the mean over the times at which the light arrives.
 #include "oracle/diffused_dose.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-
-#include "model/dose/dose_spread.hpp"
+#include "model/dose_spread.hpp"
+#include "testing.hpp"
 
 namespace {
 constexpr vam::oracle::SlitPrint slit{.slit_mm = 0.5, .diffusion_mm2_s = 1e-4, .seconds = 180};

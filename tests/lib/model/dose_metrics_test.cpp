@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/dose/dose_metrics.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
-#include "base/error.hpp"
 #include "model/conditions.hpp"
-#include "model/dose/figures.hpp"
+#include "model/figures.hpp"
+#include "testing.hpp"
 
 using namespace vam::model;
 

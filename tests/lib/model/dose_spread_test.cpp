@@ -2,11 +2,9 @@
 // Diffusion of the dose, against the sum of what many flashes leave.
 #include "model/dose/dose_spread.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <limits>
-#include <optional>
+
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/grid_place.hpp"
 
-#include <doctest/doctest.h>
-
 #include "model/grid_size.hpp"
+#include "testing.hpp"
 
 using namespace vam::model;
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/dose/outside.hpp"
 
-#include <doctest/doctest.h>
-
-#include "base/text/json.hpp"
+#include "base/json.hpp"
+#include "testing.hpp"
 
 using namespace vam::model;
 

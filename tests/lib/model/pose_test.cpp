@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/pose.hpp"
 
-#include <doctest/doctest.h>
-
 #include <stdexcept>
+
+#include "testing.hpp"
 
 using namespace vam::model;
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/printer.hpp"
 
-#include <doctest/doctest.h>
-
 #include "model/magnification.hpp"
+#include "testing.hpp"
 
 using namespace vam::model;
 

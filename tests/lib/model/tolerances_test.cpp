@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/tolerances.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::model;

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/chief_ray.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
-
 #include "base/constants.hpp"
-#include "base/error.hpp"
 #include "lib/optics/view_bench.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_tracer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optics;

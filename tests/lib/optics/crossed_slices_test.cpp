@@ -2,7 +2,7 @@
 // How many slices the light of one row crosses.
 #include "optics/crossed_slices.hpp"
 
-#include <doctest/doctest.h>
+#include "testing.hpp"
 
 using namespace vam;
 using optics::crossed_slices;

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/flatland_movie.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
+#include "testing.hpp"
 
 using namespace vam::optics;
 

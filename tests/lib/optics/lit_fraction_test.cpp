@@ -2,15 +2,9 @@
 // The share of the stage angles from which a point is lit.
 #include "optics/lit_fraction.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_tracer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using optics::writable_radius_mm;

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "optics/projector_frames.hpp"
+#include "testing.hpp"
 
 using namespace vam::optics;
 using vam::model::StackInfo;

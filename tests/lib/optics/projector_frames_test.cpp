@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/projector_frames.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "optics/flatland_movie.hpp"
 #include "optics/private/sample_taps.hpp"
+#include "testing.hpp"
 
 using namespace vam::optics;
 using vam::Image;

@@ -2,11 +2,10 @@
 // The rays of one row as CSV.
 #include "optics/ray_list.hpp"
 
-#include <doctest/doctest.h>
-
 #include <sstream>
 
 #include "optics/resample_stack.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

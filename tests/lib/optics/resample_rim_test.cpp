@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Resampling where numbers are round and columns fall on the rim of the vial: every plan is finite and bounded, covers
 // what is seen, and is what traced rays say.
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <numbers>
-#include <optional>
-#include <random>
-#include <vector>
 
 #include "base/image.hpp"
 #include "base/index.hpp"
@@ -18,6 +10,7 @@
 #include "optics/resample.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_tracer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optics;

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/resample.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/writable_radius.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optics;

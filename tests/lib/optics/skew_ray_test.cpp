@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/skew_ray.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
 #include "oracle/ray_tracer.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optics;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/slice_place.hpp"
 
-#include <doctest/doctest.h>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using optics::SlicePlace;

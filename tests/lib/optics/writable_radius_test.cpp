@@ -2,11 +2,7 @@
 // How far from the axis a printer writes.
 #include "optics/writable_radius.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using optics::writable_radius_mm;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A part beyond the writable radius, judged by rays deposited one by one.
-#include <doctest/doctest.h>
-
-#include <cmath>
-
 #include "lib/optimize/printed_part.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "oracle/skew_dose.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -2,19 +2,14 @@
 // The proof of how good any light could be: held by light that is tried, by the exact optimum, and ray by ray.
 #include "optimize/run/certify.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <random>
 #include <span>
-#include <vector>
 
 #include "lib/optimize/parts.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/simplex.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

@@ -2,12 +2,9 @@
 // Response curves in closed form.
 #include "optimize/target/cure_curve.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <limits>
 
-#include "fault_of.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

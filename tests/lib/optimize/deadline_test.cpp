@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that must end in time, by a clock that advances as it is asked.
-#include <doctest/doctest.h>
-
-#include <vector>
-
 #include "lib/optimize/volumes.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light for what is left of a dose.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "lib/optimize/volumes.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
-
-#include "base/error.hpp"
 #include "lib/optimize/parts.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/private/loss.hpp"
 #include "optimize/target/surface_band.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

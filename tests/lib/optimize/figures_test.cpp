@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How slices become passes and jobs, and their figures those of a volume.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "optimize/run/private/jobs.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "optimize/target/schedule.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

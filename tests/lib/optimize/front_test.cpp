@@ -2,10 +2,9 @@
 // The front of duration against window.
 #include "optimize/run/front.hpp"
 
-#include <doctest/doctest.h>
-
 #include "lib/optimize/volumes.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -2,13 +2,10 @@
 // The slices that decide the exposure.
 #include "optimize/run/limited_by.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "lib/optimize/volumes.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "base/error.hpp"
-#include "base/text/text.hpp"
+#include "base/text.hpp"
 #include "lib/optimize/parts.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/private/loss.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The widest window that limited light can have: against the exact linear program, and against apg.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "lib/optimize/parts.hpp"
 #include "optimize/run/even_dose.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/simplex.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

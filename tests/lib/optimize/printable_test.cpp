@@ -2,11 +2,7 @@
 // Whether there is anything to print.
 #include "optimize/run/printable.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lib/optimize/printed_part.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <set>
-#include <string>
 
+#include "testing.hpp"
 #include "trials.hpp"
 
 using parts::judge;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/run/prolongation.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

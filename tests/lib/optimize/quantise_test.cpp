@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/run/quantise.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
 #include <set>
 
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -2,18 +2,13 @@
 // Projections for printers off their settings: scenarios are what those printers do, and the prints hold.
 #include "optimize/methods/private/robust.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
+#include "base/parallel.hpp"
 #include "light/operators/make_operator.hpp"
 #include "light/simulation/simulation.hpp"
 #include "model/tolerances.hpp"
 #include "optimize/run/yield.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -2,18 +2,11 @@
 // Points of the design's surface: where they lie, what their doses cost, and that prints come out to size.
 #include "optimize/methods/private/surface_points.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <iterator>
-#include <numbers>
-#include <random>
 
 #include "lib/optimize/parts.hpp"
 #include "oracle/part_2d.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is asked of slices: checks at the door, thin slices, weights, inserts.
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <utility>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "lib/optimize/parts.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "optimize/target/slice_reader.hpp"
 #include "optimize/target/void_rule.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

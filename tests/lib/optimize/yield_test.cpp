@@ -2,12 +2,8 @@
 // The printers that are drawn for the yield: the part is that of the printer as set.
 #include "optimize/run/yield.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <vector>
-
 #include "model/magnification.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::optimize;

@@ -2,10 +2,9 @@
 // What of a part is missing: across the limit of the slabs that are read at a time, and where nothing is.
 #include "plot/missing.hpp"
 
-#include <doctest/doctest.h>
-
 #include <numeric>
-#include <vector>
+
+#include "testing.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;

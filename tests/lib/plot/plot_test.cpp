@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/plot.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 
 #include "io/image/image_file.hpp"
 #include "plot/image_figure.hpp"
+#include "testing.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;

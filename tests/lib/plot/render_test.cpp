@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/render.hpp"
 
-#include <doctest/doctest.h>
-
 #include <cstdlib>
-#include <vector>
 
 #include "plot/canvas.hpp"
+#include "testing.hpp"
 
 using namespace vam::plot;
 using vam::Rgb;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What cures, is missing or too much, in a picture.
-#include <doctest/doctest.h>
-
 #include <tuple>
-#include <vector>
 
 #include "plot/view.hpp"
+#include "testing.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;

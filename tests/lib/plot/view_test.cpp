@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/view.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <numbers>
 
-#include "base/error.hpp"
-#include "fault_of.hpp"
 #include "io/image/image_file.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "lib/io/scratch.hpp"
 #include "plot/private/insert_sections.hpp"
+#include "testing.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/curethrough/column_correction.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-#include "base/error.hpp"
 #include "oracle/simplex.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using resin::ExposureMode;

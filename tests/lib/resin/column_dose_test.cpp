@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/curethrough/column_dose.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
-
-#include "base/error.hpp"
 #include "oracle/beer_law.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using resin::ExposureMode;

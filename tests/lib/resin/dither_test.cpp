@@ -2,10 +2,7 @@
 // Error diffusion into grey levels.
 #include "resin/dither.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::resin;

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/response_fit.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <limits>
-#include <random>
-#include <vector>
 
-#include "base/error.hpp"
 #include "resin/response.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using resin::PhotodiodeReading;

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/response.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using vam::resin::GreyLevels;
 using vam::resin::Response;

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/curethrough/slice_correction.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <random>
 
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "resin/curethrough/column_correction.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using resin::ExposureMode;

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/curethrough/stack_dose.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-#include "base/error.hpp"
 #include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/cure_map.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/curethrough/sweep.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
 #include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/gaps.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

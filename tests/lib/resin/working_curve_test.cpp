@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/working_curve.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <random>
-
-#include "base/error.hpp"
 #include "base/stats/student.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using resin::CuredSample;

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/exposure_plan.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-#include "fault_of.hpp"
 #include "light/simulation/simulation.hpp"
 #include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::score;

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/grey_score.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
-
-#include "base/error.hpp"
-#include "base/text/json.hpp"
-#include "fault_of.hpp"
+#include "base/json.hpp"
+#include "testing.hpp"
 
 using namespace vam::score;
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/score.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
+#include "testing.hpp"
 
 using vam::score::Score;
 using vam::score::ScoreOptions;

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/volumes.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "fault_of.hpp"
 #include "lib/io/scratch.hpp"
 #include "session/dose_score.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::session;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <initializer_list>
 
 #include "sim/controllers/motor.hpp"
+#include "testing.hpp"
 
 using vam::sim::MotorSettings;
 using vam::sim::SimMotor;

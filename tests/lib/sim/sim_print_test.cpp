@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The simulated print against independent solvers: light against the deposition oracle, views against traced bodies,
 // the resin against closed forms.
-#include <doctest/doctest.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <numeric>
 
-#include "fault_of.hpp"
 #include "lib/curing_bench.hpp"
 #include "metrology/ost/ost.hpp"
 #include "oracle/bench_views.hpp"
@@ -21,6 +16,7 @@
 #include "sim/bench/private/deposit.hpp"
 #include "sim/bench/private/sight_lines.hpp"
 #include "sim/bench/world.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::sim;

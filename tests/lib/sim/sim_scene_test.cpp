@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "sim/bench/scene.hpp"
 #include "sim/bench/world.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::sim;

@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The simulators against their makers' documents, byte by byte and without our backends: a case for each behaviour that
 // a driver might believe otherwise. The sources are named in lib/sim/controllers.
-#include <doctest/doctest.h>
-
-#include <functional>
 #include <map>
 #include <memory>
-#include <string>
 
-#include "base/error.hpp"
-#include "base/text/json.hpp"
+#include "base/json.hpp"
 #include "device/os/clock.hpp"
-#include "fault_of.hpp"
 #include "sim/controllers/dlp.hpp"
 #include "sim/controllers/gcs.hpp"
 #include "sim/controllers/grbl.hpp"
 #include "sim/controllers/relay.hpp"
 #include "sim/controllers/tic.hpp"
 #include "sim/controllers/zaber.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::sim;

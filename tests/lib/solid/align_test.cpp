@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/mesh/align.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 
 #include "base/random.hpp"
@@ -16,6 +11,7 @@
 #include "solid/mesh/surface_samples.hpp"
 #include "solid/shapes/shapes.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

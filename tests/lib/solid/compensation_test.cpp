@@ -2,18 +2,12 @@
 // A print that shrinks and overcures corrects its design, judged by closed distances to the design.
 #include "solid/voxel/compensation.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <string>
-
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/distance_band.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/mesh/surface_samples.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

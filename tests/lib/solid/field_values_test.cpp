@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fields at many points at once.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "solid/shapes/shapes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

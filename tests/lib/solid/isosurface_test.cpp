@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/voxel/isosurface.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts from a stack of images.
-#include <doctest/doctest.h>
-
-#include <vector>
-
 #include "model/grid.hpp"
 #include "solid/voxel/part.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -2,12 +2,8 @@
 // Thin walls, gaps and pieces of meshes against those that they were made with.
 #include "solid/mesh/part_surface.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "oracle/meshes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

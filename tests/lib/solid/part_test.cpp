@@ -2,12 +2,8 @@
 // What the summary of a filled grid counts.
 #include "solid/voxel/part.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <vector>
-
-#include "model/dose/dose_metrics.hpp"
+#include "model/dose_metrics.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -2,14 +2,9 @@
 // Where parts land, and which grid holds them.
 #include "solid/voxel/placement.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <string>
-
-#include "base/error.hpp"
 #include "oracle/meshes.hpp"
 #include "solid/shapes/shapes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -2,14 +2,9 @@
 // What errors of a surface do to the pose of its alignment.
 #include "solid/mesh/pose_response.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "lib/meshes.hpp"
 #include "solid/mesh/surface_samples.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -2,14 +2,9 @@
 // What repair finds and does, counted on meshes with known damage.
 #include "solid/mesh/repair.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "base/error.hpp"
 #include "oracle/meshes.hpp"
 #include "oracle/polygon_soup.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -2,18 +2,11 @@
 // Shapes against volumes in closed form, and the catalogue against bad input.
 #include "solid/shapes/shapes.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <numeric>
-#include <random>
-#include <vector>
 
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "solid/shapes/private/cell_fraction.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -2,11 +2,7 @@
 // What is said of walls, rods and gaps that voxels are too coarse for.
 #include "solid/voxel/size_doubt.hpp"
 
-#include <doctest/doctest.h>
-
-#include <functional>
-#include <string>
-#include <vector>
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -6,13 +6,10 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <random>
 
 #include "lib/meshes.hpp"
 #include "solid/mesh/height_map.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -2,18 +2,14 @@
 // Coverage against exact volumes, and what damage does to it.
 #include "solid/voxel/voxelize.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
 #include <utility>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "oracle/convex.hpp"
 #include "oracle/meshes.hpp"
 #include "solid/mesh/repair.hpp"
 #include "solid/voxel/placement.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

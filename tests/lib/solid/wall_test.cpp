@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/voxel/wall.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <numbers>
-#include <vector>
-
 #include "solid/voxel/private/neck.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -2,18 +2,11 @@
 // Surfaces around meshes of any state: they are closed, and lie between the mesh and its offset.
 #include "solid/wrap/wrap.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-
-#include "base/error.hpp"
 #include "lib/meshes.hpp"
 #include "oracle/meshes.hpp"
 #include "solid/mesh/holes.hpp"
 #include "solid/mesh/repair.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::solid;

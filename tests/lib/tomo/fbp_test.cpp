@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tomo/fbp.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
-#include "base/error.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::tomo;

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tomo/filtered_projections.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
-
+#include "testing.hpp"
 #include "tomo/fbp.hpp"
 
 using namespace vam;

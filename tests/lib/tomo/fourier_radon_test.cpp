@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tomo/fourier_radon.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <vector>
-
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::tomo;

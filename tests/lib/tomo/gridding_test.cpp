@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tomo/private/gridding.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <complex>
-#include <numbers>
+
+#include "testing.hpp"
 
 using namespace vam::tomo;
 

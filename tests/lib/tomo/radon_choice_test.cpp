@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tomo/radon_choice.hpp"
 
-#include <doctest/doctest.h>
-
-#include <numbers>
+#include "testing.hpp"
 
 using namespace vam::tomo;
 

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tomo/radon.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <numbers>
-#include <random>
-#include <string>
-#include <vector>
 
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "oracle/strip_radon.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::tomo;

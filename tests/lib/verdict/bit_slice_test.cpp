@@ -2,12 +2,7 @@
 // Bits of a slice, against the voxels one by one.
 #include "verdict/private/bit_slice.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
+#include "testing.hpp"
 
 using namespace vam;
 using verdict::BitSlice;

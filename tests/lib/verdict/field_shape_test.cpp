@@ -2,16 +2,9 @@
 // Tunnels against closed forms, and against pieces, cavities and cells of a whole volume counted one by one.
 #include "verdict/private/field_shape.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <functional>
-#include <optional>
-#include <random>
-#include <vector>
+
+#include "testing.hpp"
 
 using namespace vam;
 

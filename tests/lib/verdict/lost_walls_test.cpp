@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <vector>
-
 #include "base/index.hpp"
+#include "testing.hpp"
 #include "verdict/defect_voxels.hpp"
 #include "verdict/unresolved.hpp"
 

@@ -2,16 +2,10 @@
 // Pieces of solids of voxels, against a flood fill.
 #include "verdict/print_pieces.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
 #include <cstdlib>
-#include <functional>
-#include <random>
-#include <vector>
 
 #include "lib/verdict/printed_volume.hpp"
+#include "testing.hpp"
 #include "verdict/defect_voxels.hpp"
 #include "verdict/private/bit_slice.hpp"
 #include "verdict/private/field_shape.hpp"

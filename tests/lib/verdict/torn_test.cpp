@@ -2,14 +2,8 @@
 // Torn sets, against their definition on the whole volume.
 #include "verdict/private/torn.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <random>
-#include <vector>
-
 #include "lib/verdict/printed_volume.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::test;

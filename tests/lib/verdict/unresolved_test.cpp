@@ -2,9 +2,7 @@
 // Walls and gaps that voxels are too coarse for.
 #include "verdict/unresolved.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
+#include "testing.hpp"
 
 using namespace vam;
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verdict/verdict.hpp"
 
-#include <doctest/doctest.h>
-
-#include "base/text/json.hpp"
-#include "base/text/text.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::verdict;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/vdb/coarser.hpp"
 
-#include <doctest/doctest.h>
-
 #include <numeric>
-#include <vector>
 
 #include "lib/io/vdb_volumes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

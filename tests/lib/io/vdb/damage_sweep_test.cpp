@@ -2,15 +2,7 @@
 // Every cut and many corruptions of every format that is parsed by foreign libraries or by hand: status 0 or 65, never
 // a signal, never long, never much memory. VAM_TRIALS corruptions a format, 200 by default; ctest --preset long has
 // 2000.
-#include <doctest/doctest.h>
 #include <sys/resource.h>
-
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "io/mesh/file.hpp"
 #include "io/settings/printer_file.hpp"
@@ -20,6 +12,7 @@
 #include "lib/io/cpu_time.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "lib/io/zip_writer.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

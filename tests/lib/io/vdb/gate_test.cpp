@@ -2,14 +2,10 @@
 // What cannot be a part, a weight or a dose is refused with file, voxel and remedy before light is computed from it.
 #include "io/vdb/gate.hpp"
 
-#include <doctest/doctest.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
-#include <string>
-#include <vector>
-
-#include "fault_of.hpp"
 #include "lib/io/vdb_volumes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

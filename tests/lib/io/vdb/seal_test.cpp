@@ -7,22 +7,16 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <doctest/doctest.h>
 #include <xxhash.h>
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <functional>
 #include <map>
-#include <random>
-#include <string>
 
-#include "base/text/printable.hpp"
-#include "fault_of.hpp"
+#include "base/printable.hpp"
 #include "lib/io/exr_stacks.hpp"
 #include "lib/io/vdb_volumes.hpp"
+#include "testing.hpp"
 #include "trials.hpp"
 
 using namespace vam;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
 #include <openvdb/tools/LevelSetSphere.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "io/vdb/private/passage.hpp"
 #include "lib/io/vdb_volumes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cstdint>
 #include <cstring>
-#include <string>
 
 #include "lib/io/vdb_volumes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
-#include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "io/vdb/covered.hpp"
 #include "lib/io/vdb_volumes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

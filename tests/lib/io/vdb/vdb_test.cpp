@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/vdb/vdb.hpp"
 
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <limits>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "lib/io/vdb_volumes.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::io;

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a call throws, for tests of errors.
+// What unit tests begin with: doctest, what most of them take of the standard, and what a call throws.
 #pragma once
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <functional>
+#include <numbers>
 #include <optional>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 
