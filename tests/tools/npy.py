@@ -3,6 +3,7 @@
 
     npy.py make FILE TYPE SHAPE [ORDER]   the numbers 0, 1, 2, ... mod 101 of that type ('<f4', '>u2'), shape 2,3,4, by
                                           their place in C order, stored in order C or F
+    npy.py of FILE SHAPE EXPRESSION       '<f4', of 3 axes, by an expression of the places k, j and i along them
     npy.py show FILE                      shape, then the values in C order, on one line
     npy.py head FILE DICTIONARY           a header with that text and no values
     npy.py cuts FILE STEP                 FILE.0, FILE.STEP, ...: its beginnings
@@ -34,6 +35,15 @@ def make(path, kind, shape, order="C"):
                                            *values))
 
 
+def of(path, shape, expression):
+    sizes = tuple(int(n) for n in shape.split(","))
+    value = compile(expression, path, "eval")
+    values = [eval(value, vars(math), {"k": k, "j": j, "i": i}) for k, j, i in itertools.product(*map(range, sizes))]
+    with open(path, "wb") as out:
+        out.write(head("{'descr': '<f4', 'fortran_order': False, 'shape': %s, }" % (sizes,)))
+        out.write(struct.pack("<%df" % len(values), *values))
+
+
 def show(path):
     data = open(path, "rb").read()
     size = struct.unpack("<H", data[8:10])[0]
@@ -51,4 +61,4 @@ def cuts(path, step):
 if sys.argv[1] == "head":
     open(sys.argv[2], "wb").write(head(sys.argv[3]))
 else:
-    {"make": make, "show": show, "cuts": cuts}[sys.argv[1]](*sys.argv[2:])
+    {"make": make, "of": of, "show": show, "cuts": cuts}[sys.argv[1]](*sys.argv[2:])

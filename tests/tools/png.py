@@ -6,6 +6,7 @@
     png.py sum FILE                 sum of all samples
     png.py colours FILE             number of different colours
     png.py text FILE keyword        a tEXt chunk
+    png.py make FILE width height LEVEL   an image of 8 bits; LEVEL is an expression of x and y
 """
 import struct
 import sys
@@ -50,6 +51,12 @@ def read(path):
 
 
 def main(verb, path, *rest):
+    if verb == "make":
+        sys.dont_write_bytecode = True
+        from scans import write_png
+        level = compile(rest[2], path, "eval")
+        rows = [[eval(level, {"x": x, "y": y}) for x in range(int(rest[0]))] for y in range(int(rest[1]))]
+        return write_png(path, rows, 8)
     width, height, depth, channels, rows, texts = read(path)
     if verb == "size":
         print(width, height, depth, channels)

@@ -15,13 +15,14 @@ import sys
 import zlib
 
 
-def write_png(path, rows):
-    raw = b"".join(b"\0" + struct.pack(">%dH" % len(row), *[min(65535, max(0, round(v))) for v in row]) for row in rows)
+def write_png(path, rows, bits=16):
+    kind, full = ">%d" + ("H" if bits == 16 else "B"), (1 << bits) - 1
+    raw = b"".join(b"\0" + struct.pack(kind % len(row), *[min(full, max(0, round(v))) for v in row]) for row in rows)
 
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), 16, 0, 0, 0, 0)) +
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), bits, 0, 0, 0, 0)) +
                    chunk(b"IDAT", zlib.compress(raw, 1)) + chunk(b"IEND", b""))
 
 

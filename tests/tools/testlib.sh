@@ -13,6 +13,10 @@ ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS  # what is preloaded 
 number=0
 failures=0
 
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"  # stacks, images and arrays without our own readers and writers
+png="python3 $VAM_SOURCE/tests/tools/png.py"
+npy="python3 $VAM_SOURCE/tests/tools/npy.py"
+
 sanitized() { ldd "$(command -v vam-slice)" | grep -q libasan; }  # by AddressSanitizer, which changes calls and memory
 
 report() {  # report STATUS NAME: one TAP line
@@ -146,9 +150,22 @@ box() (  # box X Y Z: an OFF mesh of that size, 12 triangles, the axis through i
   done
 )
 
+boxes() (  # boxes 'X Y Z [DX DY DZ]'...: an OFF mesh of such boxes, each moved by DX, DY and DZ
+  count=$#
+  echo "OFF $((8 * count)) $((12 * count)) 0"
+  for one; do
+    # shellcheck disable=SC2086
+    set -- $one
+    box "$1" "$2" "$3" | awk -v x="${4:-0}" -v y="${5:-0}" -v z="${6:-0}" 'NR > 2 && NF == 3 { print $1 + x, $2 + y, $3 + z }'
+  done
+  for first in $(seq 0 8 $((8 * count - 1))); do
+    box 1 1 1 | awk -v n="$first" 'NF == 4 { print 3, $2 + n, $3 + n, $4 + n }'
+  done
+)
+
 tiny_print() {  # tiny_print FILE: three projections, and printer.toml with a projector of 64 x 48 pixels for them
   printf '%s\n' '[projector]' 'columns = 64' 'rows = 48' 'pixel_mm = 0.26' 'axis_column = 31.5' 'axis_row = 40' >printer.toml
-  python3 "$VAM_SOURCE/tests/tools/exr.py" make "$1" space=projector width=64 height=36 count=3
+  $exr make "$1" space=projector width=64 height=36 count=3
 }
 
 small_printer() {  # a projector of 64 x 8 pixels of 0.26 mm; 36 frames a turn at 1 frame per second and 10 deg/s
