@@ -37,7 +37,7 @@ volumes fall half.vdb 0.75 0 rest.vdb
 ok 'doses of several projections' vam-optimize $resin --angles 90 part.vdb --delivered quarter.vdb --delivered rest.vdb --init whole.exr --iterations 10 -o two.exr --report two.json
 holds 'add up' "($(json two.json delivered.part_mean_percent) - $(json rest.json delivered.part_mean_percent)) ^ 2 < 1e-6 && ($(pw two.json) - $(pw rest.json)) ^ 2 < 1e-8"
 ok 'as many turns as are left' $rest --turns 1 --iterations 10 -o one.exr --report one.json
-is 'which the light states, as its full scale' "$(vam-check one.exr >/dev/null; python3 "$VAM_SOURCE/tests/tools/exr.py" attr one.exr vam:shown_turns)" 1
+is 'which the light states, as its full scale' "$(vam-check one.exr >/dev/null; $exr attr one.exr vam:shown_turns)" 1
 vam-dose $resin one.exr --like part.vdb -o once.vdb
 volumes sum half.vdb once.vdb 1 total.vdb
 vam-score $resin total.vdb --target part.vdb --report total.json >/dev/null
@@ -50,13 +50,9 @@ holds 'the projections print there' "$(json aside.score.json ver) == 0 && ($(pw 
 vam-dose $resin aside.exr --like part.vdb --exposure-plan -o aside.vdb
 vam-score $resin aside.vdb --target part.vdb --report aside.score.json >/dev/null
 holds 'and not where the printer file has the axis' "$(json aside.score.json ver) > 0"
-is 'whose axis they state all the same' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr aside.exr vam:printer)" "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr whole.exr vam:printer)"
+is 'whose axis they state all the same' "$($exr attr aside.exr vam:printer)" "$($exr attr whole.exr vam:printer)"
 holds 'are enough' "$(json one.json turns) == 1 && $(json one.json ver) == 0"
 
-misuse --delivered --init vam-optimize $resin --angles 90 part.vdb --delivered half.vdb -o none.exr
-misuse --delivered --method $rest --method osmo -o none.exr
-misuse --delivered --shortest $rest --shortest -o none.exr
-fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --angles 90 part.vdb --delivered half.vdb --init whole.exr -o none.exr
 vam-dose whole.exr --like part.vdb -o relative.vdb
 fails 65 "relative.vdb: the dose is in units of 'relative', not mJ/cm3" vam-optimize $resin --angles 90 part.vdb --delivered relative.vdb --init whole.exr -o none.exr
 vam-dose $resin whole.exr -o other.vdb

@@ -4,7 +4,6 @@
 # input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 poses="python3 $VAM_SOURCE/tests/tools/poses.py"
-exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 
 $poses wobble 60 0.3 >wobble.csv
 $poses sink 60 1 >sink.csv
@@ -124,12 +123,8 @@ sed 's/,0,vial/,99999,vial/' wobble.csv >far.csv
 fails 65 'check the unit' vam-optimize --angles 60 --poses far.csv part.vdb -o none.exr
 $poses wobble 60 3 >wide.csv
 fails 65 'align the vial' vam-optimize --angles 60 --poses wide.csv part.vdb -o none.exr
-: >empty.csv
-fails 65 'empty.csv' vam-optimize --angles 60 --poses empty.csv part.vdb -o none.exr
 head -n 31 wobble.csv >half.csv
 fails 65 'one pose per frame' vam-dose plain.exr --poses half.csv --like part.vdb -o none.vdb
-misuse --helix --poses vam-optimize --angles 60 --poses wobble.csv --helix 5 part.vdb -o none.exr
-misuse --poses '--geometry vial' vam-optimize --angles 60 --geometry parallel --poses wobble.csv part.vdb -o none.exr
 fails 64 'in-plane' vam-dose wobble.exr --in-plane --like part.vdb -o none.vdb
 fails 64 'do not return' vam-optimize --angles 60 --poses sink.csv --turns 3 --set resin.absorption_per_mm=0.01 \
   --set resin.critical_dose_mj_cm3=100 part.vdb -o none.exr

@@ -53,7 +53,6 @@ fails 65 'outside its columns 0 to 199' vam-optimize disc.vdb --set projector.co
 glass='--set vial.wall_mm=0.5 --set projector.telecentric=true --set resin.absorption_per_mm=0.05'
 bar='--shape box:x=13.5,y=13.5,z=2 --voxel 0.4'
 fails 65 'beyond the writable radius of 8.301 mm .*; give --scale 0.839 or --fit-writable to make it fit, or --extent resin to accept' vam-slice $bar -o bar.vdb
-misuse --fit-writable '--extent resin' vam-slice $bar --fit-writable --extent resin -o bar.vdb
 fails 65 "beyond the resin's edge at 12.2 mm" vam-slice $bar $glass --scale 1.5 --extent resin -o bar.vdb
 quiet 'a bar beyond the writable radius' vam-slice $bar $glass --extent resin -o bar.vdb
 vam-optimize bar.vdb $glass --angles 60 -o bar.exr 2>err
