@@ -83,13 +83,9 @@ fails 66 'none/begun.tsv: cannot open it; make some parts of the queue first' va
 
 rm -rf batch; mkdir batch
 fails 64 '^vam-batch: no queue given; see --help' vam-batch
-fails 66 'none.tsv: cannot open it' vam-batch none.tsv
-fails 64 "--jobs: '0' is not a whole number" vam-batch --jobs 0 parts.tsv
 fails 64 "--folder: 'a b' must consist of" vam-batch --folder 'a b' parts.tsv
-fails 64 '--sbatch: requires --slurm' vam-batch --sbatch -n1 parts.tsv
 fails 64 '--slurmy: unknown option' vam-batch --slurmy parts.tsv
 refused() { queue "$3" "$4"; fails "$1" "$2" vam-batch parts.tsv; }  # refused STATUS REGEX LINE LINE
-refused 65 "line 1: 'mesh' is not one of the columns part, name, printer, slice, optimize, pieces" 'mesh' 'box.off'
 refused 65 "line 1: 'part name' is not one of the columns" 'part name' 'box.off'
 refused 65 "line 1: names the column 'part' twice" 'part|part' 'box.off|box.off'
 refused 65 'line 1: must name the columns, part among them' 'name' 'box'

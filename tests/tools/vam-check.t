@@ -32,7 +32,7 @@ fails 65 'changed.exr: image [0-9]* changed after it was written \(sealed [0-9a-
 fails 65 'changed.exr: image [0-9]* changed' vam-resample changed.exr -o frames.exr
 ok '--fast checks headers only' vam-check --fast bad.exr
 for file in sino.exr plain.exr pipe.exr own.exr; do
-  case $file in pipe.exr) vam-sinogram part.vdb >pipe.exr;; own.exr) python3 "$VAM_SOURCE/tests/tools/exr.py" make own.exr;; esac
+  case $file in pipe.exr) vam-sinogram part.vdb >pipe.exr;; own.exr) $exr make own.exr;; esac
   ok "--fast of $file" vam-check --fast $file
   head -c -1 $file >cut.exr
   fails 65 'cut.exr: is cut off after [0-9]* bytes, before the last of its [0-9]* images ends' vam-check --fast cut.exr
@@ -95,7 +95,7 @@ fails 65 'stdin: image [0-9]* changed|stdin: the seals' sh -c 'vam-check <cut.ex
 head -c -16 pipe.exr >cut.exr
 fails 65 'is cut off' vam-check cut.exr
 
-python3 "$VAM_SOURCE/tests/tools/exr.py" make foreign.exr
+$exr make foreign.exr
 is 'a file of another program is reported as unsealed' "$(vam-check foreign.exr | head -n 1) $?" \
   'foreign.exr: stack of 3 images, unsealed 0'
 ok 'other tools read an unsealed file' vam-resample foreign.exr -o r.exr
@@ -220,9 +220,6 @@ fails 65 'long.mkv: trailing data after the video, from byte [0-9]+ on; write it
 vam-project light.exr --printer printer.toml -o looks.mp4 2>.log/err && mv looks.mp4 looks.mkv
 is 'one without checksums, whatever its name' "$(vam-check looks.mkv | head -n 1)" 'looks.mkv: video, unsealed'
 
-fails 66 'none.exr: cannot open' vam-check none.exr
-: >empty.vdb
-fails 65 'empty.vdb: is empty' vam-check empty.vdb
 python3 -c "
 import struct, sys
 head = struct.pack('<qIIIB', 0x56444220, 224, 10, 0, 1) + b'6219db8d-fccc-86ea-8254-68b69b4f6c3f'
@@ -236,10 +233,8 @@ is 'beside it the others are checked' "$? $(grep -c '^part.vdb: grid' out)" '65 
 { cat part.vdb; echo more; } >long.vdb
 fails 65 'long.vdb: trailing data after the last grid, from byte [0-9]+ on, is not a volume' vam-check long.vdb
 fails 65 'stdin: trailing data after the last grid' sh -c 'vam-sinogram - -o x.exr <long.vdb'
-fails 64 -- vam-check --slow
 fails 74 'No space left' sh -c 'vam-check part.vdb >/dev/full'
 fails 65 'a.off' vam-check --seal a.off
-fails 65 'b.vdb: is a volume \(OpenVDB\), not a printer file' vam-check --seal b.vdb
 mkfifo fifo
 # Videos of other programs that begin later, or leave frames out, are whole.
 ffmpeg -v error -f lavfi -i testsrc=size=64x48:rate=16:duration=2 -pix_fmt gray -c:v ffv1 -output_ts_offset 1.5 late.mkv

@@ -105,22 +105,13 @@ holds "larger errors above the true dose" "$(json sweep.json points.4.ratio) > 0
 is "the ratio is in the report" "$(json sweep.json points.2.df_over_dc)" 5.0
 
 # ---- wrong inputs
-fails 64 'no command' vam-curethrough
-fails 64 "min-irradiance: 120 mW/cm2 is not below the maximum" \
-  vam-curethrough correct ladder.vdb --min-irradiance 120 --max-irradiance 110 -o no.exr
 fails 65 'slice height: 50 um is more than ten absorbance heights' \
   vam-curethrough correct ladder.vdb $light --absorbance-height 4 -o no.exr
-fails 65 'nothing cures; increase the intensity, or print at' vam-curethrough correct ladder.vdb --max-irradiance 10 -o no.exr
 printf 'grey,intensity\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
 fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough correct ladder.vdb $light --response falling.csv -o no.exr
-fails 64 '0.5 is out of range' vam-curethrough correct ladder.vdb $light --omega-max 0.5 -o no.exr
 fails 65 'do not match' vam-curethrough model full.exr --target ladder.vdb $light
 fails 64 'ladder.vdb is a part itself; give slices' vam-curethrough model ladder.vdb --target egg.vdb $light
-fails 66 'nowhere.vdb' vam-curethrough correct nowhere.vdb $light -o no.exr
-mkdir letters; echo hello >letters/letter.txt
-fails 73 'letter.txt, which is not a frame' vam-curethrough correct ladder.vdb $light --png letters
 fails 64 'the table is printed on standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
-fails 64 "neither df_over_dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
 ok "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb
 fails 65 'no voxel reaches a coverage of 1; there is nothing to print' vam-curethrough correct thin.vdb $light --min-coverage 1 -o no.exr
 done_testing

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 . "$VAM_SOURCE/tests/tools/testlib.sh"
@@ -6,9 +5,6 @@
 shim=$(vam-sim stage --shim)
 is 'the library to preload exists' "$(test -f "$shim" && echo yes)" yes
 
-fails 64 'kinds: ' vam-sim stage --fault broken
-fails 64 'unknown option' vam-sim stage --speed-eror 1
-fails 64 'out of range' vam-sim stage --jitter -1
 fails 73 'cannot be written' vam-sim stage --log missing/log
 fails 73 'cannot create the link' vam-sim stage --link missing/link
 
