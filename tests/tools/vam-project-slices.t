@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # vam-project with the slices of vam-curethrough: a timed sequence, to images, stack, video and screen.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-exr="python3 $VAM_SOURCE/tests/tools/exr.py"
-png="python3 $VAM_SOURCE/tests/tools/png.py"
 
 # 1000 mm/h and 50 um a slice are 50/9 slices per second.
 light="--max-irradiance 110 --min-irradiance 0.2"
@@ -37,12 +35,9 @@ vam-project slices.exr $screen --print-speed 2000 -o fast.exr --compression none
 is "another print speed" "$($exr attr fast.exr vam:fps) $($exr attr fast.exr vam:speed_mm_h)" "11.1111111 2000"
 quiet "live, by elapsed time" vam-project levels $screen --fps 200 -o null: --max-missed 1 --report live.json
 holds "shown for 53 / 200 s, about 16 blanks" "$(json live.json lit_flips) >= 10 && $(json live.json lit_flips) <= 24"
-misuse --fps --print-speed vam-project slices.exr $screen --fps 5 --print-speed 1000 -o x/
 fails 64 'levels does not state its slice height; give --fps' vam-project levels $screen --print-speed 1000 -o x/
 misuse --turns slices vam-project slices.exr $screen --turns 2 -o x/
-misuse --plan slices vam-project slices.exr $screen --plan -o null:
 misuse --from slices vam-project slices.exr $screen --from 90 -o null: --log why
-misuse --turns slices vam-project slices.exr $screen --turns 2 -o null: --log why
 vam-slice --shape disc-grid --voxel 0.4 | vam-sinogram --filter ram-lak --negative clip | vam-resample | vam-project --bits 8 --speed 120 --fps 2 -o turn.exr
 fails 65 'contains frames at stage angles' vam-project turn.exr -o x/
 fails 65 'voxels of 0.05 mm are not the projector.s pixels of 0.065 mm' vam-project slices.exr -o x/
