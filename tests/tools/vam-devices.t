@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK camera COST 110
 # vam-devices: every kind of device is found with its device string and with the reason why it cannot be used, in 3 s.
@@ -28,7 +27,6 @@ is 'every kind, also one without devices' "$(cut -c1-8 list | tr -d ' ' | sort -
 is 'and in a report' "$(json found.json schema)" vam-devices/1
 list --report -
 is 'which replaces the list on standard output' "$(json list schema)" vam-devices/1
-fails 64 'unknown option|unexpected|not expected' vam-devices --aks
 fails 64 '' vam-devices ttyUSB0
 fails 73 'missing' vam-devices --report missing/x.json
 
@@ -142,7 +140,6 @@ is 'a printer file that cannot be read keeps no light on' "$status $(grep -c 'dl
 fails 64 'names no stage and no relay' vam-devices off
 fails 69 'no such device' vam-devices off --light dlpc900:
 fails 64 'unknown scheme|is not one of|use one of' vam-devices off --light laser:1
-fails 64 'unknown device scheme|use one of' vam-devices off --light none --set stage.device=motor:1
 is 'simulated ones end with their tools' "$(vam-devices off --light none --set stage.device=sim:)" 'stage    sim:  simulated: ends with its tool'
 
 # Screens: of a card, of another program's card, of a desktop.

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 . "$VAM_SOURCE/tests/tools/testlib.sh"
@@ -8,15 +7,8 @@ stage() { command=$1; shift; LD_PRELOAD=$shim vam-stage "$command" --device "gcs
 turning() { tail -n 1 truth | grep -q '"speed_deg_s":1\.0'; }
 
 # Wrong options open nothing.
-fails 64 'no command' vam-stage
-fails 64 'unknown scheme' vam-stage identify --device usb:1 --log events
-fails 64 'did you mean baud' vam-stage identify --device gcs:/dev/null?boud=1
-fails 64 'out of range' vam-stage spin --turns 0
-fails 64 "'0' is not one of 1, -1" vam-stage spin --direction 0 --log events
-fails 65 "200 deg/s exceeds the stage's maximum of 90; give a lower --speed" vam-stage move --device sim: --home --angle 9 --speed 200
 fails 64 'not a number' vam-stage spin --device 'sim:?jitter=much'
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/null
-fails 69 'not a serial port' vam-stage identify --device gcs:/dev/ttyS_none
 fails 73 'cannot be written' vam-stage identify --log missing/log
 
 # The stage is that of the printer file; a simulated one is used only if it is named.
@@ -39,11 +31,9 @@ is 'a simulated stage is marked in the log' "$(grep -c '"device":"sim:".*"simula
 rm events
 
 # The simulator inside the tool.
-ok 'identify' vam-stage identify --device sim:
 vam-stage identify --set stage.device=sim: >about
 is 'the model is marked as simulated' "$(json about model) $(json about simulated)" 'C-863.11 true'
 ok 'ports' vam-stage ports
-fails 64 '.--angle: missing' vam-stage move --device sim: --home
 quiet 'move' vam-stage move --device 'sim:?acceleration=1000&start_angle=3' --home --angle 20 --speed 80
 fails 65 '20 deg is beyond its limits of travel, -36000 to 10 deg; give another --angle' vam-stage move --device 'sim:?acceleration=1000&start_angle=3&max_angle=10' --home --angle 20
 vam-stage follow --device sim: --duration 0.2 --rate 50 >samples
@@ -54,7 +44,6 @@ holds 'and reports the stage angle' "$(sed -n 3p samples | json /dev/stdin angle
 stage_up --acceleration 5000 --max-speed 720
 stage identify >about
 is 'identify over the line' "$(json about serial)" 0116012345
-fails 64 'no axis 7; the controller has 1' env LD_PRELOAD=$shim vam-stage move --angle 0 --device "gcs:$PWD/stage?axis=7" --log why
 quiet 'home over the line' stage home
 stage spin --speed 360 --run-up 0.25 --turns 1 --log events >samples 2>errors
 is 'spin has status 0' $? 0
