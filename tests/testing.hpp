@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "indices.hpp"
 
 /// The fault of the Error that the call throws; nothing when it throws none.
 inline std::optional<vam::Fault> fault_of(const std::function<void()>& call) {

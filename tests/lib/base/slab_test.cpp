@@ -14,13 +14,9 @@ TEST_CASE("pack puts image s into lane s and zeroes the rest; unpack undoes it")
   Slab slab(37, 23);
   std::fill(slab.values.begin(), slab.values.end(), -1.0F);
   pack(images.data(), count, slab);
-  for (int s = 0; s < lanes; ++s) {
-    for (int y = 0; y < 23; ++y) {
-      for (int x = 0; x < 37; ++x) {
-        const float want = s < count ? static_cast<float>(1 + x + 37 * (y + 23 * s)) : 0.0F;
-        CHECK(slab.at(x, y)[s] == want);
-      }
-    }
+  for (const auto [s, y, x] : indices(lanes, 23, 37)) {
+    const float want = s < count ? static_cast<float>(1 + x + 37 * (y + 23 * s)) : 0.0F;
+    CHECK(slab.at(x, y)[s] == want);
   }
   std::vector<float> back(images.size(), 0.0F);
   unpack(slab, count, back.data());
@@ -42,10 +38,8 @@ TEST_CASE("rows side by side are 0 where there are none, and one by one they are
       std::vector<float> together(stride * count, -1.0F);
       const int wide = given <= 8 ? 8 : lanes;
       side_by_side(from, count, together.data(), stride, wide);
-      for (int i = 0; i < count; ++i) {
-        for (int s = 0; s < stride; ++s) {
-          CHECK(together[i * stride + s] == (s >= wide ? -1.0F : s < given ? rows[s][i] : 0.0F));
-        }
+      for (const auto [i, s] : indices(count, stride)) {
+        CHECK(together[i * stride + s] == (s >= wide ? -1.0F : s < given ? rows[s][i] : 0.0F));
       }
       std::vector<std::vector<float>> back(given, std::vector<float>(count));
       std::vector<float*> to;

@@ -101,17 +101,13 @@ TEST_CASE("C and Fortran order, axes in any order, planes, and more images than 
       REQUIRE(all.size.images == sizes[axes[0]]);
       REQUIRE(all.size.rows == sizes[axes[1]]);
       REQUIRE(all.size.columns == sizes[axes[2]]);
-      for (int image = 0; image < all.size.images; ++image) {
-        for (int row = 0; row < all.size.rows; ++row) {
-          for (int column = 0; column < all.size.columns; ++column) {
-            std::array<int, 3> own{};
-            own[axes[0]] = image;
-            own[axes[1]] = row;
-            own[axes[2]] = column;
-            const int place = fortran ? own[0] + 20 * (own[1] + 3 * own[2]) : (own[0] * 3 + own[1]) * 4 + own[2];
-            CHECK(at(all, image, row, column) == static_cast<float>(place));
-          }
-        }
+      for (const auto [image, row, column] : indices(all.size.images, all.size.rows, all.size.columns)) {
+        std::array<int, 3> own{};
+        own[axes[0]] = image;
+        own[axes[1]] = row;
+        own[axes[2]] = column;
+        const int place = fortran ? own[0] + 20 * (own[1] + 3 * own[2]) : (own[0] * 3 + own[1]) * 4 + own[2];
+        CHECK(at(all, image, row, column) == static_cast<float>(place));
       }
     }
   }

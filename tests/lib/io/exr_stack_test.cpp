@@ -252,9 +252,8 @@ TEST_CASE("rows of RLE: dark, equal, even, steps and noise, of any width, as Ope
       };
       unsigned state = 1;
       Image image(width, info.height);
-      for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < width; ++x) image(x, y) = pixel(x, y, state = state * 1664525U + 1013904223U);
-      }
+      for (const auto [y, x] : indices(image.height, width))
+        image(x, y) = pixel(x, y, state = state * 1664525U + 1013904223U);
       StackWriter writer(folder / "s.exr", info, {narrow, "rle"});
       writer.write(image);
       writer.write(Image(width, info.height));

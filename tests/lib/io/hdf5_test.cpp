@@ -159,12 +159,10 @@ TEST_CASE("HDF5 axes in every order give the same as NumPy's transpose") {
       const Read all = read(path, {"", axes});
       std::size_t at = 0;
       std::array<int, 3> of{};
-      for (int k = 0; k < shape[axes[0]]; ++k) {
-        for (int r = 0; r < shape[axes[1]]; ++r) {
-          for (int c = 0; c < shape[axes[2]]; ++c, ++at) {
-            of[axes[0]] = k, of[axes[1]] = r, of[axes[2]] = c;
-            REQUIRE(all.values[at] == static_cast<float>((of[0] * 3 + of[1]) * 4 + of[2]));
-          }
+      for (const auto [k, r] : indices(shape[axes[0]], shape[axes[1]])) {
+        for (int c = 0; c < shape[axes[2]]; ++c, ++at) {
+          of[axes[0]] = k, of[axes[1]] = r, of[axes[2]] = c;
+          REQUIRE(all.values[at] == static_cast<float>((of[0] * 3 + of[1]) * 4 + of[2]));
         }
       }
     } while (std::next_permutation(axes.begin(), axes.end()));

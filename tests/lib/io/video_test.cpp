@@ -19,11 +19,9 @@ namespace {
 // Smooth light on black with a hard edge that moves: what projector frames look like.
 GreyImage frame_of(int n, int bits, int width = 64, int height = 48) {
   GreyImage image(width, height, bits);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const double light = x < 10 + n ? 0 : 0.5 + 0.5 * std::sin(0.2 * x + 0.1 * y + n);
-      image(x, y) = static_cast<std::uint16_t>(std::lround(light * image.full()));
-    }
+  for (const auto [y, x] : indices(height, width)) {
+    const double light = x < 10 + n ? 0 : 0.5 + 0.5 * std::sin(0.2 * x + 0.1 * y + n);
+    image(x, y) = static_cast<std::uint16_t>(std::lround(light * image.full()));
   }
   return image;
 }
@@ -143,9 +141,7 @@ TEST_CASE("H.264 shows the frames, odd sizes padded") {
   double error = 0;
   for (; reader.next(image); ++count) {
     const GreyImage sent = frame_of(count, 8, 63, 47);
-    for (int y = 0; y < 47; ++y) {
-      for (int x = 0; x < 63; ++x) error += std::abs(image(x, y) - sent(x, y));
-    }
+    for (const auto [y, x] : indices(47, 63)) error += std::abs(image(x, y) - sent(x, y));
   }
   CHECK(count == 20);
   CHECK(error / (20.0 * 63 * 47) < 4);  // mean error in levels; measured 1.2, black frames would give 100

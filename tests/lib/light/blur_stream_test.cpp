@@ -49,13 +49,9 @@ TEST_CASE("a point becomes a Gaussian, wherever it is") {
     const std::vector<Image> out = blurred(point(17, 9, 2, z), 1.3);
     REQUIRE(out.size() == 17);
     double most = 0;
-    for (int k = 0; k < 17; ++k) {
-      for (int j = 0; j < 17; ++j) {
-        for (int i = 0; i < 17; ++i) {
-          const double want = at(i - 9) * at(j - 2) * at(k - z);
-          most = std::max(most, std::abs(out[k](i, j) - want));
-        }
-      }
+    for (const auto [k, j, i] : indices(17, 17, 17)) {
+      const double want = at(i - 9) * at(j - 2) * at(k - z);
+      most = std::max(most, std::abs(out[k](i, j) - want));
     }
     CHECK(most < 1e-7);  // float rounding
   }

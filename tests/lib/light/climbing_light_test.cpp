@@ -60,11 +60,8 @@ bool opaque(int i, int j, int slice) { return i >= 6 && i < 12 && j >= 8 && j < 
 
 std::vector<Slab> insert_of(const Bench& b) {
   Slab insert(b.slow.size, b.slow.size);
-  for (int j = 0; j < b.slow.size; ++j) {
-    for (int i = 0; i < b.slow.size; ++i) {
-      for (int k = 0; k < b.slow.slices; ++k) insert.at(i, j)[k] = opaque(i, j, k) ? 1.0F : 0.0F;
-    }
-  }
+  for (const auto [j, i, k] : indices(b.slow.size, b.slow.size, b.slow.slices))
+    insert.at(i, j)[k] = opaque(i, j, k) ? 1.0F : 0.0F;
   return {insert};
 }
 
@@ -72,12 +69,8 @@ std::vector<Slab> insert_of(const Bench& b) {
 Difference compare(const Bench& b, const std::function<double(int, int, int)>& intensity,
                    std::span<const Slab> inserts = {}) {
   std::vector<Image> rows(static_cast<std::size_t>(b.slow.rows), Image(b.slow.columns, b.slow.angles));
-  for (int r = 0; r < b.slow.rows; ++r) {
-    for (int a = 0; a < b.slow.angles; ++a) {
-      for (int c = 0; c < b.slow.columns; ++c) {
-        rows[r](c, a) = static_cast<float>(intensity(c, r, a));
-      }
-    }
+  for (const auto [r, a, c] : indices(b.slow.rows, b.slow.angles, b.slow.columns)) {
+    rows[r](c, a) = static_cast<float>(intensity(c, r, a));
   }
   const auto slices = static_cast<std::size_t>(b.slow.slices);
   const std::vector<Image> fast = parts::doses_of(VialOperator(b.setup, inserts), rows, slices);
@@ -215,11 +208,7 @@ TEST_CASE("a displaced vial, a displaced part and neither have three different d
   const Bench b = posed(bench(90, -1.8, 0.05, 1, 0), model::Moves::vial, 0.9, 0);
   const auto doses = [&](const VialSetup& setup) {
     std::vector<Image> rows(20, Image(48, 20));
-    for (int r = 0; r < 20; ++r) {
-      for (int a = 0; a < 20; ++a) {
-        for (int c = 0; c < 48; ++c) rows[r](c, a) = static_cast<float>(smooth(c, r, a));
-      }
-    }
+    for (const auto [r, a, c] : indices(20, 20, 48)) rows[r](c, a) = static_cast<float>(smooth(c, r, a));
     return parts::doses_of(VialOperator(setup), rows, 10);
   };
   VialSetup part = b.setup;

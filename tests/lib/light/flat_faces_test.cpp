@@ -13,14 +13,12 @@ std::vector<FlatFace> faces_of_table(const model::Grid& grid, double radius_px, 
   FlatFaceFinder finder(grid);
   for (int k = 0; k < grid.nz; ++k) {
     std::vector<float> slice(grid.slice_size(), 0.0F);
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        const double x = i - 0.5 * (grid.nx - 1);
-        const double y = j - 0.5 * (grid.ny - 1);
-        const bool stem = std::abs(x) < 2 && std::abs(y) < 2 && k < last;
-        const bool disc = std::hypot(x, y) <= radius_px && k >= first && k < last;
-        slice[static_cast<std::size_t>(j) * grid.nx + i] = stem || disc ? 1.0F : 0.0F;
-      }
+    for (const auto [j, i] : indices(grid.ny, grid.nx)) {
+      const double x = i - 0.5 * (grid.nx - 1);
+      const double y = j - 0.5 * (grid.ny - 1);
+      const bool stem = std::abs(x) < 2 && std::abs(y) < 2 && k < last;
+      const bool disc = std::hypot(x, y) <= radius_px && k >= first && k < last;
+      slice[static_cast<std::size_t>(j) * grid.nx + i] = stem || disc ? 1.0F : 0.0F;
     }
     finder.add(1, slice.data());
   }

@@ -22,16 +22,12 @@ const Turn turn{angles, 0, 2 * std::numbers::pi / angles};
 // Coverage of pixels by the discs of the grid that lie within `reach`, from 8 x 8 points each.
 Image disc_grid(const model::Grid& grid, double reach) {
   Image image(grid.nx, grid.ny);
-  for (int j = 0; j < grid.ny; ++j) {
-    for (int i = 0; i < grid.nx; ++i) {
-      for (int k = 0; k < 64; ++k) {
-        const double x = grid.x_mm(i + (k % 8 - 3.5) / 8);
-        const double y = grid.y_mm(j + (k / 8 - 3.5) / 8);
-        const double cx = 35 * std::round(x / 35);
-        const double cy = 35 * std::round(y / 35);
-        if (std::hypot(cx, cy) + 8 < reach && std::hypot(x - cx, y - cy) < 8) image(i, j) += 1.0F / 64;
-      }
-    }
+  for (const auto [j, i, k] : indices(grid.ny, grid.nx, 64)) {
+    const double x = grid.x_mm(i + (k % 8 - 3.5) / 8);
+    const double y = grid.y_mm(j + (k / 8 - 3.5) / 8);
+    const double cx = 35 * std::round(x / 35);
+    const double cy = 35 * std::round(y / 35);
+    if (std::hypot(cx, cy) + 8 < reach && std::hypot(x - cx, y - cy) < 8) image(i, j) += 1.0F / 64;
   }
   return image;
 }
@@ -91,15 +87,13 @@ struct Threshold {
 double iou_at(const Case& c, const Image& dose, float threshold, double low, double high) {
   double both = 0;
   double either = 0;
-  for (int j = 0; j < c.grid.ny; ++j) {
-    for (int i = 0; i < c.grid.nx; ++i) {
-      const double r = std::hypot(c.grid.x_mm(i), c.grid.y_mm(j));
-      if (r < low || r >= high) continue;
-      const bool print = dose(i, j) >= threshold;
-      const bool part = c.target(i, j) >= 0.5F;
-      both += print && part ? 1 : 0;
-      either += print || part ? 1 : 0;
-    }
+  for (const auto [j, i] : indices(c.grid.ny, c.grid.nx)) {
+    const double r = std::hypot(c.grid.x_mm(i), c.grid.y_mm(j));
+    if (r < low || r >= high) continue;
+    const bool print = dose(i, j) >= threshold;
+    const bool part = c.target(i, j) >= 0.5F;
+    both += print && part ? 1 : 0;
+    either += print || part ? 1 : 0;
   }
   return both / either;
 }

@@ -45,11 +45,9 @@ TEST_CASE("without an insert it is the attenuated pair, which is another impleme
   const Slab a = parts::dose_of(shadowed, g);
   const Slab b = parts::dose_of(plain, g);
   double worst = 0;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      if (std::hypot(x - 23.5, y - 23.5) < 22)
-        worst = std::max(worst, static_cast<double>(std::abs(*a.at(x, y) - *b.at(x, y))));
-    }
+  for (const auto [y, x] : indices(size, size)) {
+    if (std::hypot(x - 23.5, y - 23.5) < 22)
+      worst = std::max(worst, static_cast<double>(std::abs(*a.at(x, y) - *b.at(x, y))));
   }
   CHECK(worst < 1e-2);  // of sums of order 5; e^{-mu s} is taken at the column here and at the voxel there
 }

@@ -31,10 +31,8 @@ VialSetup setup_of(const View& view, int n, double size_mm, int angles = 360, in
 
 Image sinogram(const VialSetup& setup, const std::function<double(double, double)>& intensity) {
   Image image(setup.projector.columns, setup.turn.rows);
-  for (int a = 0; a < image.height; ++a) {
-    for (int c = 0; c < image.width; ++c) {
-      image(c, a) = static_cast<float>(intensity(setup.projector.x_mm(c), a * setup.turn.step_rad));
-    }
+  for (const auto [a, c] : indices(image.height, image.width)) {
+    image(c, a) = static_cast<float>(intensity(setup.projector.x_mm(c), a * setup.turn.step_rad));
   }
   return image;
 }
@@ -67,13 +65,11 @@ TEST_CASE("a matched telecentric bench lights only the resin, and evenly") {
   VialSetup setup = setup_of(matched, 64, 30);
   const double window = chief_ray(matched, 0).transmittance;
   const Image dose = dose_of(setup, Image(440, 360, 1.0F));
-  for (int j = 0; j < 64; ++j) {
-    for (int i = 0; i < 64; ++i) {
-      const double r = radius_of(setup.grid, i, j);
-      // A voxel of 0.47 mm that is wholly resin; sums of 360 floats.
-      if (r < 12.3) CHECK(std::abs(dose(i, j) - turn_rad * window) < 1e-5 * turn_rad);
-      if (r > 12.7) CHECK(dose(i, j) == 0);
-    }
+  for (const auto [j, i] : indices(64, 64)) {
+    const double r = radius_of(setup.grid, i, j);
+    // A voxel of 0.47 mm that is wholly resin; sums of 360 floats.
+    if (r < 12.3) CHECK(std::abs(dose(i, j) - turn_rad * window) < 1e-5 * turn_rad);
+    if (r > 12.7) CHECK(dose(i, j) == 0);
   }
 }
 
@@ -85,12 +81,10 @@ TEST_CASE("intensity weighted by J/T exposes the writable circle evenly, through
                                  return ray.hits ? ray.jacobian / ray.transmittance : 0.0;
                                }));
     double most = 0;
-    for (int j = 0; j < 96; ++j) {
-      for (int i = 0; i < 96; ++i) {
-        // Up to where J/T, which grows without bounds at the rim, is curved on the scale of a column.
-        if (radius_of(setup.grid, i, j) > 0.9 * reach_mm(view)) continue;
-        most = std::max(most, std::abs(dose(i, j) / turn_rad - 1));
-      }
+    for (const auto [j, i] : indices(96, 96)) {
+      // Up to where J/T, which grows without bounds at the rim, is curved on the scale of a column.
+      if (radius_of(setup.grid, i, j) > 0.9 * reach_mm(view)) continue;
+      most = std::max(most, std::abs(dose(i, j) / turn_rad - 1));
     }
     CHECK(most < 1e-4);
   }
@@ -102,18 +96,16 @@ TEST_CASE("absorption: the mean of e^{-mu s} over all directions") {
   const double window = chief_ray(matched, 0).transmittance;
   const Image dose = dose_of(setup, Image(440, 360, 1.0F));
   double most = 0;
-  for (int j = 0; j < 48; ++j) {
-    for (int i = 0; i < 48; ++i) {
-      const double r = radius_of(setup.grid, i, j);
-      if (r > 11) continue;
-      double want = 0;
-      for (int k = 0; k < 2000; ++k) {
-        const double b = turn_rad * k / 2000;
-        want += std::exp(-(std::sqrt(12.7 * 12.7 - r * r * std::cos(b) * std::cos(b)) + r * std::sin(b)) / 12.7);
-      }
-      want *= window * turn_rad / 2000;
-      most = std::max(most, std::abs(dose(i, j) / want - 1));
+  for (const auto [j, i] : indices(48, 48)) {
+    const double r = radius_of(setup.grid, i, j);
+    if (r > 11) continue;
+    double want = 0;
+    for (int k = 0; k < 2000; ++k) {
+      const double b = turn_rad * k / 2000;
+      want += std::exp(-(std::sqrt(12.7 * 12.7 - r * r * std::cos(b) * std::cos(b)) + r * std::sin(b)) / 12.7);
     }
+    want *= window * turn_rad / 2000;
+    most = std::max(most, std::abs(dose(i, j) / want - 1));
   }
   // Interpolation between the table's radii, 0.25 mm apart: 0.25^2 / 8 * d2/dr2 of mu sqrt(R^2 - r^2) at 11 mm
   // = 3.9e-4.
@@ -126,11 +118,9 @@ TEST_CASE("the exact correction gives the parallel dose, with order 2 in the pit
     const Image dose =
         dose_of(setup, sinogram(setup, [](double x_p, double theta) { return corrected(vial, x_p, theta); }));
     double most = 0;
-    for (int j = 0; j < setup.grid.ny; ++j) {
-      for (int i = 0; i < setup.grid.nx; ++i) {
-        if (radius_of(setup.grid, i, j) > 0.95 * reach_mm(vial)) continue;
-        most = std::max(most, std::abs(dose(i, j) - back_projected(setup.grid.x_mm(i), setup.grid.y_mm(j))));
-      }
+    for (const auto [j, i] : indices(setup.grid.ny, setup.grid.nx)) {
+      if (radius_of(setup.grid, i, j) > 0.95 * reach_mm(vial)) continue;
+      most = std::max(most, std::abs(dose(i, j) - back_projected(setup.grid.x_mm(i), setup.grid.y_mm(j))));
     }
     return most / back_projected(3, 1);
   };
@@ -205,12 +195,10 @@ TEST_CASE("a coarse voxel holds the mean dose of its parts") {
   const VialSetup fine = setup_of(vial, 160, 8);
   const Image whole = dose_of(coarse, sinogram(coarse, stripes));
   const Image parts = dose_of(fine, sinogram(fine, stripes));
-  for (int j = 0; j < 16; ++j) {
-    for (int i = 0; i < 16; ++i) {
-      double mean = 0;
-      for (int k = 0; k < 100; ++k) mean += parts(10 * i + k % 10, 10 * j + k / 10) / 100;
-      CHECK(whole(i, j) == doctest::Approx(mean).epsilon(0.005));
-    }
+  for (const auto [j, i] : indices(16, 16)) {
+    double mean = 0;
+    for (int k = 0; k < 100; ++k) mean += parts(10 * i + k % 10, 10 * j + k / 10) / 100;
+    CHECK(whole(i, j) == doctest::Approx(mean).epsilon(0.005));
   }
 }
 

@@ -55,10 +55,8 @@ TEST_CASE("A* is the dose of rays counted one by one") {
     setup.absorption_per_mm = 0.07;
     const VialOperator light(setup);
     Slab image(light.image().width, light.image().height);
-    for (int a = 0; a < image.height; ++a) {
-      for (int c = 0; c < image.width; ++c) {
-        *image.at(c, a) = static_cast<float>(shine(setup.projector.x_mm(c), a * setup.turn.step_rad));
-      }
+    for (const auto [a, c] : indices(image.height, image.width)) {
+      *image.at(c, a) = static_cast<float>(shine(setup.projector.x_mm(c), a * setup.turn.step_rad));
     }
     Slab g(light.sinogram().width, light.sinogram().height);
     light.collapse(image, g);

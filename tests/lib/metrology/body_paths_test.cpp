@@ -42,15 +42,11 @@ double chord_mm(double t_mm, double theta, double z_mm, double x_mm, double y_mm
 std::vector<Image> sinograms_of(double x_mm, double y_mm, double radius, double density) {
   const model::Grid g = grid();
   std::vector<Image> out(heights, Image(columns, angles));
-  for (int k = 0; k < heights; ++k) {
-    for (int a = 0; a < angles; ++a) {
-      for (int t = 0; t < columns; ++t) {
-        for (const double part : {-0.4, -0.2, 0.0, 0.2, 0.4}) {
-          const double t_mm = (t + part - 0.5 * (columns - 1)) * voxel_mm;
-          const double theta = 2 * std::numbers::pi * a / angles;
-          out[k](t, a) += static_cast<float>(0.2 * density * chord_mm(t_mm, theta, g.z_mm(k), x_mm, y_mm, radius));
-        }
-      }
+  for (const auto [k, a, t] : indices(heights, angles, columns)) {
+    for (const double part : {-0.4, -0.2, 0.0, 0.2, 0.4}) {
+      const double t_mm = (t + part - 0.5 * (columns - 1)) * voxel_mm;
+      const double theta = 2 * std::numbers::pi * a / angles;
+      out[k](t, a) += static_cast<float>(0.2 * density * chord_mm(t_mm, theta, g.z_mm(k), x_mm, y_mm, radius));
     }
   }
   return out;

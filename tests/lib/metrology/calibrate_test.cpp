@@ -87,10 +87,8 @@ TEST_CASE("Flat field: the illumination profile is recovered, dead pixels are in
   FrameMean frames;
   for (int n = 0; n < 20; ++n) {
     Image frame(48, 32);
-    for (int y = 0; y < frame.height; ++y) {
-      for (int x = 0; x < frame.width; ++x) {
-        frame(x, y) = static_cast<float>(100 + (x == 20 && y == 9 ? 0 : 800 * truth(x, y)) + 8 * unit(random));
-      }
+    for (const auto [y, x] : indices(frame.height, frame.width)) {
+      frame(x, y) = static_cast<float>(100 + (x == 20 && y == 9 ? 0 : 800 * truth(x, y)) + 8 * unit(random));
     }
     frames.add(frame);
   }
@@ -101,18 +99,14 @@ TEST_CASE("Flat field: the illumination profile is recovered, dead pixels are in
   CHECK(flat.pixel_sigma == doctest::Approx(8 / std::sqrt(20) / flat.level.value).epsilon(0.05));
   CHECK(flat.unevenness == doctest::Approx(0.19).epsilon(0.1));
   double mean = 0;
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 48; ++x) mean += truth(x, y) / 48 / 32;
-  }
+  for (const auto [y, x] : indices(32, 48)) mean += truth(x, y) / 48 / 32;
   int inside = 0;
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 48; ++x) {
-      if (x == 20 && y == 9) {
-        CHECK(flat.field(x, y) == doctest::Approx(truth(x, y) / mean).epsilon(0.02));
-        continue;
-      }
-      if (std::abs(flat.field(x, y) - truth(x, y) / mean) < 2 * flat.pixel_sigma + 0.001) ++inside;
+  for (const auto [y, x] : indices(32, 48)) {
+    if (x == 20 && y == 9) {
+      CHECK(flat.field(x, y) == doctest::Approx(truth(x, y) / mean).epsilon(0.02));
+      continue;
     }
+    if (std::abs(flat.field(x, y) - truth(x, y) / mean) < 2 * flat.pixel_sigma + 0.001) ++inside;
   }
   CHECK(inside >= 0.95 * 48 * 32);
   CHECK(fault_of([&] { frames.add(Image(4, 4)); }) == Fault::data);

@@ -11,13 +11,9 @@ namespace {
 
 model::Volume box(const model::Grid& grid, double x0, double x1) {
   model::Volume volume{grid, std::vector<float>(grid.size())};
-  for (int k = 0; k < grid.nz; ++k) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        const bool in = grid.x_mm(i) > x0 && grid.x_mm(i) < x1 && std::abs(grid.y_mm(j)) < 1.05;
-        volume.slice(k)[j * grid.nx + i] = in ? 1.0F : 0.0F;
-      }
-    }
+  for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) {
+    const bool in = grid.x_mm(i) > x0 && grid.x_mm(i) < x1 && std::abs(grid.y_mm(j)) < 1.05;
+    volume.slice(k)[j * grid.nx + i] = in ? 1.0F : 0.0F;
   }
   return volume;
 }
@@ -72,10 +68,8 @@ TEST_CASE("the threshold from a noisy standard cylinder reproduces its diameter 
   std::mt19937 random(5);
   std::normal_distribution<float> noise(0, 0.03F);
   const auto edge = [](double r_mm) { return 0.9 * 0.5 * std::erfc((r_mm - 6) / (0.4 * std::numbers::sqrt2)); };
-  for (int y = 0; y < 110; ++y) {
-    for (int x = 0; x < 120; ++x) {
-      overhead(x, y) = static_cast<float>(edge(pixel_mm * std::hypot(x - 62.3, y - 53.8))) + noise(random);
-    }
+  for (const auto [y, x] : indices(110, 120)) {
+    overhead(x, y) = static_cast<float>(edge(pixel_mm * std::hypot(x - 62.3, y - 53.8))) + noise(random);
   }
   const Threshold found = gelation_threshold(overhead, pixel_mm, 12);
   CHECK(found.circle.x == doctest::Approx(62.3).epsilon(0.002));
@@ -94,12 +88,10 @@ TEST_CASE("a standard that the edge of the volume cuts is refused") {
   const auto overhead = [](int size, double off_px) {
     Image image(size, size);
     const double middle = 0.5 * (size - 1);
-    for (int y = 0; y < size; ++y) {
-      for (int x = 0; x < size; ++x) {
-        const double r = std::hypot(x - middle - off_px, y - middle);
-        const bool seen = std::hypot(x - middle, y - middle) < 0.5 * size;
-        image(x, y) = seen ? static_cast<float>(1 / (1 + std::exp(2 * (r - 30)))) : 0.0F;
-      }
+    for (const auto [y, x] : indices(size, size)) {
+      const double r = std::hypot(x - middle - off_px, y - middle);
+      const bool seen = std::hypot(x - middle, y - middle) < 0.5 * size;
+      image(x, y) = seen ? static_cast<float>(1 / (1 + std::exp(2 * (r - 30)))) : 0.0F;
     }
     return image;
   };

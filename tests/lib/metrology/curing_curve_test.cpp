@@ -194,12 +194,8 @@ model::Volume planned_dose(const model::Printer& printer, const GreyImage& frame
   info.z_start_mm = -(frame.height - 1 - printer.projector.axis_row) * info.row_mm;
   info.angle_step_deg = 360.0 / angles;
   std::vector<Image> rows(frame.height, Image(frame.width, angles));
-  for (int r = 0; r < frame.height; ++r) {
-    for (int a = 0; a < angles; ++a) {
-      for (int c = 0; c < frame.width; ++c) {
-        rows[frame.height - 1 - r](c, a) = static_cast<float>(frame(c, r)) / 255.0F;
-      }
-    }
+  for (const auto [r, a, c] : indices(frame.height, angles, frame.width)) {
+    rows[frame.height - 1 - r](c, a) = static_cast<float>(frame(c, r)) / 255.0F;
   }
   const model::Grid grid = model::centred_grid(36, 36, 42, 0.2, -4.1);
   std::vector<Image> slices(grid.nz);

@@ -22,13 +22,11 @@ bool stands_out(double x, double y) {
 solid::HeightMap design(double pixel_mm) {
   const int n = static_cast<int>(9 / pixel_mm) | 1;
   solid::HeightMap map{Image(n, n), pixel_mm, -0.5 * (n - 1) * pixel_mm, 0.5 * (n - 1) * pixel_mm};
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const double x = map.x_mm + i * pixel_mm;
-      const double y = map.y_mm - j * pixel_mm;
-      map.heights_mm(i, j) =
-          std::hypot(x, y) > 4.3 ? std::numeric_limits<float>::quiet_NaN() : (stands_out(x, y) ? 4.25F : 3.6F);
-    }
+  for (const auto [j, i] : indices(n, n)) {
+    const double x = map.x_mm + i * pixel_mm;
+    const double y = map.y_mm - j * pixel_mm;
+    map.heights_mm(i, j) =
+        std::hypot(x, y) > 4.3 ? std::numeric_limits<float>::quiet_NaN() : (stands_out(x, y) ? 4.25F : 3.6F);
   }
   return map;
 }
@@ -49,15 +47,13 @@ Image image(const Print& print, double pixel_mm) {
   std::uniform_real_distribution<double> unit(0, 1);
   const double c = std::cos(print.turn_deg * rad_per_deg) / print.scale;
   const double s = std::sin(print.turn_deg * rad_per_deg) / print.scale;
-  for (int j = 0; j < image.height; ++j) {
-    for (int i = 0; i < image.width; ++i) {
-      const double x = (i - 119.5) * pixel_mm - print.x_mm;
-      const double y = (129.5 - j) * pixel_mm - print.y_mm;
-      const double height = stands_out(c * x + s * y, c * y - s * x) ? 0.35 : 0.0;
-      const double noise = print.noise_mm > 0 ? normal(random) : 0;
-      image(i, j) = static_cast<float>(1 + 0.002 * i - 0.001 * j + height + noise);
-      if (unit(random) < 0.01) image(i, j) = std::numeric_limits<float>::quiet_NaN();
-    }
+  for (const auto [j, i] : indices(image.height, image.width)) {
+    const double x = (i - 119.5) * pixel_mm - print.x_mm;
+    const double y = (129.5 - j) * pixel_mm - print.y_mm;
+    const double height = stands_out(c * x + s * y, c * y - s * x) ? 0.35 : 0.0;
+    const double noise = print.noise_mm > 0 ? normal(random) : 0;
+    image(i, j) = static_cast<float>(1 + 0.002 * i - 0.001 * j + height + noise);
+    if (unit(random) < 0.01) image(i, j) = std::numeric_limits<float>::quiet_NaN();
   }
   return image;
 }
@@ -101,9 +97,7 @@ TEST_CASE("soft edges and dents of the base do not change the height") {
     }
   }
   for (int dent = 0; dent < 12; ++dent) {  // 5 % of the base, 0.1 mm deep, at its right edge
-    for (int y = 0; y < 16; ++y) {
-      for (int x = 0; x < 16; ++x) seen(222 + x, 8 + 20 * dent + y) -= 0.1F;
-    }
+    for (const auto [y, x] : indices(16, 16)) seen(222 + x, 8 + 20 * dent + y) -= 0.1F;
   }
   const Relief relief = levelled(seen, pixel_mm);
   const Emboss found = compare_emboss(relief, design(0.037), EmbossAlign::near);

@@ -35,17 +35,15 @@ model::TriangleSoup fine_box(const Vector3& size, int n, const Deform& deform) {
         mesh.points.push_back(deform(p));
       }
     }
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const int a = first + j * (n + 1) + i;
-        const int b = a + n + 1;
-        if (face % 2 == 1) {
-          mesh.triangles.push_back({a, a + 1, b});
-          mesh.triangles.push_back({a + 1, b + 1, b});
-        } else {
-          mesh.triangles.push_back({a, b, a + 1});
-          mesh.triangles.push_back({a + 1, b, b + 1});
-        }
+    for (const auto [j, i] : indices(n, n)) {
+      const int a = first + j * (n + 1) + i;
+      const int b = a + n + 1;
+      if (face % 2 == 1) {
+        mesh.triangles.push_back({a, a + 1, b});
+        mesh.triangles.push_back({a + 1, b + 1, b});
+      } else {
+        mesh.triangles.push_back({a, b, a + 1});
+        mesh.triangles.push_back({a + 1, b, b + 1});
       }
     }
   }
@@ -64,13 +62,11 @@ model::TriangleSoup post(double height, const std::function<double(double, doubl
       mesh.points.push_back({radius_of(phi, z) * std::cos(phi), radius_of(phi, z) * std::sin(phi), z});
     }
   }
-  for (int k = 0; k < up; ++k) {
-    for (int i = 0; i < around; ++i) {
-      const int a = k * around + i;
-      const int b = k * around + (i + 1) % around;
-      mesh.triangles.push_back({a, b, a + around});
-      mesh.triangles.push_back({b, b + around, a + around});
-    }
+  for (const auto [k, i] : indices(up, around)) {
+    const int a = k * around + i;
+    const int b = k * around + (i + 1) % around;
+    mesh.triangles.push_back({a, b, a + around});
+    mesh.triangles.push_back({b, b + around, a + around});
   }
   const int low = static_cast<int>(mesh.points.size());
   mesh.points.push_back({0, 0, 0});

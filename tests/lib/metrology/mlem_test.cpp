@@ -14,9 +14,7 @@ TEST_CASE("the likelihood's maximum of exact sinograms is the image, and pixels 
   geometry.axis_x = geometry.axis_y = 15.5;
   geometry.angle_step_rad = 2 * std::numbers::pi / geometry.angles;
   std::vector<Slab> disc(1, Slab(32, 32));
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) *disc[0].at(x, y) = std::hypot(x - 15.5, y - 15.5) < 6 ? 1.0F : 0.0F;
-  }
+  for (const auto [y, x] : indices(32, 32)) *disc[0].at(x, y) = std::hypot(x - 15.5, y - 15.5) < 6 ? 1.0F : 0.0F;
   std::vector<Slab> sinograms(1, Slab(geometry.columns, geometry.angles));
   tomo::forward(geometry, disc, sinograms);
   std::vector<Slab> images(1, Slab(32, 32));

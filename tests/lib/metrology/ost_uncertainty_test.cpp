@@ -56,13 +56,11 @@ double rms_between(const model::Volume& volume, double inner_mm, double outer_mm
   double sum = 0;
   double count = 0;
   for (int k = g.nz / 4; k < 3 * g.nz / 4; ++k) {
-    for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) {
-        const double r = std::hypot(g.x_mm(i), g.y_mm(j));
-        if (r < inner_mm || r >= outer_mm) continue;
-        sum += std::pow(static_cast<double>(volume.slice(k)[std::ptrdiff_t{j} * g.nx + i]), 2);
-        count += 1;
-      }
+    for (const auto [j, i] : indices(g.ny, g.nx)) {
+      const double r = std::hypot(g.x_mm(i), g.y_mm(j));
+      if (r < inner_mm || r >= outer_mm) continue;
+      sum += std::pow(static_cast<double>(volume.slice(k)[std::ptrdiff_t{j} * g.nx + i]), 2);
+      count += 1;
     }
   }
   return std::sqrt(sum / count);

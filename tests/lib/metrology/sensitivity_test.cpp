@@ -24,12 +24,8 @@ double ripple(double x_mm, double y_mm, double z_mm, double aside_mm) {
 model::Volume ripples(double aside_mm) {
   model::Volume dose{model::centred_grid(40, 40, 30, 0.2, -2.9), {}};
   const model::Grid& g = dose.grid;
-  for (int k = 0; k < g.nz; ++k) {
-    for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) {
-        dose.values.push_back(static_cast<float>(ripple(g.x_mm(i), g.y_mm(j), g.z_mm(k), aside_mm)));
-      }
-    }
+  for (const auto [k, j, i] : indices(g.nz, g.ny, g.nx)) {
+    dose.values.push_back(static_cast<float>(ripple(g.x_mm(i), g.y_mm(j), g.z_mm(k), aside_mm)));
   }
   return dose;
 }
@@ -41,15 +37,11 @@ model::Volume densities(double aside_mm, const SensitivityField& truth, double s
   const ScatterCurve curve = resin_curve();
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, noise);
-  for (int k = 0; k < g.nz; ++k) {
-    for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) {
-        const double z = g.z_mm(k) * stretch_z;
-        const double dose = ripple(g.x_mm(i), g.y_mm(j), z, aside_mm);
-        const double acts = dose * std::exp(truth.log_at(g.x_mm(i), g.y_mm(j), z));
-        scatter.values.push_back(static_cast<float>(curve.saturation * (curve.density(acts) + normal(random))));
-      }
-    }
+  for (const auto [k, j, i] : indices(g.nz, g.ny, g.nx)) {
+    const double z = g.z_mm(k) * stretch_z;
+    const double dose = ripple(g.x_mm(i), g.y_mm(j), z, aside_mm);
+    const double acts = dose * std::exp(truth.log_at(g.x_mm(i), g.y_mm(j), z));
+    scatter.values.push_back(static_cast<float>(curve.saturation * (curve.density(acts) + normal(random))));
   }
   return scatter;
 }

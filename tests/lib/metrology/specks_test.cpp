@@ -18,21 +18,17 @@ constexpr int heights = 30;
 std::vector<Image> cylinder() {
   std::vector<Image> out(heights, Image(columns, angles));
   for (Image& s : out) {
-    for (int a = 0; a < angles; ++a) {
-      for (int t = 0; t < columns; ++t) {
-        const double off = t - 0.5 * (columns - 1) - 8 * std::cos(2 * std::numbers::pi * a / angles);
-        s(t, a) = static_cast<float>(std::sqrt(std::max(0.0, 900 - off * off)) / 30);
-      }
+    for (const auto [a, t] : indices(angles, columns)) {
+      const double off = t - 0.5 * (columns - 1) - 8 * std::cos(2 * std::numbers::pi * a / angles);
+      s(t, a) = static_cast<float>(std::sqrt(std::max(0.0, 900 - off * off)) / 30);
     }
   }
   return out;
 }
 
 void add_spot(std::vector<Image>& sinograms, int angle, double t, double k, double radius, float bright) {
-  for (int j = 0; j < heights; ++j) {
-    for (int x = 0; x < columns; ++x) {
-      if (std::hypot(x - 0.5 * (columns - 1) - t, j - k) <= radius) sinograms[j](x, angle) += bright;
-    }
+  for (const auto [j, x] : indices(heights, columns)) {
+    if (std::hypot(x - 0.5 * (columns - 1) - t, j - k) <= radius) sinograms[j](x, angle) += bright;
   }
 }
 

@@ -15,13 +15,9 @@ template <class Function>
 model::Volume around(double stretch_z, Function value) {
   model::Volume volume{model::centred_grid(61, 61, 61, 0.1, -3), {}};
   const model::Grid& g = volume.grid;
-  for (int k = 0; k < g.nz; ++k) {
-    for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) {
-        const double distance = std::hypot(g.x_mm(i), g.y_mm(j), g.z_mm(k) / stretch_z);
-        volume.values.push_back(static_cast<float>(value(distance)));
-      }
-    }
+  for (const auto [k, j, i] : indices(g.nz, g.ny, g.nx)) {
+    const double distance = std::hypot(g.x_mm(i), g.y_mm(j), g.z_mm(k) / stretch_z);
+    volume.values.push_back(static_cast<float>(value(distance)));
   }
   return volume;
 }

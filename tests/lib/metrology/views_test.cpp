@@ -18,17 +18,15 @@ Image mean_view(int width, int height, double column, double tilt_deg, double no
   std::normal_distribution<double> normal(0, noise);
   const double s = std::sin(tilt_deg * rad_per_deg);
   const double c = std::cos(tilt_deg * rad_per_deg);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const double dx = x - column;
-      const double dy = y - 0.5 * (height - 1);
-      const double across = c * dx - s * dy;
-      const double along = s * dx + c * dy;
-      const double body =
-          std::abs(along) < 0.4 * height ? std::exp(-std::pow(across / 60, 4)) * (1 + 0.3 * std::cos(along / 20)) : 0;
-      const double ring = 0.4 * std::exp(-std::pow((std::abs(across) - 40) / 6, 2));
-      image(x, y) = static_cast<float>(5 + body + ring + (noise > 0 ? normal(random) : 0));
-    }
+  for (const auto [y, x] : indices(height, width)) {
+    const double dx = x - column;
+    const double dy = y - 0.5 * (height - 1);
+    const double across = c * dx - s * dy;
+    const double along = s * dx + c * dy;
+    const double body =
+        std::abs(along) < 0.4 * height ? std::exp(-std::pow(across / 60, 4)) * (1 + 0.3 * std::cos(along / 20)) : 0;
+    const double ring = 0.4 * std::exp(-std::pow((std::abs(across) - 40) / 6, 2));
+    image(x, y) = static_cast<float>(5 + body + ring + (noise > 0 ? normal(random) : 0));
   }
   return image;
 }
@@ -79,11 +77,9 @@ TEST_CASE("the axis of a pin beside it is as certain as the mean view has it") {
       const double angle_deg = 360.0 * i / count;
       const double column = 79.5 + 60 * std::cos(angle_deg * rad_per_deg);
       Image image(160, 96);
-      for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-          const double pin = y > 20 && y < 75 ? 100 * std::clamp(2.5 - std::abs(x - column), 0.0, 1.0) : 0;
-          image(x, y) = static_cast<float>(20 + pin + normal(random));
-        }
+      for (const auto [y, x] : indices(image.height, image.width)) {
+        const double pin = y > 20 && y < 75 ? 100 * std::clamp(2.5 - std::abs(x - column), 0.0, 1.0) : 0;
+        image(x, y) = static_cast<float>(20 + pin + normal(random));
       }
       views.push_back({std::move(image), angle_deg});
     }

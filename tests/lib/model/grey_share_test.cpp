@@ -10,9 +10,8 @@ namespace {
 double share(const std::function<double(double x, double y, double z)>& value) {
   const model::Grid grid = model::centred_grid(24, 24, 24, 1, -11.5);
   return model::grey_share(grid, [&](int k, float* out) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) *out++ = static_cast<float>(value(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)));
-    }
+    for (const auto [j, i] : indices(grid.ny, grid.nx))
+      *out++ = static_cast<float>(value(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)));
   });
 }
 

@@ -13,16 +13,14 @@ TEST_CASE("a smeared projection has the value of the detector's place under each
     const vam::Image image = smear(ramp, detector_mm, angle, canvas);
     REQUIRE(image.width == 14);
     REQUIRE(image.height == 11);
-    for (int r = 0; r < image.height; ++r) {
-      for (int c = 0; c < image.width; ++c) {
-        const double x = (c - canvas.axis_column) * canvas.pixel_mm;
-        const double y = (canvas.axis_row - r) * canvas.pixel_mm;
-        const double place = 4 + (x * std::cos(angle) + y * std::sin(angle)) / detector_mm;
-        CAPTURE(angle);
-        CAPTURE(place);
-        if (std::abs(place) < 1e-9 || std::abs(place - 8) < 1e-9) continue;  // the last pixel may be lit or dark
-        CHECK(image(c, r) == doctest::Approx(place >= 0 && place <= 8 ? place : 0).epsilon(1e-5));
-      }
+    for (const auto [r, c] : indices(image.height, image.width)) {
+      const double x = (c - canvas.axis_column) * canvas.pixel_mm;
+      const double y = (canvas.axis_row - r) * canvas.pixel_mm;
+      const double place = 4 + (x * std::cos(angle) + y * std::sin(angle)) / detector_mm;
+      CAPTURE(angle);
+      CAPTURE(place);
+      if (std::abs(place) < 1e-9 || std::abs(place - 8) < 1e-9) continue;  // the last pixel may be lit or dark
+      CHECK(image(c, r) == doctest::Approx(place >= 0 && place <= 8 ? place : 0).epsilon(1e-5));
     }
   }
 }
@@ -32,9 +30,7 @@ TEST_CASE("the projection at an angle is that of the row, between two rows their
   info.angle_start_deg = 10;
   info.angle_step_deg = 45;
   vam::Image sinogram(3, 8);
-  for (int a = 0; a < 8; ++a) {
-    for (int c = 0; c < 3; ++c) sinogram(c, a) = static_cast<float>(a + 10 * c);
-  }
+  for (const auto [a, c] : indices(8, 3)) sinogram(c, a) = static_cast<float>(a + 10 * c);
   const auto at = [&](double angle_deg, double span_deg) { return projection_at(sinogram, info, angle_deg, span_deg); };
   for (int c = 0; c < 3; ++c) {
     const auto column = static_cast<std::size_t>(c);

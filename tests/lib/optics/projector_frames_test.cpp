@@ -78,11 +78,9 @@ TEST_CASE("at matching pitch a frame is the transpose: row = slice from the top,
   const FrameComposer composer = composed(info, {20, 9, 0.1, 4.0, 0});
   for (const int angle : {0, 3, 11}) {
     const Image frame = composer.frame(angle * 30.0 + 360, 30);
-    for (int r = 0; r < 9; ++r) {
-      for (int c = 0; c < 20; ++c) {
-        const int slice = 6 - r;  // z = 0 is slice 2 and row 4
-        CHECK(frame(c, r) == (slice >= 0 && slice < 5 ? labelled(info, slice)(c, angle) : 0));
-      }
+    for (const auto [r, c] : indices(9, 20)) {
+      const int slice = 6 - r;  // z = 0 is slice 2 and row 4
+      CHECK(frame(c, r) == (slice >= 0 && slice < 5 ? labelled(info, slice)(c, angle) : 0));
     }
   }
 }
@@ -269,13 +267,11 @@ TEST_CASE("flatland: the frames of a turn add up to the dose in closed form") {
       sum[i] += static_cast<double>(frame.values[i]) * 2 * std::numbers::pi / frames;
   }
   double worst = 0;
-  for (int y = 0; y < 41; ++y) {
-    for (int x = 0; x < 61; ++x) {
-      const double r_mm = 0.2 * std::hypot(x - 28, y - 22.5);
-      const double q = r_mm * r_mm / (4 * s_mm * s_mm);
-      const double dose = 2 * std::numbers::pi * std::exp(-q) * std::cyl_bessel_i(0.0, q);
-      worst = std::max(worst, std::abs(sum[y * 61 + x] - dose) / (2 * std::numbers::pi));
-    }
+  for (const auto [y, x] : indices(41, 61)) {
+    const double r_mm = 0.2 * std::hypot(x - 28, y - 22.5);
+    const double q = r_mm * r_mm / (4 * s_mm * s_mm);
+    const double dose = 2 * std::numbers::pi * std::exp(-q) * std::cyl_bessel_i(0.0, q);
+    worst = std::max(worst, std::abs(sum[y * 61 + x] - dose) / (2 * std::numbers::pi));
   }
   CHECK(worst < 1e-3);  // linear interpolation errs by h^2 / 8 s^2 = 5.6e-4 at the crest
 }
@@ -299,24 +295,22 @@ TEST_CASE("flatland: the frames of a made-up sinogram add up to a plain back-pro
   float brightest = 0;
   int at_x = 0;
   int at_y = 0;
-  for (int y = 0; y < 31; ++y) {
-    for (int x = 0; x < 31; ++x) {
-      double dose = 0;  // independent: for each angle, the two columns around the pixel's shadow
-      for (int a = 0; a < 24; ++a) {
-        const double theta = a * std::numbers::pi / 12;
-        const double t = 15 + (x - 15) * std::cos(theta) + (15 - y) * std::sin(theta);
-        if (t < 0 || t > 30) continue;
-        const int left = static_cast<int>(std::floor(t));
-        const double part = t - left;
-        dose += (1 - part) * static_cast<double>(sinogram(left, a)) +
-                (left < 30 ? part * static_cast<double>(sinogram(left + 1, a)) : 0);
-      }
-      CHECK(sum(x, y) == doctest::Approx(dose).epsilon(1e-5));
-      if (sum(x, y) > brightest) {
-        brightest = sum(x, y);
-        at_x = x;
-        at_y = y;
-      }
+  for (const auto [y, x] : indices(31, 31)) {
+    double dose = 0;  // independent: for each angle, the two columns around the pixel's shadow
+    for (int a = 0; a < 24; ++a) {
+      const double theta = a * std::numbers::pi / 12;
+      const double t = 15 + (x - 15) * std::cos(theta) + (15 - y) * std::sin(theta);
+      if (t < 0 || t > 30) continue;
+      const int left = static_cast<int>(std::floor(t));
+      const double part = t - left;
+      dose += (1 - part) * static_cast<double>(sinogram(left, a)) +
+              (left < 30 ? part * static_cast<double>(sinogram(left + 1, a)) : 0);
+    }
+    CHECK(sum(x, y) == doctest::Approx(dose).epsilon(1e-5));
+    if (sum(x, y) > brightest) {
+      brightest = sum(x, y);
+      at_x = x;
+      at_y = y;
     }
   }
   CHECK(at_x == 23);  // 0.8 mm to the right of the axis

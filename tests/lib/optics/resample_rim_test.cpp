@@ -157,10 +157,8 @@ double wave(double x_mm, double radius_mm, double theta) {
 
 Image wave_on(const Detector& detector, double radius_mm, const Turn& turn) {
   Image image(detector.columns, turn.rows);
-  for (int a = 0; a < image.height; ++a) {
-    for (int c = 0; c < image.width; ++c) {
-      image(c, a) = static_cast<float>(wave(detector.x_mm(c), radius_mm, turn.start_rad + a * turn.step_rad));
-    }
+  for (const auto [a, c] : indices(image.height, image.width)) {
+    image(c, a) = static_cast<float>(wave(detector.x_mm(c), radius_mm, turn.start_rad + a * turn.step_rad));
   }
   return image;
 }

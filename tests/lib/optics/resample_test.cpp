@@ -161,11 +161,9 @@ TEST_CASE("direction and angle offset move the part, not the optics") {
   options.direction = -1;
   const Image reversed = apply(plan_to_projector(vial, s.virtual_, s.projector, s.turn, options), in);
   double most = 0;
-  for (int a = 0; a < s.turn.rows; ++a) {
-    for (int c = 0; c < plain.width; ++c) {
-      most = std::max(most, static_cast<double>(std::abs(offset(c, a) - plain(c, (a + 10) % s.turn.rows))));
-      most = std::max(most, static_cast<double>(std::abs(reversed(c, a) - plain(c, (190 - a) % s.turn.rows))));
-    }
+  for (const auto [a, c] : indices(s.turn.rows, plain.width)) {
+    most = std::max(most, static_cast<double>(std::abs(offset(c, a) - plain(c, (a + 10) % s.turn.rows))));
+    most = std::max(most, static_cast<double>(std::abs(reversed(c, a) - plain(c, (190 - a) % s.turn.rows))));
   }
   CHECK(most < 1e-5);  // the fraction of a row, rounded differently
   const Image back = apply(plan_to_virtual(vial, s.projector, s.virtual_, s.turn, options), reversed);

@@ -43,13 +43,11 @@ TEST_CASE("a slice is placed with its middle on the axis, moved right and down b
     const Image& placed = place.place(numbered(3, 2), 0.25F, buffer);
     REQUIRE(placed.width == 10);
     REQUIRE(placed.height == 8);
-    for (int y = 0; y < 8; ++y) {
-      for (int x = 0; x < 10; ++x) {
-        const int column = x - 4 - right;  // the middle one is column 5, the axis
-        const int row = y - 2 - down;      // the rows 2 and 3 have it between them
-        const bool within = column >= 0 && column < 3 && row >= 0 && row < 2;
-        CHECK(placed(x, y) == (within ? static_cast<float>(1 + column + 3 * row) : 0.25F));
-      }
+    for (const auto [y, x] : indices(8, 10)) {
+      const int column = x - 4 - right;  // the middle one is column 5, the axis
+      const int row = y - 2 - down;      // the rows 2 and 3 have it between them
+      const bool within = column >= 0 && column < 3 && row >= 0 && row < 2;
+      CHECK(placed(x, y) == (within ? static_cast<float>(1 + column + 3 * row) : 0.25F));
     }
     model::StackInfo info = slice(3, 2);
     place.apply(info);

@@ -23,11 +23,9 @@ model::Printer printer() {
 parts::Part bar(double voxel_mm) {
   const int side = 2 * static_cast<int>(std::ceil(12.2 / voxel_mm));
   parts::Part part{model::centred_grid(side, side, 1, voxel_mm, 0), {}};
-  for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i) {
-      const auto share = [&](double x) { return std::clamp((half_mm - std::abs(x)) / voxel_mm + 0.5, 0.0, 1.0); };
-      part.voxels.push_back(static_cast<float>(share(part.grid.x_mm(i)) * share(part.grid.y_mm(j))));
-    }
+  for (const auto [j, i] : indices(side, side)) {
+    const auto share = [&](double x) { return std::clamp((half_mm - std::abs(x)) / voxel_mm + 0.5, 0.0, 1.0); };
+    part.voxels.push_back(static_cast<float>(share(part.grid.x_mm(i)) * share(part.grid.y_mm(j))));
   }
   return part;
 }

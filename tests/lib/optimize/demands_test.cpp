@@ -70,11 +70,9 @@ TEST_CASE("the band around the surface: every voxel against every other") {
   std::vector<float> volume(static_cast<std::size_t>(n * n * slices));
   const auto at = [&](int x, int y, int z) -> float& { return volume[(z * n + y) * n + x]; };
   for (int z = 0; z < slices; ++z) {  // a ball and grains
-    for (int y = 0; y < n; ++y) {
-      for (int x = 0; x < n; ++x) {
-        const bool ball = std::hypot(x - 6.0, y - 7.0, z - 4.0) < 3.6;
-        at(x, y, z) = ball != (uniform(random) < 0.004F) ? 0.8F : 0.3F;
-      }
+    for (const auto [y, x] : indices(n, n)) {
+      const bool ball = std::hypot(x - 6.0, y - 7.0, z - 4.0) < 3.6;
+      at(x, y, z) = ball != (uniform(random) < 0.004F) ? 0.8F : 0.3F;
     }
   }
   for (const double reach : {0.5, 1.0, 1.47, 1.8, 3.0}) {
@@ -86,21 +84,15 @@ TEST_CASE("the band around the surface: every voxel against every other") {
     for (int z = 0; z < slices; ++z) {
       std::vector<float> weight(static_cast<std::size_t>(n * n), 1.0F);
       band.clear(z, weight.data());
-      for (int y = 0; y < n; ++y) {
-        for (int x = 0; x < n; ++x) {
-          double nearest = 1e9;  // the surface is midway to the nearest voxel of the other kind
-          for (int w = 0; w < slices; ++w) {
-            for (int v = 0; v < n; ++v) {
-              for (int u = 0; u < n; ++u) {
-                if ((at(u, v, w) >= 0.5F) != (at(x, y, z) >= 0.5F)) {
-                  nearest = std::min(nearest, std::hypot(u - x, v - y, w - z));
-                }
-              }
-            }
+      for (const auto [y, x] : indices(n, n)) {
+        double nearest = 1e9;  // the surface is midway to the nearest voxel of the other kind
+        for (const auto [w, v, u] : indices(slices, n, n)) {
+          if ((at(u, v, w) >= 0.5F) != (at(x, y, z) >= 0.5F)) {
+            nearest = std::min(nearest, std::hypot(u - x, v - y, w - z));
           }
-          const bool free = weight[y * n + x] == 0.0F;
-          if (free != (nearest - 0.5 <= reach + 1e-6)) ++wrong;
         }
+        const bool free = weight[y * n + x] == 0.0F;
+        if (free != (nearest - 0.5 <= reach + 1e-6)) ++wrong;
       }
     }
     CHECK(wrong == 0);
@@ -110,10 +102,8 @@ TEST_CASE("the band around the surface: every voxel against every other") {
 TEST_CASE("weights: voxels of weight 0 are unconstrained, and errors move to where they cost less") {
   const auto target = vam::oracle::resolution_target(size);
   std::vector<float> weight(target.size(), 1.0F);
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      if (x >= size / 2) weight[y * size + x] = 0.02F;
-    }
+  for (const auto [y, x] : indices(size, size)) {
+    if (x >= size / 2) weight[y * size + x] = 0.02F;
   }
   // Few angles and a wide window, so that errors remain.
   Demands demands;
@@ -138,16 +128,14 @@ TEST_CASE("a grey target: each voxel's dose within its own tolerance") {
   std::vector<float> target(static_cast<std::size_t>(size * size), 0.3F);
   std::vector<float> tolerance(target.size(), 0.3F);
   std::vector<float> weight(target.size(), 1.0F);
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const double u = x - 0.5 * (size - 1);
-      const double r = std::hypot(u, y - 0.5 * (size - 1));
-      const auto i = static_cast<std::size_t>(y * size + x);
-      const bool ring = r > 12 && r < 32;
-      if (ring) target[i] = u > 0 ? 0.7F : 1.0F;
-      if (ring) tolerance[i] = 0.05F;
-      if (std::abs(r - 12) < 1.5 || std::abs(r - 32) < 1.5 || (ring && std::abs(u) < 1.5)) weight[i] = 0.0F;
-    }
+  for (const auto [y, x] : indices(size, size)) {
+    const double u = x - 0.5 * (size - 1);
+    const double r = std::hypot(u, y - 0.5 * (size - 1));
+    const auto i = static_cast<std::size_t>(y * size + x);
+    const bool ring = r > 12 && r < 32;
+    if (ring) target[i] = u > 0 ? 0.7F : 1.0F;
+    if (ring) tolerance[i] = 0.05F;
+    if (std::abs(r - 12) < 1.5 || std::abs(r - 32) < 1.5 || (ring && std::abs(u) < 1.5)) weight[i] = 0.0F;
   }
   Demands demands;
   demands.grey = true;

@@ -18,11 +18,8 @@ TEST_CASE("a finer stack is the coarser one between its samples") {
   const StackSamples to{{16, -3.75, 0.5}, {180, 0, 2}, {6, 9.5, 1}};
   std::vector<Image> coarse(3, Image(8, 90));
   const auto value = [](double column, double deg, double slice) { return 2 * column + 3 * turn(deg) + slice; };
-  for (int k = 0; k < 3; ++k) {
-    for (int a = 0; a < 90; ++a) {
-      for (int c = 0; c < 8; ++c) coarse[k](c, a) = static_cast<float>(value(-3.5 + c, 4 * a, 10 + 2 * k));
-    }
-  }
+  for (const auto [k, a, c] : indices(3, 90, 8))
+    coarse[k](c, a) = static_cast<float>(value(-3.5 + c, 4 * a, 10 + 2 * k));
   const Prolongation finer(coarse, from, to);
   // Linear in columns and slices, so exact between the coarser samples; a cosine's chord is below it by (2 deg)^2 / 2.
   for (int k = 1; k < 5; ++k) {

@@ -45,12 +45,10 @@ std::vector<Scenario> bank(const model::Tolerances& tolerances) {
 /// A ring with a bar across it, round about the axis and in the middle slices.
 void target(int k, int count, float* out) {
   for (int n = k; n < k + count; ++n) {
-    for (int y = 0; y < size; ++y) {
-      for (int x = 0; x < size; ++x) {
-        const double r = std::hypot(x - middle, y - middle);
-        const bool solid = (r > 7 && r < 11) || (r < 9 && std::abs(x - middle) < 2);
-        *out++ = solid && n >= 4 && n < 16 ? 1.0F : 0.0F;
-      }
+    for (const auto [y, x] : indices(size, size)) {
+      const double r = std::hypot(x - middle, y - middle);
+      const bool solid = (r > 7 && r < 11) || (r < 9 && std::abs(x - middle) < 2);
+      *out++ = solid && n >= 4 && n < 16 ? 1.0F : 0.0F;
     }
   }
 }

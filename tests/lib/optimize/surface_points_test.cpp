@@ -24,17 +24,13 @@ double from_middle(double x, double y, double z) { return std::hypot(x - 20.3, y
 std::vector<float> ball() {
   constexpr int samples = 6;
   std::vector<float> values;
-  for (int z = 0; z < slices; ++z) {
-    for (int y = 0; y < size; ++y) {
-      for (int x = 0; x < size; ++x) {
-        int inside = 0;
-        for (int n = 0; n < samples * samples * samples; ++n) {
-          const auto at = [&](int i) { return (i % samples + 0.5) / samples - 0.5; };
-          inside += from_middle(x + at(n), y + at(n / samples), z + at(n / samples / samples)) < radius ? 1 : 0;
-        }
-        values.push_back(static_cast<float>(inside) / (samples * samples * samples));
-      }
+  for (const auto [z, y, x] : indices(slices, size, size)) {
+    int inside = 0;
+    for (int n = 0; n < samples * samples * samples; ++n) {
+      const auto at = [&](int i) { return (i % samples + 0.5) / samples - 0.5; };
+      inside += from_middle(x + at(n), y + at(n / samples), z + at(n / samples / samples)) < radius ? 1 : 0;
     }
+    values.push_back(static_cast<float>(inside) / (samples * samples * samples));
   }
   return values;
 }
@@ -176,14 +172,10 @@ TEST_CASE("a part that reaches the border of its grid has as many points as its 
   const Circle wide{4, 3, 20};
   const auto points = [&](int wall, int mirrored) {  // a block from `wall` to the border along each axis
     std::vector<float> volume;
-    for (int z = 0; z < counts[2]; ++z) {
-      for (int y = 0; y < counts[1]; ++y) {
-        for (int x = 0; x < counts[0]; ++x) {
-          std::array<int, 3> at{x, y, z};
-          if (mirrored >= 0) at[mirrored] = counts[mirrored] - 1 - at[mirrored];
-          volume.push_back(at[0] >= wall && at[1] >= wall && at[2] >= wall ? 1.0F : 0.0F);
-        }
-      }
+    for (const auto [z, y, x] : indices(counts[2], counts[1], counts[0])) {
+      std::array<int, 3> at{x, y, z};
+      if (mirrored >= 0) at[mirrored] = counts[mirrored] - 1 - at[mirrored];
+      volume.push_back(at[0] >= wall && at[1] >= wall && at[2] >= wall ? 1.0F : 0.0F);
     }
     const Problem problem =
         parts::make_problem(volume.data(), counts[2], counts[0], counts[1], wide, {}, nullptr, nullptr, true);

@@ -94,11 +94,8 @@ TEST_CASE("a target without part or void is refused, of doses one without part a
   Volume volume;
   volume.target.assign(volume.target.size(), 0.001F);
   CHECK(has(volume.refusal(), "the target is empty"));
-  for (int k = 0; k < 20; ++k) {
-    for (int y = 0; y < size; ++y) {
-      for (int x = 0; x < size; ++x) Volume::at(volume.target, k, x, y) = around.contains(x, y) ? 1.0F : 0.0F;
-    }
-  }
+  for (const auto [k, y, x] : indices(20, size, size))
+    Volume::at(volume.target, k, x, y) = around.contains(x, y) ? 1.0F : 0.0F;
   CHECK(has(volume.refusal(), "fills the whole writable circle"));
   CHECK(volume.checked(true).size() == 20);
   Volume::at(volume.target, 7, 4, 7) = 0.001F;

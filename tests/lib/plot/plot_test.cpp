@@ -105,11 +105,9 @@ TEST_CASE("an image that is enlarged one way fills its box and nothing beyond") 
   Canvas canvas(40, 40);
   canvas.paste(RgbImage(1, 100, paint::blue), {10, 10}, {30, 30});
   const RgbImage shown = canvas.image();
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 40; ++x) {
-      const bool inside = x >= 10 && x < 30 && y >= 10 && y < 30;
-      CHECK(shown(x, y) == (inside ? paint::blue : paint::white));
-    }
+  for (const auto [y, x] : indices(40, 40)) {
+    const bool inside = x >= 10 && x < 30 && y >= 10 && y < 30;
+    CHECK(shown(x, y) == (inside ? paint::blue : paint::white));
   }
 }
 
@@ -129,9 +127,7 @@ TEST_CASE("text has the reported width, can be vertical, and stays on the canvas
   CHECK(width < 45);
   const RgbImage across = canvas.image();
   int right = 0;
-  for (int y = 0; y < 200; ++y) {
-    for (int x = 0; x < 200; ++x) right = across(x, y) != paint::white ? std::max(right, x) : right;
-  }
+  for (const auto [y, x] : indices(200, 200)) right = across(x, y) != paint::white ? std::max(right, x) : right;
   CHECK(std::abs(right - (10 + width)) < 5);
   Canvas upright(200, 200);
   upright.text({100, 190}, "Hxg", 20, paint::black, Align::begin, Align::middle, true);

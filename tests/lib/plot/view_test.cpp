@@ -26,11 +26,7 @@ float label(int i, int j, int k) { return static_cast<float>(1 + i + 100 * j + 1
 SparseVolume labelled(const std::string& name, const vam::model::Grid& grid) {
   SparseVolume volume(name, grid);
   std::vector<float> slices;
-  for (int k = 0; k < grid.nz; ++k) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) slices.push_back(label(i, j, k));
-    }
-  }
+  for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) slices.push_back(label(i, j, k));
   volume.write_slices(0, grid.nz, slices.data());
   return volume;
 }
@@ -39,13 +35,9 @@ SparseVolume labelled(const std::string& name, const vam::model::Grid& grid) {
 SparseVolume ball(const vam::model::Grid& grid) {
   SparseVolume volume("target", grid);
   std::vector<float> slices;
-  for (int k = 0; k < grid.nz; ++k) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        const double r_mm = std::hypot(grid.x_mm(i) - 1, grid.y_mm(j), grid.z_mm(k));
-        slices.push_back(static_cast<float>(std::clamp(0.5 + (3 - r_mm) / grid.voxel_mm, 0.0, 1.0)));
-      }
-    }
+  for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) {
+    const double r_mm = std::hypot(grid.x_mm(i) - 1, grid.y_mm(j), grid.z_mm(k));
+    slices.push_back(static_cast<float>(std::clamp(0.5 + (3 - r_mm) / grid.voxel_mm, 0.0, 1.0)));
   }
   volume.write_slices(0, grid.nz, slices.data());
   return volume;
@@ -78,9 +70,7 @@ TEST_CASE("sections are drawn upright: y up across the axis, z up along it") {
 
 TEST_CASE("a contour runs where the value is, closed around a blob") {
   Image image(21, 21);
-  for (int y = 0; y < 21; ++y) {
-    for (int x = 0; x < 21; ++x) image(x, y) = static_cast<float>(7 - std::hypot(x - 10, y - 10));
-  }
+  for (const auto [y, x] : indices(21, 21)) image(x, y) = static_cast<float>(7 - std::hypot(x - 10, y - 10));
   const auto pieces = contour(image, 0.0F);
   double length = 0;
   for (const auto& piece : pieces) {
@@ -312,10 +302,8 @@ TEST_CASE("an insert is hatched, and hides what is behind it from the angles tha
   const vam::model::Grid grid = vam::model::centred_grid(81, 81, 3, 0.1);
   SparseVolume insert("insert", grid);
   std::vector<float> slices(grid.size(), 0.0F);
-  for (int j = 0; j < 81; ++j) {
-    for (int i = 0; i < 81; ++i) {
-      if (std::hypot(i - 40, j - 40) <= 8) slices[81 * 81 + static_cast<std::size_t>(j) * 81 + i] = 1;
-    }
+  for (const auto [j, i] : indices(81, 81)) {
+    if (std::hypot(i - 40, j - 40) <= 8) slices[81 * 81 + static_cast<std::size_t>(j) * 81 + i] = 1;
   }
   insert.write_slices(0, 3, slices.data());
   const auto axial = insert_sections(insert, Plane::axial, {0, 1});

@@ -39,10 +39,8 @@ ExposurePlan rod(const model::Printer& printer) {
   std::vector<Image> dose(1);
   Simulation(printer, {}, info, grid).dose(light, dose);
   model::DoseStatistics statistics;
-  for (int y = 0; y < 21; ++y) {
-    for (int x = 0; x < 21; ++x) {
-      statistics.add(dose[0](x, y), std::hypot(x - 10, y - 10) < 3 ? model::Label::part : model::Label::void_);
-    }
+  for (const auto [y, x] : indices(21, 21)) {
+    statistics.add(dose[0](x, y), std::hypot(x - 10, y - 10) < 3 ? model::Label::part : model::Label::void_);
   }
   return plan_exposure(statistics.metrics(false), *resin::dose_per_radian_mj_cm3(printer), printer);
 }

@@ -41,14 +41,10 @@ TEST_CASE("a widened volume has its own values inside and the given one around")
   const io::SparseVolume wide = widened(own, cube(11, 0), 0.5F, "band.vdb");
   const model::Volume all = io::dense_volume(wide);
   const model::Volume part = io::dense_volume(own);
-  for (int k = 0; k < 11; ++k) {
-    for (int j = 0; j < 11; ++j) {
-      for (int i = 0; i < 11; ++i) {
-        const bool inside = std::min({i, j, k}) >= 2 && std::max({i, j, k}) < 5;
-        const float wanted = inside ? part.slice(k - 2)[(j - 2) * 3 + i - 2] : 0.5F;
-        REQUIRE(all.slice(k)[j * 11 + i] == wanted);
-      }
-    }
+  for (const auto [k, j, i] : indices(11, 11, 11)) {
+    const bool inside = std::min({i, j, k}) >= 2 && std::max({i, j, k}) < 5;
+    const float wanted = inside ? part.slice(k - 2)[(j - 2) * 3 + i - 2] : 0.5F;
+    REQUIRE(all.slice(k)[j * 11 + i] == wanted);
   }
   CHECK(error_of([&] { (void)widened(own, cube(4, 0), 0, "band.vdb"); }, Fault::data).starts_with("band.vdb: "));
 }

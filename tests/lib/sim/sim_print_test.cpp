@@ -195,13 +195,9 @@ TEST_CASE("A cured ball looks to the camera as the traced one, wherever it stand
   const model::Grid grid = model::centred_grid(61, 61, 41, 0.1, -2);
   Photoresin resin(still_resin(), grid);
   const std::array<double, 3> middle{1.2, -0.5, 0.3};
-  for (int k = 0; k < grid.nz; ++k) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        const double away = std::hypot(grid.x_mm(i) - middle[0], grid.y_mm(j) - middle[1], grid.z_mm(k) - middle[2]);
-        if (away < 1.5) resin.absorbed()[(k * grid.ny + j) * static_cast<std::size_t>(grid.nx) + i] = 1e4F;
-      }
-    }
+  for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) {
+    const double away = std::hypot(grid.x_mm(i) - middle[0], grid.y_mm(j) - middle[1], grid.z_mm(k) - middle[2]);
+    if (away < 1.5) resin.absorbed()[(k * grid.ny + j) * static_cast<std::size_t>(grid.nx) + i] = 1e4F;
   }
   resin.react(100);
   constexpr int columns = 90;
@@ -254,20 +250,18 @@ TEST_CASE("What light has cured is what vam-ost reconstructs from the views of a
   double agree = 0;
   double either = 0;
   for (int k = 1; k + 1 < truth.grid.nz; ++k) {
-    for (int j = 0; j < truth.grid.ny; ++j) {
-      for (int i = 0; i < truth.grid.nx; ++i) {
-        const auto at = [&](double mm, double origin) {
-          return static_cast<int>(std::lround((mm - origin) / seen.grid.voxel_mm));
-        };
-        const int x = at(truth.grid.x_mm(i), seen.grid.origin_mm[0]);
-        const int y = at(truth.grid.y_mm(j), seen.grid.origin_mm[1]);
-        const int z = at(truth.grid.z_mm(k), seen.grid.origin_mm[2]);
-        if (x < 0 || y < 0 || z < 0 || x >= seen.grid.nx || y >= seen.grid.ny || z >= seen.grid.nz) continue;
-        const bool solid = truth.slice(k)[j * truth.grid.nx + i] > 0.5F;
-        const bool shown = seen.slice(z)[y * seen.grid.nx + x] > 0.04F;  // half of 0.08 per mm
-        agree += solid && shown ? 1 : 0;
-        either += solid || shown ? 1 : 0;
-      }
+    for (const auto [j, i] : indices(truth.grid.ny, truth.grid.nx)) {
+      const auto at = [&](double mm, double origin) {
+        return static_cast<int>(std::lround((mm - origin) / seen.grid.voxel_mm));
+      };
+      const int x = at(truth.grid.x_mm(i), seen.grid.origin_mm[0]);
+      const int y = at(truth.grid.y_mm(j), seen.grid.origin_mm[1]);
+      const int z = at(truth.grid.z_mm(k), seen.grid.origin_mm[2]);
+      if (x < 0 || y < 0 || z < 0 || x >= seen.grid.nx || y >= seen.grid.ny || z >= seen.grid.nz) continue;
+      const bool solid = truth.slice(k)[j * truth.grid.nx + i] > 0.5F;
+      const bool shown = seen.slice(z)[y * seen.grid.nx + x] > 0.04F;  // half of 0.08 per mm
+      agree += solid && shown ? 1 : 0;
+      either += solid || shown ? 1 : 0;
     }
   }
   CHECK(either > 500);

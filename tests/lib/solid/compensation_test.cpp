@@ -22,12 +22,9 @@ const model::Grid fine_grid = model::centred_grid(100, 100, 100, 0.15, -7.425);
 model::TriangleSoup surface_where(const std::function<double(const Vector3&)>& distance_mm) {
   model::Volume volume{fine_grid, std::vector<float>(fine_grid.size())};
   std::size_t n = 0;
-  for (int k = 0; k < fine_grid.nz; ++k) {
-    for (int j = 0; j < fine_grid.ny; ++j) {
-      for (int i = 0; i < fine_grid.nx; ++i)
-        volume.values[n++] =
-            static_cast<float>(-distance_mm({fine_grid.x_mm(i), fine_grid.y_mm(j), fine_grid.z_mm(k)}));
-    }
+  for (const auto [k, j] : indices(fine_grid.nz, fine_grid.ny)) {
+    for (int i = 0; i < fine_grid.nx; ++i)
+      volume.values[n++] = static_cast<float>(-distance_mm({fine_grid.x_mm(i), fine_grid.y_mm(j), fine_grid.z_mm(k)}));
   }
   return solid::isosurface(volume, 0);
 }
@@ -140,13 +137,9 @@ TEST_CASE("distances in a band are those of every voxel") {
   const model::Volume band = solid::distance_band(surface, grid, 0.8);
   std::size_t n = 0;
   double worst = 0;
-  for (int k = 0; k < grid.nz; ++k) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        const double right = surface.signed_distance({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)});
-        worst = std::max(worst, std::abs(std::clamp(right, -0.8, 0.8) - static_cast<double>(band.values[n++])));
-      }
-    }
+  for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) {
+    const double right = surface.signed_distance({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)});
+    worst = std::max(worst, std::abs(std::clamp(right, -0.8, 0.8) - static_cast<double>(band.values[n++])));
   }
   CHECK(worst < 1e-6);
 }

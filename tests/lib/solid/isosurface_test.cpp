@@ -13,13 +13,9 @@ namespace {
 model::Volume ball(double radius_mm, double voxel_mm, int n) {
   model::Volume volume{model::centred_grid(n, n, n, voxel_mm, -0.5 * (n - 1) * voxel_mm), {}};
   const auto& g = volume.grid;
-  for (int k = 0; k < n; ++k) {
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        volume.values.push_back(
-            static_cast<float>(10 + radius_mm - std::hypot(g.x_mm(i) - 0.3, g.y_mm(j) + 0.2, g.z_mm(k) - 0.1)));
-      }
-    }
+  for (const auto [k, j, i] : indices(n, n, n)) {
+    volume.values.push_back(
+        static_cast<float>(10 + radius_mm - std::hypot(g.x_mm(i) - 0.3, g.y_mm(j) + 0.2, g.z_mm(k) - 0.1)));
   }
   return volume;
 }
@@ -120,16 +116,12 @@ model::Volume rods(double radius) {
   constexpr int n = 28;
   model::Volume volume{model::centred_grid(n, n, n, 1, -0.5 * (n - 1)), {}};
   const auto& g = volume.grid;
-  for (int k = 0; k < n; ++k) {
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const double u = 0.36 * g.x_mm(i) + 0.48 * g.y_mm(j) + 0.8 * g.z_mm(k);
-        const double v = 0.8 * g.x_mm(i) - 0.6 * g.y_mm(j);
-        const double along = 0.48 * g.x_mm(i) + 0.64 * g.y_mm(j) - 0.6 * g.z_mm(k);
-        const double to_rod = std::hypot(u - 5 * std::clamp(std::round(u / 5), -1.0, 1.0), v - 0.3);
-        volume.values.push_back(static_cast<float>(10 + radius - std::max(to_rod, std::abs(along) - 9)));
-      }
-    }
+  for (const auto [k, j, i] : indices(n, n, n)) {
+    const double u = 0.36 * g.x_mm(i) + 0.48 * g.y_mm(j) + 0.8 * g.z_mm(k);
+    const double v = 0.8 * g.x_mm(i) - 0.6 * g.y_mm(j);
+    const double along = 0.48 * g.x_mm(i) + 0.64 * g.y_mm(j) - 0.6 * g.z_mm(k);
+    const double to_rod = std::hypot(u - 5 * std::clamp(std::round(u / 5), -1.0, 1.0), v - 0.3);
+    volume.values.push_back(static_cast<float>(10 + radius - std::max(to_rod, std::abs(along) - 9)));
   }
   return volume;
 }

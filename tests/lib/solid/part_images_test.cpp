@@ -11,9 +11,7 @@ TEST_CASE("pixels that all images fill are wholly covered, whatever the stretch,
   // Three images of 4 x 4 pixels: the left half full, the right half full in the middle one alone.
   const auto read = [](int n) {
     Image image(4, 4);
-    for (int y = 0; y < 4; ++y) {
-      for (int x = 0; x < 4; ++x) image(x, y) = x < 2 || n == 1 ? 1.0F : 0.0F;
-    }
+    for (const auto [y, x] : indices(4, 4)) image(x, y) = x < 2 || n == 1 ? 1.0F : 0.0F;
     return image;
   };
   for (const double stretch_z : {1.0, 1.3, 4.0 / 3}) {

@@ -18,13 +18,9 @@ using Coverage = std::function<double(int x, int y, int z)>;
 /// A block of 20^3 voxels in the low corner, a voxel from the border, and beside it what is asked for.
 verdict::Unresolved beside_block(const Coverage& coverage) {
   std::vector<float> values;
-  for (int z = 0; z < size; ++z) {
-    for (int y = 0; y < size; ++y) {
-      for (int x = 0; x < size; ++x) {
-        const auto in = [](int i) { return i >= 1 && i <= 20; };
-        values.push_back(in(x) && in(y) && in(z) ? 1.0F : static_cast<float>(coverage(x, y, z)));
-      }
-    }
+  for (const auto [z, y, x] : indices(size, size, size)) {
+    const auto in = [](int i) { return i >= 1 && i <= 20; };
+    values.push_back(in(x) && in(y) && in(z) ? 1.0F : static_cast<float>(coverage(x, y, z)));
   }
   verdict::UnresolvedFinder finder(grid);
   finder.add(size, values.data());

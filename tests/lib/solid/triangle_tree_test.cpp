@@ -119,12 +119,10 @@ TEST_CASE("heights from above: a box on a box, and a ball") {
   CHECK(std::isnan(map.heights_mm(0, 0)));
 
   const HeightMap ball = height_map(test::sphere({1, 2, 3}, 5, 200), 0.25);
-  for (int j = 0; j < ball.heights_mm.height; ++j) {
-    for (int i = 0; i < ball.heights_mm.width; ++i) {
-      const double r2 = std::pow(ball.x_mm + 0.25 * i - 1, 2) + std::pow(ball.y_mm - 0.25 * j - 2, 2);
-      if (r2 < 20) CHECK(ball.heights_mm(i, j) == doctest::Approx(3 + std::sqrt(25 - r2)).epsilon(1e-3));
-      if (r2 > 25) CHECK(std::isnan(ball.heights_mm(i, j)));
-    }
+  for (const auto [j, i] : indices(ball.heights_mm.height, ball.heights_mm.width)) {
+    const double r2 = std::pow(ball.x_mm + 0.25 * i - 1, 2) + std::pow(ball.y_mm - 0.25 * j - 2, 2);
+    if (r2 < 20) CHECK(ball.heights_mm(i, j) == doctest::Approx(3 + std::sqrt(25 - r2)).epsilon(1e-3));
+    if (r2 > 25) CHECK(std::isnan(ball.heights_mm(i, j)));
   }
 }
 

@@ -104,16 +104,12 @@ TEST_CASE("every voxel of turned boxes against cutting cubes with half spaces") 
         values.insert(values.end(), slices, slices + static_cast<std::size_t>(count) * grid.slice_size());
       });
       double worst = 0;
-      for (int k = 0; k < grid.nz; ++k) {
-        for (int j = 0; j < grid.ny; ++j) {
-          for (int i = 0; i < grid.nx; ++i) {
-            const double want =
-                vam::oracle::shared_volume({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)}, grid.voxel_mm, body.planes) /
-                std::pow(grid.voxel_mm, 3);
-            const auto at = static_cast<std::size_t>((k * grid.ny + j) * grid.nx + i);
-            worst = std::max(worst, std::abs(values[at] - want));
-          }
-        }
+      for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) {
+        const double want =
+            vam::oracle::shared_volume({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)}, grid.voxel_mm, body.planes) /
+            std::pow(grid.voxel_mm, 3);
+        const auto at = static_cast<std::size_t>((k * grid.ny + j) * grid.nx + i);
+        worst = std::max(worst, std::abs(values[at] - want));
       }
       CHECK(worst < 2e-6);  // the snapping to 0 and 1, and float
     }
@@ -128,26 +124,22 @@ TEST_CASE("a sphere's surface against counting points") {
   constexpr int n = 24;
   double square = 0;
   long surface = 0;
-  for (int k = 0; k < 30; ++k) {
-    for (int j = 0; j < 30; ++j) {
-      for (int i = 0; i < 30; ++i) {
-        const double centre = std::hypot(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k));
-        const auto at = static_cast<std::size_t>((k * 30 + j) * 30 + i);
-        if (std::abs(centre - radius) > 0.9) {
-          CHECK(result.values[at] == (centre < radius ? 1.0F : 0.0F));
-          continue;
-        }
-        int inside = 0;
-        for (int s = 0; s < n * n * n; ++s) {
-          const double x = grid.x_mm(i) + (s % n + 0.5) / n - 0.5;
-          const double y = grid.y_mm(j) + (s / n % n + 0.5) / n - 0.5;
-          const double z = grid.z_mm(k) + (s / n / n + 0.5) / n - 0.5;
-          if (x * x + y * y + z * z < radius * radius) ++inside;
-        }
-        square += std::pow(result.values[at] - inside / std::pow(n, 3), 2);
-        ++surface;
-      }
+  for (const auto [k, j, i] : indices(30, 30, 30)) {
+    const double centre = std::hypot(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k));
+    const auto at = static_cast<std::size_t>((k * 30 + j) * 30 + i);
+    if (std::abs(centre - radius) > 0.9) {
+      CHECK(result.values[at] == (centre < radius ? 1.0F : 0.0F));
+      continue;
     }
+    int inside = 0;
+    for (int s = 0; s < n * n * n; ++s) {
+      const double x = grid.x_mm(i) + (s % n + 0.5) / n - 0.5;
+      const double y = grid.y_mm(j) + (s / n % n + 0.5) / n - 0.5;
+      const double z = grid.z_mm(k) + (s / n / n + 0.5) / n - 0.5;
+      if (x * x + y * y + z * z < radius * radius) ++inside;
+    }
+    square += std::pow(result.values[at] - inside / std::pow(n, 3), 2);
+    ++surface;
   }
   CHECK(std::sqrt(square / static_cast<double>(surface)) < 0.002);  // required: 0.01; counting 24^3 points errs 0.001
 }
@@ -259,19 +251,15 @@ TEST_CASE("the union of turned boxes that cross, against cutting cubes with half
     const Result both = voxels(vam::oracle::join(a.mesh, b.mesh), grid);
     double worst = 0;
     double sum = 0;
-    for (int k = 0; k < grid.nz; ++k) {
-      for (int j = 0; j < grid.ny; ++j) {
-        for (int i = 0; i < grid.nx; ++i) {
-          const auto of = [&](const std::vector<vam::oracle::HalfSpace>& planes) {
-            return vam::oracle::shared_volume({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)}, grid.voxel_mm, planes) /
-                   std::pow(grid.voxel_mm, 3);
-          };
-          const double want = of(a.planes) + of(b.planes) - of(shared);
-          const auto at = static_cast<std::size_t>((k * grid.ny + j) * grid.nx + i);
-          worst = std::max(worst, std::abs(both.values[at] - want));
-          sum += want;
-        }
-      }
+    for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) {
+      const auto of = [&](const std::vector<vam::oracle::HalfSpace>& planes) {
+        return vam::oracle::shared_volume({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)}, grid.voxel_mm, planes) /
+               std::pow(grid.voxel_mm, 3);
+      };
+      const double want = of(a.planes) + of(b.planes) - of(shared);
+      const auto at = static_cast<std::size_t>((k * grid.ny + j) * grid.nx + i);
+      worst = std::max(worst, std::abs(both.values[at] - want));
+      sum += want;
     }
     CHECK(worst < 0.002);  // rays pass at 16 x 16 places: edges between them are off by 1/16 squared at most
     CHECK(std::abs(both.sum() / sum - 1) < 1e-4);

@@ -10,11 +10,7 @@ namespace {
 
 model::Volume filled(int nx, int ny, int nz, const std::function<bool(int, int, int)>& inside) {
   model::Volume volume{{nx, ny, nz, 1.0, {}}, {}};
-  for (int k = 0; k < nz; ++k) {
-    for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) volume.values.push_back(inside(i, j, k) ? 1.0F : 0.0F);
-    }
-  }
+  for (const auto [k, j, i] : indices(nz, ny, nx)) volume.values.push_back(inside(i, j, k) ? 1.0F : 0.0F);
   return volume;
 }
 

@@ -35,12 +35,10 @@ ParallelGeometry geometry_of(int n, int angles, double alpha) {
 
 double worst_error(const Slab& image, const ParallelGeometry& g, const Gaussian& truth) {
   double worst = 0;
-  for (int j = 0; j < g.ny; ++j) {
-    for (int i = 0; i < g.nx; ++i) {
-      if (std::hypot(i - g.axis_x, j - g.axis_y) > g.nx / 2.0) continue;
-      const double want = truth.value(i - g.axis_x, j - g.axis_y);
-      worst = std::max(worst, std::abs(static_cast<double>(*image.at(i, j)) - want));
-    }
+  for (const auto [j, i] : indices(g.ny, g.nx)) {
+    if (std::hypot(i - g.axis_x, j - g.axis_y) > g.nx / 2.0) continue;
+    const double want = truth.value(i - g.axis_x, j - g.axis_y);
+    worst = std::max(worst, std::abs(static_cast<double>(*image.at(i, j)) - want));
   }
   return worst;
 }
@@ -59,11 +57,9 @@ TEST_CASE("fbp of a Gaussian's exponential projections in closed form returns th
       const double alpha = alpha_radius / (n / 2.0);
       const ParallelGeometry g = geometry_of(n, 720, alpha);
       Slab sinogram(g.columns, g.angles);
-      for (int a = 0; a < g.angles; ++a) {
-        for (int c = 0; c < g.columns; ++c) {
-          const double value = truth.projection(c - 0.5 * (g.columns - 1), a * g.angle_step_rad, alpha);
-          *sinogram.at(c, a) = static_cast<float>(value);
-        }
+      for (const auto [a, c] : indices(g.angles, g.columns)) {
+        const double value = truth.projection(c - 0.5 * (g.columns - 1), a * g.angle_step_rad, alpha);
+        *sinogram.at(c, a) = static_cast<float>(value);
       }
       errors[refinement - 1] = worst_error(fbp(g, sinogram), g, truth);
     }
@@ -77,19 +73,16 @@ TEST_CASE("forward of a sampled Gaussian has its exponential projections") {
   const double alpha = 0.03;
   const ParallelGeometry g = geometry_of(128, 40, alpha);
   std::vector<Slab> image{Slab(128, 128)};
-  for (int j = 0; j < 128; ++j) {
-    for (int i = 0; i < 128; ++i) *image[0].at(i, j) = static_cast<float>(truth.value(i - g.axis_x, j - g.axis_y));
-  }
+  for (const auto [j, i] : indices(128, 128))
+    *image[0].at(i, j) = static_cast<float>(truth.value(i - g.axis_x, j - g.axis_y));
   std::vector<Slab> sinogram{Slab(g.columns, g.angles)};
   forward(g, image, sinogram);
   double worst = 0;
   double peak = 0;
-  for (int a = 0; a < g.angles; ++a) {
-    for (int c = 0; c < g.columns; ++c) {
-      const double want = truth.projection(c - 0.5 * (g.columns - 1), a * g.angle_step_rad, alpha);
-      worst = std::max(worst, std::abs(static_cast<double>(*sinogram[0].at(c, a)) - want));
-      peak = std::max(peak, want);
-    }
+  for (const auto [a, c] : indices(g.angles, g.columns)) {
+    const double want = truth.projection(c - 0.5 * (g.columns - 1), a * g.angle_step_rad, alpha);
+    worst = std::max(worst, std::abs(static_cast<double>(*sinogram[0].at(c, a)) - want));
+    peak = std::max(peak, want);
   }
   CHECK(worst < 2e-3 * peak);  // the footprint and the bin blur by 2 / (24 sigma^2) = 0.8e-3 of the peak
 }
@@ -108,12 +101,10 @@ TEST_CASE("fbp of a disc is flat inside and empty outside") {
   const Slab back = fbp(g, sinogram[0], {FilterWindow::hann, 1, 0, 0});
   double inside = 0;
   double outside = 0;
-  for (int j = 0; j < 256; ++j) {
-    for (int i = 0; i < 256; ++i) {
-      const double value = static_cast<double>(*back.at(i, j));
-      if (distance(i, j) < radius - 4) inside = std::max(inside, std::abs(value - 1));
-      if (distance(i, j) > radius + 4) outside = std::max(outside, std::abs(value));
-    }
+  for (const auto [j, i] : indices(256, 256)) {
+    const double value = static_cast<double>(*back.at(i, j));
+    if (distance(i, j) < radius - 4) inside = std::max(inside, std::abs(value - 1));
+    if (distance(i, j) > radius + 4) outside = std::max(outside, std::abs(value));
   }
   CHECK(inside < 0.01);
   CHECK(outside < 0.01);
@@ -125,9 +116,8 @@ TEST_CASE("half a turn gives the same image as a full one") {
   ParallelGeometry half = full;
   half.angles = 90;
   std::vector<Slab> image{Slab(64, 64)};
-  for (int j = 0; j < 64; ++j) {
-    for (int i = 0; i < 64; ++i) *image[0].at(i, j) = static_cast<float>(truth.value(i - full.axis_x, j - full.axis_y));
-  }
+  for (const auto [j, i] : indices(64, 64))
+    *image[0].at(i, j) = static_cast<float>(truth.value(i - full.axis_x, j - full.axis_y));
   std::vector<Slab> a{Slab(full.columns, 180)};
   std::vector<Slab> b{Slab(full.columns, 90)};
   forward(full, image, a);

@@ -33,17 +33,13 @@ TEST_CASE("the ramp is the direct convolution with the band-limited kernel of [K
   const Slab before = random_slab(columns, 5);
   Slab after = before;
   Filter(columns, {}).apply(after);
-  for (int a = 0; a < 5; ++a) {
-    for (int lane = 0; lane < lanes; ++lane) {
-      for (int c = 0; c < columns; ++c) {
-        double want = 0.25 * static_cast<double>(before.at(c, a)[lane]);
-        for (int d = 0; d < columns; ++d) {
-          const int n = c - d;
-          if (n % 2 != 0) want -= static_cast<double>(before.at(d, a)[lane]) / (pi * pi * n * n);
-        }
-        CHECK(static_cast<double>(after.at(c, a)[lane]) == doctest::Approx(want).epsilon(2e-6).scale(1));  // float FFT
-      }
+  for (const auto [a, lane, c] : indices(5, lanes, columns)) {
+    double want = 0.25 * static_cast<double>(before.at(c, a)[lane]);
+    for (int d = 0; d < columns; ++d) {
+      const int n = c - d;
+      if (n % 2 != 0) want -= static_cast<double>(before.at(d, a)[lane]) / (pi * pi * n * n);
     }
+    CHECK(static_cast<double>(after.at(c, a)[lane]) == doctest::Approx(want).epsilon(2e-6).scale(1));  // float FFT
   }
 }
 

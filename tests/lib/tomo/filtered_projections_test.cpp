@@ -15,11 +15,9 @@ TEST_CASE("projections of a Gaussian in closed form: lengths in mm, and filtered
   spec.geometry = full_turn(vam::model::centred_grid(n, n, 1, 1.0), 16);
   spec.voxel_mm = 0.1;
   std::vector<Slab> image{Slab(n, n)};
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const double r = std::hypot(i - spec.geometry.axis_x, j - spec.geometry.axis_y);
-      *image[0].at(i, j) = static_cast<float>(std::exp(-0.5 * r * r / (sigma * sigma)));
-    }
+  for (const auto [j, i] : indices(n, n)) {
+    const double r = std::hypot(i - spec.geometry.axis_x, j - spec.geometry.axis_y);
+    *image[0].at(i, j) = static_cast<float>(std::exp(-0.5 * r * r / (sigma * sigma)));
   }
   const int middle = spec.geometry.columns / 2;
   const double t = middle - 0.5 * (spec.geometry.columns - 1);

@@ -48,14 +48,10 @@ Slab noise(int width, int height, Slices slices, unsigned seed) {
 /// A Gaussian blob, in another place in each lane.
 Slab blobs(int width, int height, Slices slices, double sigma) {
   Slab slab(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int lane = 0; lane < used(slices); ++lane) {
-        const double from_x = x - width * (0.4 + 0.01 * lane);
-        const double from_y = y - height * (0.6 - 0.015 * lane);
-        slab.at(x, y)[lane] = static_cast<float>(std::exp(-(from_x * from_x + from_y * from_y) / (2 * sigma * sigma)));
-      }
-    }
+  for (const auto [y, x, lane] : indices(height, width, used(slices))) {
+    const double from_x = x - width * (0.4 + 0.01 * lane);
+    const double from_y = y - height * (0.6 - 0.015 * lane);
+    slab.at(x, y)[lane] = static_cast<float>(std::exp(-(from_x * from_x + from_y * from_y) / (2 * sigma * sigma)));
   }
   return slab;
 }
@@ -153,16 +149,14 @@ TEST_CASE("Fourier slices: an off-centre disc has the projections of its chords"
   ParallelGeometry g = full_turn(n, columns, angles);
   g.angle_start_rad = 0.01;
   Slab image(n, n);
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      int inside = 0;
-      for (int s = 0; s < 256; ++s) {
-        const double x = i - g.axis_x - cx + (s % 16 - 7.5) / 16;
-        const double y = j - g.axis_y - cy + (s / 16 - 7.5) / 16;  // NOLINT(bugprone-integer-division)
-        inside += x * x + y * y <= radius * radius ? 1 : 0;
-      }
-      *image.at(i, j) = static_cast<float>(inside) / 256;
+  for (const auto [j, i] : indices(n, n)) {
+    int inside = 0;
+    for (int s = 0; s < 256; ++s) {
+      const double x = i - g.axis_x - cx + (s % 16 - 7.5) / 16;
+      const double y = j - g.axis_y - cy + (s / 16 - 7.5) / 16;  // NOLINT(bugprone-integer-division)
+      inside += x * x + y * y <= radius * radius ? 1 : 0;
     }
+    *image.at(i, j) = static_cast<float>(inside) / 256;
   }
   const auto area_left_of = [&](double t) {  // of the disc
     const double x = std::clamp(t / radius, -1.0, 1.0);

@@ -137,16 +137,14 @@ TEST_CASE("an off-centre disc has the projections of its chords") {
   g.angle_start_rad = 0.01;
   std::vector<Slab> image{Slab(n, n)};
   std::vector<Slab> sinogram{Slab(columns, angles)};
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      int inside = 0;
-      for (int s = 0; s < 256; ++s) {
-        const double x = i - g.axis_x - cx + (s % 16 - 7.5) / 16;
-        const double y = j - g.axis_y - cy + (s / 16 - 7.5) / 16;  // NOLINT(bugprone-integer-division)
-        inside += x * x + y * y <= radius * radius ? 1 : 0;
-      }
-      *image[0].at(i, j) = static_cast<float>(inside) / 256;
+  for (const auto [j, i] : indices(n, n)) {
+    int inside = 0;
+    for (int s = 0; s < 256; ++s) {
+      const double x = i - g.axis_x - cx + (s % 16 - 7.5) / 16;
+      const double y = j - g.axis_y - cy + (s / 16 - 7.5) / 16;  // NOLINT(bugprone-integer-division)
+      inside += x * x + y * y <= radius * radius ? 1 : 0;
     }
+    *image[0].at(i, j) = static_cast<float>(inside) / 256;
   }
   forward(g, image, sinogram);
   const auto area_left_of = [&](double t) {  // of the disc

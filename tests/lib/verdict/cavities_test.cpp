@@ -11,11 +11,9 @@ namespace {
 verdict::Cavities cavities(int n, const std::function<double(double x, double y, double z)>& coverage) {
   const model::Grid grid = model::centred_grid(n, n, n, 0.5, -0.25 * (n - 1));
   std::vector<float> values;
-  for (int k = 0; k < n; ++k) {
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i)
-        values.push_back(static_cast<float>(coverage(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k))));
-    }
+  for (const auto [k, j] : indices(n, n)) {
+    for (int i = 0; i < n; ++i)
+      values.push_back(static_cast<float>(coverage(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k))));
   }
   verdict::CavityFinder finder(grid);
   for (int k = 0; k < n; k += 3) finder.add(std::min(3, n - k), values.data() + std::size_t(k) * grid.slice_size());

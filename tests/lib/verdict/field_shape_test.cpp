@@ -89,24 +89,20 @@ struct Points {
 
 Points points_of(const Field& of, double level, int a_voxel) {
   Points points{{(of.nx + 1) * a_voxel + 1, (of.ny + 1) * a_voxel + 1, (of.nz + 1) * a_voxel + 1}, {}};
-  for (int k = 0; k < points.size[2]; ++k) {
-    for (int j = 0; j < points.size[1]; ++j) {
-      for (int i = 0; i < points.size[0]; ++i) {
-        double sum = 0;
-        for (int n = 0; n < 8; ++n) {
-          double weight = 1;
-          std::array<int, 3> near{i, j, k};
-          for (int axis = 0; axis < 3; ++axis) {
-            const double part = static_cast<double>(near[axis] % a_voxel) / a_voxel;
-            const bool up = (n >> axis & 1) != 0;
-            near[axis] = near[axis] / a_voxel - 1 + (up ? 1 : 0);
-            weight *= up ? part : 1 - part;
-          }
-          if (weight > 0) sum += weight * of.at(near[0], near[1], near[2]);
-        }
-        points.solid.push_back(sum >= level ? 1 : 0);
+  for (const auto [k, j, i] : indices(points.size[2], points.size[1], points.size[0])) {
+    double sum = 0;
+    for (int n = 0; n < 8; ++n) {
+      double weight = 1;
+      std::array<int, 3> near{i, j, k};
+      for (int axis = 0; axis < 3; ++axis) {
+        const double part = static_cast<double>(near[axis] % a_voxel) / a_voxel;
+        const bool up = (n >> axis & 1) != 0;
+        near[axis] = near[axis] / a_voxel - 1 + (up ? 1 : 0);
+        weight *= up ? part : 1 - part;
       }
+      if (weight > 0) sum += weight * of.at(near[0], near[1], near[2]);
     }
+    points.solid.push_back(sum >= level ? 1 : 0);
   }
   return points;
 }

@@ -32,9 +32,5 @@ TEST_CASE("a coarser voxel is the mean of the eight that it covers") {
     return sum / 8;
   };
   std::size_t n = 0;
-  for (int k = 0; k < 10; ++k) {
-    for (int j = 0; j < 2; ++j) {
-      for (int i = 0; i < 3; ++i) CHECK(values[n++] == doctest::Approx(mean(i, j, k)));
-    }
-  }
+  for (const auto [k, j, i] : indices(10, 2, 3)) CHECK(values[n++] == doctest::Approx(mean(i, j, k)));
 }

@@ -55,12 +55,8 @@ TEST_CASE("a level set of another program is read as its active box, off the ind
     const auto accessor = sphere->getConstAccessor();
     std::size_t at = 0;
     std::size_t wrong = 0;
-    for (int k = 0; k < read.grid().nz; ++k) {
-      for (int j = 0; j < read.grid().ny; ++j) {
-        for (int i = 0; i < read.grid().nx; ++i) {
-          wrong += values[at++] != accessor.getValue(box.min() + openvdb::Coord(i, j, k)) ? 1 : 0;
-        }
-      }
+    for (const auto [k, j, i] : indices(read.grid().nz, read.grid().ny, read.grid().nx)) {
+      wrong += values[at++] != accessor.getValue(box.min() + openvdb::Coord(i, j, k)) ? 1 : 0;
     }
     CHECK(wrong == 0);
     const openvdb::Vec3d centre = sphere->indexToWorld(box.min());

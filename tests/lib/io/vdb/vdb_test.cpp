@@ -121,15 +121,11 @@ TEST_CASE("facts and voxels survive a file and a pipe") {
     CHECK(corner.z() == doctest::Approx(0.4));
     const auto accessor = judge->getConstAccessor();
     std::size_t wrong = 0;
-    for (int k = 0; k < grid.nz; ++k) {
-      for (int j = 0; j < grid.ny; ++j) {
-        for (int i = 0; i < grid.nx; ++i) {
-          const float wanted = values[(static_cast<std::size_t>(k) * 45 + static_cast<std::size_t>(j)) * 61 +
-                                      static_cast<std::size_t>(i)];
-          const openvdb::Coord at(i, j, k);
-          wrong += accessor.getValue(at) != wanted || accessor.isValueOn(at) != (wanted != 0) ? 1 : 0;
-        }
-      }
+    for (const auto [k, j, i] : indices(grid.nz, grid.ny, grid.nx)) {
+      const float wanted =
+          values[(static_cast<std::size_t>(k) * 45 + static_cast<std::size_t>(j)) * 61 + static_cast<std::size_t>(i)];
+      const openvdb::Coord at(i, j, k);
+      wrong += accessor.getValue(at) != wanted || accessor.isValueOn(at) != (wanted != 0) ? 1 : 0;
     }
     CHECK(wrong == 0);
   }
