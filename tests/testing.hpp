@@ -18,6 +18,9 @@
 #include "base/error.hpp"
 #include "indices.hpp"
 
+// Settings are made by the names of those that a test sets; the others are as they are declared.
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+
 /// The fault of the Error that the call throws; nothing when it throws none.
 inline std::optional<vam::Fault> fault_of(const std::function<void()>& call) {
   try {

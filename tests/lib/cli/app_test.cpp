@@ -235,8 +235,7 @@ TEST_CASE("an operand without a default, and any before it, is shown as required
 }
 
 TEST_CASE("the manual lists the variables and statuses of what the tool has") {
-  Declaration tool;
-  tool.manual = {"vam-demo", "shows"};
+  Declaration tool{.manual = {"vam-demo", "shows"}};
   const std::string bare = printed_manual(tool);
   CHECK(bare.find("VAM_PRINTER") == std::string::npos);
   CHECK(bare.find(".It 1\n") == std::string::npos);
@@ -328,8 +327,7 @@ TEST_CASE("a job is every option but those declared to be none of it, with the v
 }
 
 TEST_CASE("a page keeps its text, and has between its marks what the tool declares") {
-  Declaration tool;
-  tool.manual = {"vam-demo", "shows"};
+  Declaration tool{.manual = {"vam-demo", "shows"}};
   tool.manual.page =
       ".\\\" <name>\nof before\n.\\\" </name>\n.Sh DESCRIPTION\nShows.\n.\\\" <kinds>\n.\\\" </kinds>\nMore.\n";
   tool.manual.lists = {{"kinds", {"One.", "Two."}}};
@@ -339,8 +337,7 @@ TEST_CASE("a page keeps its text, and has between its marks what the tool declar
 }
 
 TEST_CASE("the manual page escapes the control characters of roff") {
-  Declaration tool;
-  tool.manual = {"vam-demo", "shows"};
+  Declaration tool{.manual = {"vam-demo", "shows"}};
   tool.manual.lists = {{"kinds", {".starts with a dot and a \\ and 5 µm. Next sentence."}}};
   const std::string page = printed_manual(tool);
   CHECK(page.find("\\&.starts") != std::string::npos);

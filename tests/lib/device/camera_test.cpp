@@ -180,9 +180,7 @@ TEST_CASE("A camera is waited for three periods and an exposure beyond a second,
   CHECK(settings.patience_s(0.5) == doctest::Approx(4.5));
   settings.timeout_s = 0.25;
   CHECK(settings.patience_s(0.5) == 0.25);
-  CameraMode mode;
-  mode.columns = 4;
-  mode.rows = 3;
+  CameraMode mode{.columns = 4, .rows = 3};
   CHECK_FALSE(another_size(mode, 4, 3));
   CHECK(another_size(mode, 4, 2) == "4 x 2 pixels instead of 4 x 3");
   CHECK(another_size(mode, 5, 3) == "5 x 3 pixels instead of 4 x 3");
@@ -219,8 +217,7 @@ TEST_CASE("Pixels: luma of limited range fills the levels from black to full") {
 
 TEST_CASE("A series by count, by number and by angle; lost frames are counted") {
   const auto bench = recording(20, 10, {3, 4}, {7});
-  CapturePlan plan;
-  plan.frames = 6;
+  CapturePlan plan{.frames = 6};
   Taken taken = take(bench, plan);
   CHECK(taken.places == std::vector<long>{0, 1, 2, 3, 4, 5});
   CHECK(taken.numbers == std::vector<long>{0, 1, 2, 5, 6, 7});
@@ -258,10 +255,7 @@ TEST_CASE("A followed series begins at angle 0 and keeps the frame nearest to ea
       return AngleSample{t_s, 33 * (t_s - 7.5), 0.01};
     }
   } angles;
-  CapturePlan plan;
-  plan.frames = 4;
-  plan.by_number = true;
-  plan.latency_s = 0.05;
+  CapturePlan plan{.frames = 4, .by_number = true, .latency_s = 0.05};
   Taken taken = take(recording(20, 0, {}, {}), plan, &angles);
   CHECK(taken.numbers == std::vector<long>{6, 7, 8, 9});  // 7.6 s less 50 ms is the first after 7.5 s
   CHECK(taken.places == std::vector<long>{0, 1, 2, 3});
@@ -273,9 +267,7 @@ TEST_CASE("A followed series begins at angle 0 and keeps the frame nearest to ea
 
 TEST_CASE("A simulated camera: virtual pace does not wait, lost and cut frames, a pulled cable") {
   VirtualClock clock;
-  CameraSettings settings;
-  settings.fps = 10;
-  settings.binning = 8;
+  CameraSettings settings{.fps = 10, .binning = 8};
   const auto camera = open_camera("sim:?pace=virtual&drop=1&incomplete=2&unplug=4", settings, {}, clock);
   CHECK(camera->mode().columns == 90);
   camera->start();
@@ -312,8 +304,7 @@ TEST_CASE("A camera's address and settings are checked before anything is opened
   CHECK(fault("sim:?part=cube") == Fault::usage);
   CHECK(fault("sim:?part=sphere:height=3") == Fault::usage);
   CHECK(fault("sim:?bits=12") == Fault::usage);
-  CameraSettings wrong;
-  wrong.trigger = "Line0";
+  CameraSettings wrong{.trigger = "Line0"};
   CHECK(fault("sim:", wrong) == Fault::usage);
   wrong = {};
   wrong.binning = 1000;

@@ -80,8 +80,7 @@ class Heard final : public UsbLink {
 std::vector<std::string> heard_by(const SimDlpSettings& sim) {
   std::vector<std::string> reports;
   VirtualClock clock;
-  LightSettings settings;
-  settings.current_percent = 33.4;
+  LightSettings settings{.current_percent = 33.4};
   const auto light = make_dlp_light(std::make_unique<Heard>(make_sim_dlp(sim, {}), reports), settings, clock, nullptr);
   light->prepare();
   light->on();
@@ -176,9 +175,7 @@ TEST_CASE("LED current never exceeds the requested value, on either board and fr
         CAPTURE(dlpc900);
         CAPTURE(inverted);
         CAPTURE(percent);
-        LightSettings settings;
-        settings.current_percent = percent;
-        settings.max_current_percent = 100;
+        LightSettings settings{.current_percent = percent, .max_current_percent = 100};
         LightLab lab({.dlpc900 = dlpc900, .inverted = inverted}, settings);
         lab.light->prepare();
         lab.light->on();
@@ -192,8 +189,7 @@ TEST_CASE("LED current never exceeds the requested value, on either board and fr
 }
 
 TEST_CASE("The current is capped, as given and as found") {
-  LightSettings settings;
-  settings.current_percent = 41;
+  LightSettings settings{.current_percent = 41};
   CHECK(error_of([&] { LightLab lab({}, settings); }, Fault::usage).find("41 % is above the limit of 40 %") !=
         std::string::npos);
   settings.max_current_percent = 50;
@@ -214,8 +210,7 @@ TEST_CASE("The current is capped, as given and as found") {
   LightLab stuck({.inverted = true, .stuck_polarity = true}, settings);
   CHECK(error_of([&] { stuck.light->prepare(); }, Fault::protocol)
             .find("LED polarity was set to 00 but reads back as 01") != std::string::npos);
-  LightSettings odd;
-  odd.leds = std::string("bx");
+  LightSettings odd{.leds = std::string("bx")};
   CHECK(fault_of([&] { LightLab lab({}, odd); }) == Fault::usage);
 }
 

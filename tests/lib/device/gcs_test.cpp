@@ -21,16 +21,13 @@ TEST_CASE("A PI controller reports its identity and its limits") {
 }
 
 TEST_CASE("A controller of a daisy chain is addressed and its answers are checked") {
-  SimGcsSettings sim;
-  sim.address = 2;
-  GcsSettings gcs;
-  gcs.address = 2;
+  SimGcsSettings sim{.address = 2};
+  GcsSettings gcs{.address = 2};
   VirtualStage lab(sim, gcs);
   CHECK(describe(*lab.stage)["model"] == "C-863.11");
   // All that a print sends is addressed, single bytes included: this controller hears nothing else.
   home(*lab.stage, lab.clock, 60);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   double last_deg = 0;
   spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { last_deg = sample.angle_deg; });
   CHECK(last_deg >= 360);
@@ -44,9 +41,7 @@ TEST_CASE("A controller of a daisy chain is addressed and its answers are checke
 }
 
 TEST_CASE("commands are addressed to one controller of a chain") {
-  GcsSettings gcs;
-  gcs.address = 2;
-  VirtualStage first({}, gcs);
+  VirtualStage first({}, GcsSettings{.address = 2});
   CHECK(fault_of([&] { (void)first.stage->moving(); }) == Fault::busy);
   CHECK(fault_of([&] { (void)first.stage->homed(); }) == Fault::busy);
   CHECK(fault_of([&] { first.stage->stop(Stop::abrupt); }) == Fault::busy);
@@ -89,9 +84,7 @@ TEST_CASE("Homing ends at the reference, moves end at their angle") {
 }
 
 TEST_CASE("The controller's refusals are errors with their meaning") {
-  SimGcsSettings sim;
-  sim.max_deg = 100;
-  VirtualStage lab(sim);
+  VirtualStage lab(SimGcsSettings{.max_deg = 100});
   CHECK(message_of([&] { move(*lab.stage, lab.clock, 5, false, 10, 10); }).find("not referenced") != std::string::npos);
   home(*lab.stage, lab.clock, 60);
   CHECK(message_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }).find("limits") != std::string::npos);
@@ -107,8 +100,7 @@ TEST_CASE("The controller's refusals are errors with their meaning") {
 }
 
 TEST_CASE("A stage that stands elsewhere than at its target has not arrived") {
-  SimGcsSettings sim;
-  sim.referenced = true;
+  SimGcsSettings sim{.referenced = true};
   sim.faults.push_back({"block", "#5", 6});
   VirtualStage lab(sim);
   const auto told = error_of([&] { move(*lab.stage, lab.clock, 90, false, 30, 60); }, Fault::protocol);
@@ -124,10 +116,7 @@ TEST_CASE("A slow motion times out and is stopped") {
 
 // Every command of a whole run, with every way of its answer to be wrong.
 TEST_CASE("GCS: corrupt replies are detected in time and the stage stops") {
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
-  plan.period_s = 0.05;
-  plan.run_up_turns = 0.5;
+  SpinPlan plan{.speed_deg_s = 60, .run_up_turns = 0.5, .period_s = 0.05};
   struct Case {
     const char* kind;
     Fault fault;

@@ -23,12 +23,9 @@ struct GrblLab : StageLab {
 }  // namespace
 
 TEST_CASE("GRBL: refuses motion before homing") {
-  SimGcsSettings sim;
-  sim.reset_at_open = true;
-  GrblLab lab(sim);
+  GrblLab lab(SimGcsSettings{.reset_at_open = true});
   lab.open();
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
   CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
         std::string::npos);
@@ -40,9 +37,7 @@ TEST_CASE("GRBL: refuses motion before homing") {
 }
 
 TEST_CASE("GRBL: a board that reports inches is refused, as its angles are none") {
-  SimGcsSettings sim;
-  sim.inches = true;
-  GrblLab lab(sim);
+  GrblLab lab(SimGcsSettings{.inches = true});
   lab.open();
   const auto told = error_of([&] { move(*lab.stage, lab.clock, 10, true, 30, 60); }, Fault::protocol);
   CHECK(told.find("reports inches ($13=1), which are no degrees; send it $13=0") != std::string::npos);
@@ -52,11 +47,8 @@ TEST_CASE("GRBL: a board that reports inches is refused, as its angles are none"
 TEST_CASE("GRBL: each process homes, with or without a start-up message; only homing unlocks the board") {
   for (const bool resets : {true, false}) {
     CAPTURE(resets);
-    SimGcsSettings sim;
-    sim.reset_at_open = resets;
-    GrblLab lab(sim);
-    SpinPlan plan;
-    plan.speed_deg_s = 60;
+    GrblLab lab(SimGcsSettings{.reset_at_open = resets});
+    SpinPlan plan{.speed_deg_s = 60};
     const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
     for (int user = 0; user < 3; ++user) {
       lab.open();
@@ -74,14 +66,11 @@ TEST_CASE("GRBL: each process homes, with or without a start-up message; only ho
 }
 
 TEST_CASE("GRBL: a board without switches takes its present position as zero, for one session") {
-  SimGcsSettings sim;
-  sim.no_switches = true;
-  GrblLab lab(sim);
+  GrblLab lab(SimGcsSettings{.no_switches = true});
   lab.open();
   CHECK(error_of([&] { home(*lab.stage, lab.clock, 60); }, Fault::protocol).find("?home=here") != std::string::npos);
   lab.open(true);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   std::vector<AngleSample> samples;
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [&](const AngleSample& s) { samples.push_back(s); }); };
   CHECK(fault_of(print) == Fault::data);
@@ -97,9 +86,7 @@ TEST_CASE("GRBL: a board without switches takes its present position as zero, fo
 }
 
 TEST_CASE("GRBL: home=here unlocks a board without switches, and is refused by one that has them") {
-  SimGcsSettings sim;
-  sim.no_switches = true;
-  GrblLab lab(sim);
+  GrblLab lab(SimGcsSettings{.no_switches = true});
   lab.open(true);
   lab.stage->set_speed(10);
   lab.stage->start_move(100);
@@ -147,8 +134,7 @@ TEST_CASE("A GRBL board homes, moves and prints like any other stage") {
   CHECK(lab.stage->sample().angle_deg == 0);
   move(*lab.stage, lab.clock, 30, false, 30, 60);
   CHECK(lab.stage->sample().angle_deg == 30);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   std::vector<AngleSample> samples;
   spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
   CHECK_FALSE(lab.truly_moves());
@@ -171,10 +157,7 @@ TEST_CASE("GRBL: corrupt replies are detected in time and the stage stops") {
   const std::vector<Case> cases{{"garbage", Fault::protocol}, {"truncated", Fault::busy}, {"late", Fault::busy},
                                 {"silent", Fault::busy},      {"error", Fault::protocol}, {"unplug", Fault::absent},
                                 {"power-loss", Fault::absent}};
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
-  plan.period_s = 0.05;
-  plan.run_up_turns = 0.5;
+  SpinPlan plan{.speed_deg_s = 60, .run_up_turns = 0.5, .period_s = 0.05};
   for (const std::string command : {"$I", "$$", "$H", "$J", "?"}) {
     for (const auto& [kind, fault] : cases) {
       for (const int occurrence : {1, 3, 20}) {  // the second report is that of the search, which needs none
@@ -209,8 +192,7 @@ TEST_CASE("GRBL: corrupt replies are detected in time and the stage stops") {
 }
 
 TEST_CASE("A GRBL board that searches its reference is stopped like one that jogs") {
-  SimGcsSettings sim;
-  sim.home_deg = 170;
+  SimGcsSettings sim{.home_deg = 170};
   sim.motor.acceleration_deg_s2 = 600;
   GrblLab lab(sim);
   lab.open();

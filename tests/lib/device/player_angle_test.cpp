@@ -81,8 +81,7 @@ constexpr int frames_per_turn = 3600;
 // |angle of the shown frame - true angle in the middle of its showing|, 99th percentile.
 double p99_error_deg(const Run& run, AngleSource& angles, VirtualClock& clock, PlayTally& tally) {
   const auto display = open_display("null:?hz=60", {16, 8, 60}, clock, nullptr);
-  PlayPlan plan;
-  plan.frames_per_turn = frames_per_turn;
+  PlayPlan plan{.frames_per_turn = frames_per_turn};
   for (int i = 0; i < frames_per_turn; ++i) display->add(GreyImage(16, 8, 8));
   std::vector<double> errors;
   tally = play(*display, nullptr, angles, clock, plan, [&](const FlipRecord& record) {
@@ -111,9 +110,7 @@ TEST_CASE(
       SimGcsSettings sim;
       sim.motor.speed_error = speed_error;
       sim.jitter_s = 0.005;
-      SpinPlan plan;
-      plan.speed_deg_s = speed_deg_s;
-      const Run run = recorded(sim, plan);
+      const Run run = recorded(sim, SpinPlan{.speed_deg_s = speed_deg_s});
       VirtualClock clock(run.truth.front().first);
       Replay followed(run, clock);
       PlayTally tally;
@@ -162,8 +159,7 @@ TEST_CASE("A late flip is logged as late, and those after it are still predicted
   LateDisplay display(clock);
   for (int i = 0; i < frames_per_turn; ++i) display.add(GreyImage(16, 8, 8));
   const auto angles = elapsed_angle(25, clock);
-  PlayPlan plan;
-  plan.frames_per_turn = frames_per_turn;
+  PlayPlan plan{.frames_per_turn = frames_per_turn};
   int late = 0;
   int lit = 0;
   double worst_deg = 0;

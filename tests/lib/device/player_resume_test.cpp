@@ -19,10 +19,7 @@ double play_part(double from_deg, int turns, long killed_after, double phase_s, 
   const auto display = open_display("null:", {4, 4, 60}, clock, nullptr);
   for (int i = 0; i < 36; ++i) display->add(GreyImage(4, 4, 8));
   Steady angles(clock.now_s() + 2 + phase_s);
-  PlayPlan plan;
-  plan.frames_per_turn = 36;
-  plan.turns = turns;
-  plan.from_deg = from_deg;
+  PlayPlan plan{.frames_per_turn = 36, .turns = turns, .from_deg = from_deg};
   FlipRecord last;
   long lit = 0;
   const auto log = [&](const FlipRecord& record) {

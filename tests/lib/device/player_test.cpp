@@ -25,8 +25,7 @@ TEST_CASE("Light only from angle 0 to the last turn's end, and black after") {
   for (int i = 0; i < 360; ++i) display->add(GreyImage(4, 4, 8));
   const double zero_s = clock.now_s() + 14;
   Steady angles(zero_s);
-  PlayPlan plan;
-  plan.turns = 2;
+  PlayPlan plan{.turns = 2};
   std::vector<FlipRecord> records;
   const PlayTally tally =
       play(*display, light.get(), angles, clock, plan, [&](const FlipRecord& record) { records.push_back(record); });
@@ -51,10 +50,7 @@ TEST_CASE("Light only from angle 0 to the last turn's end, and black after") {
 TEST_CASE("Frames of two turns: those of the second in every other turn") {
   VirtualClock clock;
   const auto display = open_display("null:", {4, 4, 60}, clock, nullptr);
-  PlayPlan plan;
-  plan.frames_per_turn = 36;
-  plan.frames = 72;
-  plan.turns = 4;
+  PlayPlan plan{.frames_per_turn = 36, .frames = 72, .turns = 4};
   for (int i = 0; i < plan.frames; ++i) display->add(GreyImage(4, 4, 8));
   Steady angles(clock.now_s() + 14);
   int lit = 0;
@@ -81,9 +77,7 @@ PlayTally play_missing(int miss, double allowed_lit, std::vector<int>& leds) {
   const auto display = open_display("null:?miss=" + std::to_string(miss), {4, 4, 60}, clock, nullptr);
   display->add(GreyImage(4, 4, 8));
   Steady angles(clock.now_s() + 13);
-  PlayPlan plan;
-  plan.frames_per_turn = 1;
-  plan.allowed_missed_lit = allowed_lit;
+  PlayPlan plan{.frames_per_turn = 1, .allowed_missed_lit = allowed_lit};
   return play(*display, light.get(), angles, clock, plan, [](const FlipRecord&) {});
 }
 
@@ -130,10 +124,7 @@ TEST_CASE("Frames may be exchanged before the first frame of a turn, and nothing
   VirtualClock clock;
   Watched display(clock);
   for (int i = 0; i < 4; ++i) display.add(GreyImage(4, 4, 8));
-  PlayPlan plan;
-  plan.frames_per_turn = 4;
-  plan.turns = 3;
-  plan.from_deg = 90;
+  PlayPlan plan{.frames_per_turn = 4, .turns = 3, .from_deg = 90};
   std::vector<FlipRecord> flips;
   std::vector<std::pair<int, std::size_t>> turns;  // and the flips before
   plan.next_turn = [&](int turn) {
@@ -157,10 +148,7 @@ TEST_CASE("Frames may say for how many turns there is light, but not for more th
     VirtualClock clock;
     Watched display(clock);
     for (int i = 0; i < 4; ++i) display.add(GreyImage(4, 4, 8));
-    PlayPlan plan;
-    plan.frames_per_turn = 4;
-    plan.turns = 5;
-    plan.next_turn = [left](int turn) { return turn == 2 ? left : 0; };
+    PlayPlan plan{.frames_per_turn = 4, .turns = 5, .next_turn = [left](int turn) { return turn == 2 ? left : 0; }};
     double last_deg = 0;
     const auto angles = elapsed_angle(90, clock);
     play(display, nullptr, *angles, clock, plan, [&](const FlipRecord& record) {
@@ -188,9 +176,7 @@ TEST_CASE("A light engine that fails in a print: the right fault, the screen bla
         CAPTURE(after);
         VirtualClock clock;
         std::vector<Json> leds;
-        SimDlpSettings sim;
-        sim.dlpc900 = dlpc900;
-        sim.fault = kind;
+        SimDlpSettings sim{.dlpc900 = dlpc900, .fault = kind};
         const int to_prepare = dlpc900 ? 24 : 16;  // reports
         sim.fault_after = to_prepare + after;
         auto light =
@@ -198,8 +184,7 @@ TEST_CASE("A light engine that fails in a print: the right fault, the screen bla
         light->prepare();
         Watched display(clock);
         display.add(GreyImage(4, 4, 8));
-        PlayPlan plan;
-        plan.frames_per_turn = 1;
+        PlayPlan plan{.frames_per_turn = 1};
         const auto angles = elapsed_angle(90, clock);
         CHECK(fault_of([&] { play(display, light.get(), *angles, clock, plan, [](const FlipRecord&) {}); }) == fault);
         CHECK(display.shown == -1);

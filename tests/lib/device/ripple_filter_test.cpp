@@ -53,11 +53,7 @@ Errors print(double ripple, double jitter_s, int seed) {
       sum += error;
       covered += std::abs(error) <= 2 * predicted.sigma_deg ? 1 : 0;
     }
-    StageSample sample;
-    sample.angle_deg = at(taken_s);
-    sample.t0_s = asked_s;
-    sample.t1_s = answered_s;
-    const AngleSample now = trips.timed(sample, 25);
+    const AngleSample now = trips.timed(StageSample{.angle_deg = at(taken_s), .t0_s = asked_s, .t1_s = answered_s}, 25);
     learn(trips, middles);
     fit.add(now);
     asked_s = std::max(answered_s, asked_s + 0.01);

@@ -36,10 +36,7 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
     VirtualStage lab;
     home(*lab.stage, lab.clock, 60);
     move(*lab.stage, lab.clock, 123, false, 50, 60);
-    SpinPlan plan;
-    plan.speed_deg_s = 36;
-    plan.turns = 2;
-    plan.direction = direction;
+    SpinPlan plan{.speed_deg_s = 36, .turns = 2, .direction = direction};
     std::vector<AngleSample> samples;
     spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
     CHECK_FALSE(lab.truly_moves());
@@ -67,9 +64,7 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
 TEST_CASE("A moving stage is sampled every 200 ms at least, whatever the rate of the output") {
   VirtualStage lab;
   home(*lab.stage, lab.clock, 60);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
-  plan.period_s = 1;
+  SpinPlan plan{.speed_deg_s = 60, .period_s = 1};
   std::vector<AngleSample> samples;
   spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
   CHECK_FALSE(lab.truly_moves());
@@ -93,9 +88,7 @@ TEST_CASE("A moving stage is sampled every 200 ms at least, whatever the rate of
 TEST_CASE("Angle zero is at the same place in every run") {
   VirtualStage lab;
   home(*lab.stage, lab.clock, 60);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
-  plan.period_s = 0.02;
+  SpinPlan plan{.speed_deg_s = 60, .period_s = 0.02};
   double turned_deg = 0;  // since homing, from the first angle of each run to the next
   for (int run = 0; run < 3; ++run) {
     double first_deg = NAN;
@@ -108,21 +101,16 @@ TEST_CASE("Angle zero is at the same place in every run") {
 }
 
 TEST_CASE("More turns than the travel allows are refused before anything moves") {
-  SimGcsSettings sim;
-  sim.min_deg = -1000;
-  sim.max_deg = 1000;
-  VirtualStage lab(sim);
+  VirtualStage lab(SimGcsSettings{.min_deg = -1000, .max_deg = 1000});
   home(*lab.stage, lab.clock, 60);
-  SpinPlan plan;
-  plan.turns = 3;
+  SpinPlan plan{.turns = 3};
   CHECK(fault_of([&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); }) == Fault::data);
   CHECK(lab.commands("MOV") == 0);
 }
 
 TEST_CASE("GCS: a stage without reference does not spin, and is not made one that has it") {
   VirtualStage lab;
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
   for (int attempt = 0; attempt < 2; ++attempt) {
     CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
@@ -140,8 +128,7 @@ TEST_CASE("GCS: a stage without reference does not spin, and is not made one tha
 }
 
 TEST_CASE("A stage that is still braking is waited for") {
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   const std::vector<std::function<void(VirtualStage&)>> commands{
       [&](VirtualStage& lab) { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); },
       [](VirtualStage& lab) { home(*lab.stage, lab.clock, 60); },
@@ -172,8 +159,7 @@ TEST_CASE("A stage 1 % off its speed may print, one 3 % off may not") {
     sim.jitter_s = 0.005;
     VirtualStage lab(sim);
     home(*lab.stage, lab.clock, 60);
-    SpinPlan plan;
-    plan.speed_deg_s = 25;
+    SpinPlan plan{.speed_deg_s = 25};
     double last_deg = -1e9;
     const auto fault = fault_of(
         [&] { spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { last_deg = sample.angle_deg; }); });
@@ -192,9 +178,7 @@ TEST_CASE("A blocked stage is detected within a few degrees") {
   sim.faults.push_back({"block", "POS?", 900});
   VirtualStage lab(sim);
   home(*lab.stage, lab.clock, 60);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
-  plan.turns = 5;
+  SpinPlan plan{.speed_deg_s = 60, .turns = 5};
   CHECK(fault_of([&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); }) == Fault::protocol);
   double blocked_s = 0;
   for (const auto& line : lab.log) {

@@ -38,8 +38,7 @@ TEST_CASE("A Tic homes, moves and prints like any other stage") {
   home(*lab.stage, lab.clock, 60);
   move(*lab.stage, lab.clock, 30, false, 30, 60);
   CHECK(lab.stage->sample().angle_deg == 30);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   std::vector<AngleSample> samples;
   spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
   CHECK(samples.back().angle_deg >= 360);
@@ -49,8 +48,7 @@ TEST_CASE("A Tic homes, moves and prints like any other stage") {
 
 TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smooth stop keeps it certain") {
   TicLab lab;
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
   CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
         std::string::npos);
@@ -76,8 +74,7 @@ TEST_CASE("A Tic finds its switch, however long that takes") {
 TEST_CASE("A Tic that stops in a print says why") {
   TicLab lab;
   home(*lab.stage, lab.clock, 60);
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
+  SpinPlan plan{.speed_deg_s = 60};
   bool late = false;
   const auto hold_up = [&](const AngleSample& sample) {  // its command time-out
     if (sample.angle_deg > 90 && !std::exchange(late, true)) lab.clock.sleep_until(lab.clock.now_s() + 4);
@@ -91,14 +88,9 @@ TEST_CASE("A Tic that stops in a print says why") {
 TEST_CASE("The angle of a Tic with coarse steps is predicted within 0.05 degrees") {
   for (const double steps_per_deg : {8.889, 50.0}) {
     CAPTURE(steps_per_deg);
-    SimTicSettings sim;
-    sim.steps_per_deg = steps_per_deg;
-    TicLab lab(sim, steps_per_deg);
+    TicLab lab(SimTicSettings{.steps_per_deg = steps_per_deg}, steps_per_deg);
     home(*lab.stage, lab.clock, 60);
-    SpinPlan plan;
-    plan.speed_deg_s = 60;
-    plan.run_up_turns = 1;
-    plan.turns = 3;
+    SpinPlan plan{.speed_deg_s = 60, .turns = 3, .run_up_turns = 1};
     RippleFilter fit;
     std::vector<std::pair<double, double>> samples;
     std::vector<std::pair<double, double>> predicted;
@@ -137,9 +129,7 @@ TEST_CASE("Tic stops after its command time-out") {
 }
 
 TEST_CASE("The Tic's errors are named and stop the start") {
-  SimTicSettings sim;
-  sim.error_bits = 8;
-  TicLab lab(sim);
+  TicLab lab(SimTicSettings{.error_bits = 8});
   CHECK(message_of([&] { lab.stage->enable(); }).find("kill switch") != std::string::npos);
   CHECK(fault_of([&] { lab.stage->enable(); }) == Fault::protocol);
 }
@@ -150,18 +140,12 @@ TEST_CASE("Tic: corrupt replies are detected in time and the stage stops") {
                                                          {"garbage", Fault::protocol},
                                                          {"truncated", Fault::protocol},
                                                          {"unplug", Fault::absent}};
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
-  plan.period_s = 0.05;
-  plan.run_up_turns = 0.5;
+  SpinPlan plan{.speed_deg_s = 60, .run_up_turns = 0.5, .period_s = 0.05};
   for (const auto& [kind, fault] : cases) {
     for (const int after : {0, 1, 2, 5, 10, 60, 200}) {
       CAPTURE(kind);
       CAPTURE(after);
-      SimTicSettings sim;
-      sim.fault = kind;
-      sim.fault_after = after;
-      TicLab lab(sim);
+      TicLab lab(SimTicSettings{.fault = kind, .fault_after = after});
       CHECK(fault_of([&] {
               home(*lab.stage, lab.clock, 60);
               spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {});

@@ -52,10 +52,7 @@ TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to 
     VirtualClock clock;
     V4l2Script script;
     script.flags |= source;
-    CameraSettings settings;
-    settings.exposure_us = 20000;
-    settings.stamp = requested;
-    const auto camera = v4l2(script, clock, settings);
+    const auto camera = v4l2(script, clock, CameraSettings{.exposure_us = 20000, .stamp = requested});
     CHECK(camera->identify()["stamp"] == recorded);
     camera->start();
     CHECK(camera->next()->time_s == doctest::Approx(middle_s));
@@ -64,12 +61,9 @@ TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to 
 
 TEST_CASE("V4L2: frames without monotonic stamps are timed by arrival, by the shortest delay of 10 s") {
   VirtualClock clock;
-  V4l2Script script;
-  script.flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
-  script.arrivals_s = {1010.530, 1011.502, 1014.590, 1015.510};
-  CameraSettings settings;
-  settings.exposure_us = 20000;
-  settings.stamp = "start";
+  V4l2Script script{.flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN | V4L2_BUF_FLAG_TSTAMP_SRC_SOE,
+                    .arrivals_s = {1010.530, 1011.502, 1014.590, 1015.510}};
+  CameraSettings settings{.exposure_us = 20000, .stamp = "start"};
   const auto taken = [&] {
     const auto camera = v4l2(script, clock, settings);
     CHECK(camera->identify()["stamp"] == "arrival");
@@ -89,10 +83,9 @@ TEST_CASE("V4L2: frames without monotonic stamps are timed by arrival, by the sh
 
 TEST_CASE("V4L2: stamps of another clock than stated are not believed, and the user is told once") {
   VirtualClock clock;
-  V4l2Script script;
-  script.flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN;
-  script.stated_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-  script.arrivals_s = {1010.5, 1011.6};
+  V4l2Script script{.flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN,
+                    .stated_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC,
+                    .arrivals_s = {1010.5, 1011.6}};
   const auto camera = v4l2(script, clock);
   camera->start();
   const auto said = said_by([&] {
@@ -109,8 +102,7 @@ TEST_CASE("V4L2: automatics are switched off, gamma is linear, gain is set and r
   CHECK(v4l2(script, clock)->mode().gain == 17);  // as the camera has it
   CHECK(script.controls.at(V4L2_CID_AUTOGAIN) == 0);
   CHECK(script.controls.at(V4L2_CID_GAMMA) == 100);
-  CameraSettings settings;
-  settings.gain = 40;
+  CameraSettings settings{.gain = 40};
   const auto camera = v4l2(script, clock, settings);
   CHECK(camera->mode().gain == 40);
   CHECK(camera->mode().gamma == 1.0);
@@ -153,8 +145,7 @@ TEST_CASE("V4L2: an exposure or a gain between the steps of the camera is refuse
   const auto refusal = [&](const CameraSettings& settings) {
     return error_of([&] { (void)v4l2(script, clock, settings); }, Fault::protocol);
   };
-  CameraSettings settings;
-  settings.exposure_us = 16667;
+  CameraSettings settings{.exposure_us = 16667};
   CHECK(v4l2(script, clock, settings)->mode().exposure_us == 16700);
   for (const auto& [wanted_us, got] :
        {std::pair(40.0, "0 instead of 40"), std::pair(50.0, "100 instead of 50"),
@@ -173,11 +164,9 @@ TEST_CASE("V4L2: an exposure or a gain between the steps of the camera is refuse
 
 TEST_CASE("V4L2: a camera without an exposure time is refused with what it has") {
   VirtualClock clock;
-  V4l2Script script;
-  script.exposes = false;
+  V4l2Script script{.exposes = false};
   CHECK(v4l2(script, clock)->mode().exposure_us == 0);
-  CameraSettings settings;
-  settings.exposure_us = 20000;
+  CameraSettings settings{.exposure_us = 20000};
   const auto refusal = [&] { return error_of([&] { (void)v4l2(script, clock, settings); }, Fault::usage); };
   CHECK(has(refusal(), "has no exposure time (V4L2_CID_EXPOSURE_ABSOLUTE); use another camera"));
   script.controls[V4L2_CID_EXPOSURE] = 7;
@@ -186,11 +175,8 @@ TEST_CASE("V4L2: a camera without an exposure time is refused with what it has")
 
 TEST_CASE("V4L2: a rate that cannot be set is taken where it agrees, and told where it is not known") {
   VirtualClock clock;
-  V4l2Script script;
-  script.rate_limit = 30;
-  script.rate_errno = ENOTTY;
-  CameraSettings settings;
-  settings.fps = 30;
+  V4l2Script script{.rate_limit = 30, .rate_errno = ENOTTY};
+  CameraSettings settings{.fps = 30};
   CHECK(said_by([&] { CHECK(v4l2(script, clock, settings)->mode().fps == doctest::Approx(30)); }).empty());
   settings.fps = 25;
   const auto call = [&] { (void)v4l2(script, clock, settings); };
@@ -205,8 +191,7 @@ TEST_CASE("V4L2: a rate that cannot be set is taken where it agrees, and told wh
 TEST_CASE("V4L2: a rate within a hundredth of the requested one is taken for it") {
   VirtualClock clock;
   V4l2Script script;
-  CameraSettings settings;
-  settings.fps = 10000;
+  CameraSettings settings{.fps = 10000};
   script.rate_limit = 9900;
   CHECK(v4l2(script, clock, settings)->mode().fps == 9900);
   script.rate_limit = 9899;
@@ -226,8 +211,7 @@ TEST_CASE("V4L2: luma is of limited range unless the driver says otherwise") {
         Case{V4L2_QUANTIZATION_FULL_RANGE, V4L2_COLORSPACE_SRGB, false}}) {
     for (const auto format : {V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_GREY}) {
       VirtualClock clock;
-      V4l2Script script;
-      script.formats = {format};
+      V4l2Script script{.formats = {format}};
       script.sequence = {229};  // and with it the first byte
       script.quantization = quantization;
       script.colorspace = colorspace;
@@ -243,10 +227,7 @@ TEST_CASE("V4L2: luma is of limited range unless the driver says otherwise") {
 
 TEST_CASE("V4L2: the luma of UYVY is every second byte from the second on") {
   VirtualClock clock;
-  V4l2Script script;
-  script.formats = {V4L2_PIX_FMT_UYVY};
-  script.sequence = {49};
-  script.quantization = V4L2_QUANTIZATION_FULL_RANGE;
+  V4l2Script script{.formats = {V4L2_PIX_FMT_UYVY}, .sequence = {49}, .quantization = V4L2_QUANTIZATION_FULL_RANGE};
   const auto camera = v4l2(script, clock);
   camera->start();
   CHECK(camera->next()->levels.values == std::vector<std::uint16_t>{50, 52, 54, 56, 58, 60, 62, 64});
@@ -280,9 +261,7 @@ TEST_CASE("V4L2: a known depth is preferred, and one that is not known is told")
 TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error flag") {
   VirtualClock clock;
   V4l2Script script;
-  CameraSettings settings;
-  settings.exposure_us = 20000;
-  settings.fps = 25;
+  CameraSettings settings{.exposure_us = 20000, .fps = 25};
   script.short_sequence = 14;
   const auto camera = v4l2(script, clock, settings);
   CHECK(camera->identify()["model"] == "fake");
@@ -347,15 +326,11 @@ TEST_CASE("V4L2: an unsupported setting is named in the error") {
   const auto fault = [&](const CameraSettings& settings) {
     return fault_of([&] { (void)v4l2(script, clock, settings); });
   };
-  CameraSettings fast;
-  fast.fps = 60;
+  CameraSettings fast{.fps = 60};
   script.rate_limit = 30;
   CHECK(fault(fast) == Fault::protocol);
-  CameraSettings binned;
-  binned.binning = 2;
-  CHECK(fault(binned) == Fault::usage);
-  CameraSettings deep;
-  deep.format = "Y16";
+  CHECK(fault(CameraSettings{.binning = 2}) == Fault::usage);
+  CameraSettings deep{.format = "Y16"};
   CHECK(fault(deep) == Fault::usage);
   CHECK(has(message_of([&] { (void)v4l2(script, clock, deep); }), "no pixel format Y16; it has YUYV, GREY, supported"));
   script.formats = {V4L2_PIX_FMT_MJPEG, V4L2_PIX_FMT_NV12, V4L2_PIX_FMT_Y16_BE};

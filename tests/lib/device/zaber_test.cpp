@@ -22,22 +22,14 @@ struct ZaberLab : StageLab {
   void open(const ZaberSettings& settings = {}) { stage = make_zaber_stage(port(), clock, settings, nullptr); }
 };
 
-SpinPlan one_turn() {
-  SpinPlan plan;
-  plan.speed_deg_s = 60;
-  plan.period_s = 0.05;
-  plan.run_up_turns = 0.5;
-  return plan;
-}
+SpinPlan one_turn() { return {.speed_deg_s = 60, .run_up_turns = 0.5, .period_s = 0.05}; }
 
 }  // namespace
 
 TEST_CASE("A Zaber stage homes, moves and prints like any other stage") {
   for (const bool old : {false, true}) {
     CAPTURE(old);
-    SimGcsSettings sim;
-    sim.old_firmware = old;
-    ZaberLab lab(sim);
+    ZaberLab lab(SimGcsSettings{.old_firmware = old});
     lab.open();
     const Json about = describe(*lab.stage);
     CHECK(about["model"] == "device 50081");
@@ -63,9 +55,7 @@ TEST_CASE("A Zaber stage homes, moves and prints like any other stage") {
 TEST_CASE("Zaber: the speed goes with the motion, into the memory only of old firmware and only when it changes") {
   for (const bool old : {false, true}) {
     CAPTURE(old);
-    SimGcsSettings sim;
-    sim.old_firmware = old;
-    ZaberLab lab(sim);
+    ZaberLab lab(SimGcsSettings{.old_firmware = old});
     lab.open();
     home(*lab.stage, lab.clock, 60);
     for (const double to_deg : {10.0, 20.0}) move(*lab.stage, lab.clock, to_deg, false, 25, 60);
@@ -92,12 +82,9 @@ TEST_CASE("Zaber: refuses motion to an angle before homing, and takes one by an 
 }
 
 TEST_CASE("Zaber: only the addressed device obeys, and its axis") {
-  SimGcsSettings sim;
-  sim.address = 2;
-  ZaberLab lab(sim);
+  ZaberLab lab(SimGcsSettings{.address = 2});
   CHECK(fault_of([&] { lab.open(); }) == Fault::busy);
-  ZaberSettings second;
-  second.address = 2;
+  ZaberSettings second{.address = 2};
   lab.open(second);
   home(*lab.stage, lab.clock, 60);
   second.axis = 2;

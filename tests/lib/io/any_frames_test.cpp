@@ -179,28 +179,26 @@ TEST_CASE("views of a folder are a step apart; a stack has its own angles or non
   }
   CHECK_FALSE(images.next(frame));
 
-  model::StackInfo info;
-  info.kind = model::Kind::frames;
-  info.space = model::Space::camera;
-  info.width = 4;
-  info.height = 2;
-  info.count = 3;
-  info.pixel_mm = 0.25;
-  info.history = {"vam-capture"};
+  model::StackInfo info{.kind = model::Kind::frames,
+                        .space = model::Space::camera,
+                        .width = 4,
+                        .height = 2,
+                        .count = 3,
+                        .pixel_mm = 0.25,
+                        .history = {"vam-capture"}};
   for (const double step_deg : {0.0, 3.0}) {
     info.angle_step_deg = step_deg;
     {
       StackWriter writer(folder / "v.exr", info);
       for (int i = 0; i < 3; ++i) {
-        model::ImageInfo about;
-        about.number = i;
-        about.incomplete = i == 1;
-        about.has_number = true;
-        about.has_time = true;
-        about.time_s = 10 + i;
-        about.time_sigma_s = 0.001;
-        about.angle_deg = step_deg * i;
-        about.has_angle = step_deg != 0;
+        model::ImageInfo about{.angle_deg = step_deg * i,
+                               .time_s = 10.0 + i,
+                               .has_angle = step_deg != 0,
+                               .has_time = true,
+                               .time_sigma_s = 0.001,
+                               .has_number = true,
+                               .number = i,
+                               .incomplete = i == 1};
         writer.write(Image(4, 2, static_cast<float>(1 + i)), about);
       }
       writer.commit();

@@ -37,8 +37,7 @@ inline double volume(const TriangleSoup& mesh) {
 }
 
 inline TriangleSoup box() {
-  TriangleSoup mesh;
-  mesh.points = box_points;
+  TriangleSoup mesh{.points = box_points};
   for (const auto& f : box_faces) {
     mesh.triangles.push_back({f[0], f[1], f[2]});
     mesh.triangles.push_back({f[0], f[2], f[3]});

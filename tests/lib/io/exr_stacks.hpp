@@ -6,14 +6,13 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include <string>
 #include <utility>
 
 #include "io/exr/stack.hpp"
 #include "lib/io/scratch.hpp"
+#include "testing.hpp"
 
 namespace vam::stacks {
 
@@ -22,16 +21,15 @@ using scratch::spill;
 using scratch::status;
 
 inline model::StackInfo sinogram(int width, int height, int count) {
-  model::StackInfo info;
-  info.width = width;
-  info.height = height;
-  info.count = count;
-  info.pixel_mm = 0.1;
-  info.row_mm = 0.1;
-  info.z_start_mm = -3;
-  info.angle_step_deg = 1;
-  info.units = "mJ/cm2";
-  info.history = {"vam-slice 0.1.0 part.stl", "vam-sinogram 0.1.0"};
+  model::StackInfo info{.width = width,
+                        .height = height,
+                        .count = count,
+                        .pixel_mm = 0.1,
+                        .row_mm = 0.1,
+                        .z_start_mm = -3,
+                        .angle_step_deg = 1,
+                        .units = "mJ/cm2",
+                        .history = {"vam-slice 0.1.0 part.stl", "vam-sinogram 0.1.0"}};
   info.extra["owner of the part, a rather long attribute name"] = "somebody";
   return info;
 }

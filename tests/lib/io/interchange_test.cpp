@@ -27,11 +27,7 @@ bool holds(const std::string& text, const std::string& part) { return text.find(
 
 TEST_CASE("exrheader and exrmultipart read a stack, from a file and from a pipe") {
   const scratch::Folder folder;
-  model::StackInfo info;
-  info.width = 7;
-  info.height = 5;
-  info.count = 3;
-  info.pixel_mm = 0.065;
+  model::StackInfo info{.width = 7, .height = 5, .count = 3, .pixel_mm = 0.065};
   for (const bool piped : {false, true}) {
     {
       const scratch::Redirect to(STDOUT_FILENO, folder / "piped.exr");

@@ -70,9 +70,7 @@ TEST_CASE("1/mu = R: a gyroid keeps its process window when absorption is in the
   const double absorbing_pw = solve(absorbing, with);
   Slab image(size, 360);
   clear.expand(without.g[0], image);
-  Iterate left_out;
-  left_out.g = slabs(1, size, 360);
-  left_out.dose = slabs(1, size, size);
+  Iterate left_out{.g = slabs(1, size, 360), .dose = slabs(1, size, size)};
   absorbing.collapse(image, left_out.g[0]);
   absorbing.adjoint(left_out.g, left_out.dose);
   const double left_out_pw = metrics(left_out.dose, problem)[0].pw;

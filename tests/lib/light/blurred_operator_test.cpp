@@ -100,9 +100,7 @@ TEST_CASE("a narrow beam through the vial has, blurred, the profile of light tra
   const VialSetup setup = vial_setup(size, 36);
   const VialOperator sharp(setup);
   const BlurredOperator light(sharp, sigma_px, lanes);
-  vam::oracle::Bench bench;
-  bench.lens_distance = 119.808L;
-  bench.cylinders = {{12.7L, 1.53L}};
+  vam::oracle::Bench bench{.lens_distance = 119.808L, .cylinders = {{12.7L, 1.53L}}};
   for (const auto& [column, row] : {std::pair{219, 0}, {160, 7}, {280, 20}}) {
     CAPTURE(column);
     Slab image(light.image().width, light.image().height);

@@ -20,11 +20,7 @@ constexpr int angles = 24;
 constexpr double voxel_mm = 0.2;
 
 model::Printer printer() {
-  model::Printer p;
-  p.projector.columns = columns;
-  p.projector.rows = 260;
-  p.projector.pixel_mm = voxel_mm;
-  p.projector.axis_column = 23.5;
+  model::Printer p{.projector = {.columns = columns, .rows = 260, .pixel_mm = voxel_mm, .axis_column = 23.5}};
   p.projector.axis_row = 200;  // most of the part far above the lens's axis: rays climb by 10 slices
   p.projector.lens_distance_mm = 60;
   p.vial.radius_mm = 5;

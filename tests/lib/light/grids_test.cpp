@@ -28,11 +28,7 @@ model::Printer telecentric() {
   return printer;
 }
 
-model::Pose lifted(double mm) {
-  model::Pose pose;
-  pose.dz_mm = mm;
-  return pose;
-}
+model::Pose lifted(double mm) { return {.dz_mm = mm}; }
 
 }  // namespace
 

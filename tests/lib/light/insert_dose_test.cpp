@@ -28,25 +28,18 @@ const Form ring = [](double x, double y) {
 };
 
 model::Printer printer(double absorption_per_mm) {
-  model::Printer result;
-  result.projector.columns = 400;
-  result.projector.pixel_mm = 0.065;
-  result.projector.axis_column = 199.5;
-  result.projector.lens_distance_mm = 119.808;
-  result.resin.absorption_per_mm = absorption_per_mm;
-  return result;
+  return {.projector = {.columns = 400, .pixel_mm = 0.065, .lens_distance_mm = 119.808, .axis_column = 199.5},
+          .resin = {.absorption_per_mm = absorption_per_mm}};
 }
 
 model::StackInfo stack(model::Space space, int columns, double pixel_mm) {
-  model::StackInfo info;
-  info.space = space;
-  info.width = columns;
-  info.height = 120;
-  info.count = 1;
-  info.pixel_mm = pixel_mm;
-  info.row_mm = voxel;
-  info.angle_step_deg = 3;
-  return info;
+  return {.space = space,
+          .width = columns,
+          .height = 120,
+          .count = 1,
+          .pixel_mm = pixel_mm,
+          .row_mm = voxel,
+          .angle_step_deg = 3};
 }
 
 struct Compared {
@@ -82,11 +75,10 @@ Image dose_around(const model::Printer& bench, const model::StackInfo& info, con
 }
 
 vam::oracle::WalkedDose walk(const model::Printer& bench, const std::vector<float>& insert) {
-  vam::oracle::WalkedDose slow;
-  slow.size = size;
-  slow.voxel = voxel;
-  slow.edge = model::resin_radius_mm(bench.vial);
-  slow.absorption = bench.resin.absorption_per_mm;
+  vam::oracle::WalkedDose slow{.size = size,
+                               .voxel = voxel,
+                               .edge = model::resin_radius_mm(bench.vial),
+                               .absorption = bench.resin.absorption_per_mm};
   for (int a = 0; a < 120; ++a) slow.angles.push_back(bench.stage.direction * a * turn_rad / 120);
   slow.insert = insert;
   return slow;
@@ -122,10 +114,7 @@ TEST_CASE("around an insert, convex or concave, the dose of chief rays agrees wi
     const model::StackInfo info = stack(model::Space::projector, 400, 0.065);
     vam::oracle::WalkedDose slow = walk(bench, insert);
     const optics::View view = optics::projector_view(bench);
-    vam::oracle::Bench glass;
-    glass.lens_distance = view.lens_mm;
-    glass.bath = view.bath_index;
-    glass.window = view.window_mm;
+    vam::oracle::Bench glass{.lens_distance = view.lens_mm, .bath = view.bath_index, .window = view.window_mm};
     for (const optics::Shell& shell : view.shells) glass.cylinders.push_back({shell.radius_mm, shell.index});
     const double pitch = 0.065 / 4;
     for (int k = 0; k < 1600; ++k) {

@@ -59,14 +59,13 @@ TEST_CASE("Fourier slices are for light that is neither absorbed nor blocked") {
 TEST_CASE("the light of a virtual sinogram is that of its columns, in voxels of the grid") {
   model::Printer printer;
   printer.resin.absorption_per_mm = 0.04;
-  model::StackInfo info;
-  info.kind = model::Kind::sinogram;
-  info.space = model::Space::virtual_;
-  info.width = 20;
-  info.height = 90;
-  info.pixel_mm = 0.5;
-  info.angle_start_deg = 30;
-  info.angle_step_deg = 4;
+  model::StackInfo info{.kind = model::Kind::sinogram,
+                        .space = model::Space::virtual_,
+                        .width = 20,
+                        .height = 90,
+                        .pixel_mm = 0.5,
+                        .angle_start_deg = 30,
+                        .angle_step_deg = 4};
   const model::Grid grid = model::centred_grid(16, 14, 3, 0.5);
   const auto of = [&] { return std::get<ParallelBeam>(beam_of(printer, {}, info, grid)); };
   const ParallelBeam beam = of();

@@ -65,17 +65,11 @@ Case make_case(int n) {
 // What the machine prints when its light was corrected as if it were `assumed`.
 Image printed(const Case& c, const View& machine, const View& assumed,
               Interpolation interpolation = Interpolation::cubic, bool keep_negative = false) {
-  ResampleOptions options;
-  options.interpolation = interpolation;
-  options.keep_negative = keep_negative;
+  ResampleOptions options{.interpolation = interpolation, .keep_negative = keep_negative};
   std::vector<Image> light(1);
   resample(plan_to_projector(assumed, centred_detector(c.sinogram.width, 1), projector, turn, options),
            {&c.sinogram, 1}, light);
-  VialSetup setup;
-  setup.view = machine;
-  setup.projector = projector;
-  setup.turn = turn;
-  setup.grid = c.grid;
+  VialSetup setup{.view = machine, .projector = projector, .turn = turn, .grid = c.grid};
   return parts::dose_of(setup, light.front());
 }
 

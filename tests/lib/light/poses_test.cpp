@@ -15,14 +15,12 @@ namespace {
 
 /// 40 rows of 0.1 mm before a vial.
 model::Printer low_picture() {
-  model::Printer printer;
-  printer.projector.columns = 240;
-  printer.projector.rows = 40;
-  printer.projector.pixel_mm = 0.1;
-  printer.projector.axis_column = 119.5;
-  printer.projector.axis_row = 19.5;
-  printer.projector.lens_distance_mm = 120;
-  return printer;
+  return {.projector = {.columns = 240,
+                        .rows = 40,
+                        .pixel_mm = 0.1,
+                        .lens_distance_mm = 120,
+                        .axis_column = 119.5,
+                        .axis_row = 19.5}};
 }
 
 }  // namespace

@@ -31,12 +31,7 @@ model::StackInfo stack(model::Space space, int columns, double pixel_mm, int cou
 }
 
 model::Printer small_printer() {
-  model::Printer printer;
-  printer.projector.columns = 200;
-  printer.projector.pixel_mm = 0.15;
-  printer.projector.axis_column = 99.5;
-  printer.projector.lens_distance_mm = 120;
-  return printer;
+  return {.projector = {.columns = 200, .pixel_mm = 0.15, .lens_distance_mm = 120, .axis_column = 99.5}};
 }
 
 }  // namespace
@@ -158,9 +153,7 @@ TEST_CASE("absolute dose: mu / Omega times the light of one turn [CAL19 eq 1]") 
 }
 
 TEST_CASE("turns and seconds to the critical dose") {
-  model::Printer printer;
-  printer.resin.critical_dose_mj_cm3 = 100;
-  printer.resin.absorption_per_mm = 0.05;
+  model::Printer printer{.resin = {.absorption_per_mm = 0.05, .critical_dose_mj_cm3 = 100}};
   Image dose(3, 1);
   dose.values = {1, 2, 4};
   Image target(3, 1);

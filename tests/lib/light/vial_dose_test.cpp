@@ -21,11 +21,10 @@ const View matched{std::nullopt, 1.53, 20, {{12.7, 1.53}}};     // telecentric i
 
 VialSetup setup_of(const View& view, int n, double size_mm, int angles = 360, int columns = 440,
                    double pixel_mm = 0.065) {
-  VialSetup setup;
-  setup.view = view;
-  setup.projector = centred_detector(columns, pixel_mm);
-  setup.turn = {angles, 0, turn_rad / angles};
-  setup.grid = model::centred_grid(n, n, 1, size_mm / n);
+  VialSetup setup{.view = view,
+                  .projector = centred_detector(columns, pixel_mm),
+                  .turn = {angles, 0, turn_rad / angles},
+                  .grid = model::centred_grid(n, n, 1, size_mm / n)};
   return setup;
 }
 

@@ -44,9 +44,7 @@ TEST_CASE("an empty insert casts no shadow in the vial") {
 TEST_CASE("a ray traced by Snell's law is lit as far as the insert and dark behind it") {
   const int size = 128;
   const VialSetup setup = vial_setup(size, 36);
-  vam::oracle::Bench bench;
-  bench.lens_distance = 119.808L;
-  bench.cylinders = {{12.7L, 1.53L}};
+  vam::oracle::Bench bench{.lens_distance = 119.808L, .cylinders = {{12.7L, 1.53L}}};
   for (const auto& [column, row] : {std::pair{219, 0}, {160, 7}, {300, 20}}) {
     const auto ray = vam::oracle::trace(bench, setup.projector.x_mm(column));
     REQUIRE(ray);

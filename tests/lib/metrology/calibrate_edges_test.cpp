@@ -32,9 +32,7 @@ SweepScan swept(const vam::oracle::SweepTruth& truth, double pitch_px, double fi
                 vam::oracle::Random& random) {
   const vam::oracle::SweepBench bench(truth);
   const std::vector<double> height_mm{7.5, 6, 4.5, 1.5, 0, -1.5, -4.5, -6, -7.5};  // three rows a band
-  SweepScan scan;
-  scan.width_px = 2;
-  scan.height_mm = {band_mm, 0, -band_mm};
+  SweepScan scan{.width_px = 2, .height_mm = {band_mm, 0, -band_mm}};
   scan.signal.resize(bands);
   for (double column = first; column <= last; column += pitch_px) {
     scan.column.push_back(column);
@@ -51,8 +49,7 @@ TEST_CASE("Vial edges: many sweeps, 95 % inside 2 sigma, centre within 0.1 px, r
   std::uniform_real_distribution<double> part;
   test::Coverage centre("centre"), radius("radius"), tilt("tilt");
   for (int run = 0; run < trials_or(48); ++run) {
-    vam::oracle::SweepTruth truth;
-    truth.radius_mm = 10 + 4 * part(random);
+    vam::oracle::SweepTruth truth{.radius_mm = 10 + 4 * part(random)};
     if (run % 4 == 0) {  // a glass wall that is not matched
       truth.wall_mm = 1;
       truth.glass_index = 1.47;
@@ -84,9 +81,7 @@ TEST_CASE("Vial edges: a resin that absorbs moves neither the axis nor the radiu
   for (int run = 0; run < 8; ++run) {
     CAPTURE(run);
     vam::oracle::Random random(run);
-    vam::oracle::SweepTruth truth;
-    truth.electrons = 1e4;
-    truth.noise = 0.1;
+    vam::oracle::SweepTruth truth{.noise = 0.1, .electrons = 1e4};
     if (run % 2 == 1) truth.camera_rad *= -1;
     if (run / 2 % 2 == 1) truth.camera_rad *= 5.0 / 6;
     if (run / 4 == 1) truth.lens_mm.reset();
@@ -105,8 +100,7 @@ TEST_CASE("Vial edges: a resin that absorbs moves neither the axis nor the radiu
 // [physics §12]
 TEST_CASE("Vial edges: the tangent column is further out than the vial") {
   vam::oracle::Random random(3);
-  vam::oracle::SweepTruth truth;
-  truth.noise = 0.5;
+  vam::oracle::SweepTruth truth{.noise = 0.5};
   const VialEdges found = find_edges(swept(truth, 1, 250, 770, random), printer_of(truth));
   const double tangent_px =
       truth.radius_mm / truth.pixel_mm / std::sqrt(1 - std::pow(truth.radius_mm / *truth.lens_mm, 2));

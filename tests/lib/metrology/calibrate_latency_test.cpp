@@ -25,8 +25,7 @@ double between(double low, double high, std::mt19937_64& random) { return low * 
 
 // As vam-calibrate latency does.
 BlinkScan scan_of(const oracle::BlinksSeen& seen, double exposure_s) {
-  BlinkScan scan;
-  scan.exposure_s = exposure_s;
+  BlinkScan scan{.exposure_s = exposure_s};
   bool was_white = false;
   for (const auto& [t_s, white] : seen.flips) {
     if (white && !was_white) scan.lit_s.emplace_back(t_s, seen.flips.back().first);
@@ -52,12 +51,10 @@ double screen_hz(std::mt19937_64& random) {
 
 // As vam-calibrate-all shows them, at any latency and of any rise.
 ScreenTruth any_screen(std::mt19937_64& random) {
-  ScreenTruth screen;
-  screen.order = optics::pattern_order({"blink"}, {});
-  screen.hz = screen_hz(random);
-  screen.delay_s = 0.12 * part(random);
-  screen.rise_s = between(1e-5, 1.5e-3, random);
-  return screen;
+  return {.hz = screen_hz(random),
+          .delay_s = 0.12 * part(random),
+          .rise_s = between(1e-5, 1.5e-3, random),
+          .order = optics::pattern_order({"blink"}, {})};
 }
 
 CameraTruth any_camera(double hz, double shortest_s, double longest_s, std::mt19937_64& random) {
@@ -78,8 +75,7 @@ struct Outcome {
 };
 
 Outcome run_of(const ScreenTruth& screen, const CameraTruth& camera, std::mt19937_64& random) {
-  Outcome outcome;
-  outcome.truth_ms = 1e3 * (screen.delay_s + screen.rise_s);
+  Outcome outcome{.truth_ms = 1e3 * (screen.delay_s + screen.rise_s)};
   try {
     const auto ms = measure_latency(scan_of(watch_blinks(screen, camera, random), camera.exposure_s)).ms;
     if (ms.sigma > 0.5) {
@@ -143,14 +139,8 @@ TEST_CASE("Latency: a camera in step with the screen is right or refused, and ex
 
 TEST_CASE("Latency: between exposures in step with the screen it is open over their difference, which is told") {
   std::mt19937_64 random(7);
-  ScreenTruth screen;
-  screen.order = optics::pattern_order({"blink"}, {});
-  screen.missed = 0;
-  CameraTruth camera;
-  camera.hz = 15;
-  camera.exposure_s = 0.005;
-  camera.jitter_s = 1e-8;
-  camera.lost = 0;
+  ScreenTruth screen{.missed = 0, .order = optics::pattern_order({"blink"}, {})};
+  CameraTruth camera{.hz = 15, .exposure_s = 0.005, .jitter_s = 1e-8, .lost = 0};
   int open = 0;
   for (int run = 0; run < 40; ++run) {
     screen.delay_s = 0.02 + run / 60.0 / 40;

@@ -129,13 +129,12 @@ TEST_CASE("Beam: width of each plane and divergence, 200 scans") {
     BeamWidths widths;
     for (int plane = -5; plane <= 5; ++plane) {
       const double y_mm = 1.27 * plane;
-      vam::oracle::BandTruth truth;
-      truth.columns = 160;
-      truth.rows = 48;
-      truth.middle = 79.5 + 5 * (part(random) - 0.5);
-      truth.half_width = 0.5 * fwhm_mm(y_mm) / pixel_mm;
-      truth.blur_px = 1.5;
-      truth.light = 400;
+      vam::oracle::BandTruth truth{.columns = 160,
+                                   .rows = 48,
+                                   .middle = 79.5 + 5 * (part(random) - 0.5),
+                                   .half_width = 0.5 * fwhm_mm(y_mm) / pixel_mm,
+                                   .blur_px = 1.5,
+                                   .light = 400};
       const Measured px = line_width_px(vam::oracle::bright_band(truth, random), "plane");
       if (plane == 3) width.add(px, 2 * truth.half_width);
       widths.plane_mm.push_back(y_mm);
@@ -161,19 +160,17 @@ TEST_CASE("Camera axis: offset, tilt, wobble and its phase, 200 turns") {
     const double lean = 0.04 * (part(random) - 0.5);
     const double amplitude = 1 + 2 * part(random);
     const double phase_deg = 30 + 300 * part(random);
-    TurnScan scan;
-    scan.rows = 24;
+    TurnScan scan{.rows = 24};
     scan.middle.resize(3);
     for (int n = 0; n < 24; ++n) {
       scan.angle_deg.push_back(15 * n + 3 * part(random));
       const double theta = (scan.angle_deg.back() - phase_deg) * std::numbers::pi / 180;
-      vam::oracle::BandTruth truth;
-      truth.columns = 130;
-      truth.rows = 24;
-      truth.middle = axis + amplitude * std::cos(theta) + 0.05 * std::sin(2 * theta);
-      truth.lean = lean;
-      truth.half_width = 30;
-      truth.noise = 6;
+      vam::oracle::BandTruth truth{.columns = 130,
+                                   .rows = 24,
+                                   .middle = axis + amplitude * std::cos(theta) + 0.05 * std::sin(2 * theta),
+                                   .lean = lean,
+                                   .half_width = 30,
+                                   .noise = 6};
       const auto middles = bright_middles(vam::oracle::bright_band(truth, random), 3);
       for (std::size_t b = 0; b < 3; ++b) scan.middle[b].push_back(middles[b]);
     }
@@ -189,8 +186,7 @@ TEST_CASE("Camera axis: offset, tilt, wobble and its phase, 200 turns") {
   wobble.check();
   phase.check();
   CHECK(column.worst() < 0.1);
-  TurnScan half;
-  half.rows = 3;
+  TurnScan half{.rows = 3};
   half.middle.resize(1);
   for (int n = 0; n < 18; ++n) {
     half.angle_deg.push_back(10.0 * n);
@@ -238,8 +234,7 @@ namespace {
 // Two turns of a bead in frames whose time stamps are late; its column by its own angle, the reported one by the stamp.
 TurnScan late_turn(double speed_deg_s, int direction, double lag_s, double bead_deg, vam::oracle::Random& random,
                    std::vector<double>& time_s) {
-  TurnScan turn;
-  turn.rows = 60;
+  TurnScan turn{.rows = 60};
   turn.middle.resize(1);
   time_s.clear();
   for (int i = 0; i < 72; ++i) {

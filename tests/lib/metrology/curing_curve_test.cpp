@@ -229,8 +229,7 @@ TEST_CASE("A working curve by planned doses and reconstructed views has the crit
   const GreyImage frame = bands(printer.projector);
   const std::vector<GreyImage> frames(angles, frame);
   const model::Volume dose = planned_dose(printer, frame);
-  metrology::OstOptions how;
-  how.growing = true;
+  metrology::OstOptions how{.growing = true};
   const metrology::OstReconstructor rig(printer, printer.camera.pixel_mm, bench.columns, bench.rows,
                                         {0.5 * (bench.columns - 1), 0}, how);
   std::vector<metrology::CuringReading> readings;

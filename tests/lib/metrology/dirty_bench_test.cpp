@@ -31,12 +31,7 @@ std::vector<oracle::Body> post(double half_mm = 6.2) {
 }
 
 // No wider than the post is seen through the resin.
-oracle::ViewBench narrow_bench() {
-  oracle::ViewBench bench;
-  bench.columns = 400;
-  bench.axis_column = 199.5;
-  return bench;
-}
+oracle::ViewBench narrow_bench() { return {.columns = 400, .axis_column = 199.5}; }
 
 // What soils a view soils that of a low post alike, in half the time; ctest --preset long has the whole one.
 bool is_whole() { return trials_or(1) > 1; }

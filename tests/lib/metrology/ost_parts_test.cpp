@@ -81,8 +81,7 @@ void judge(const std::string& shape, double size_mm, int columns, int rows) {
                                       test::even_angles(96), noise, binning, {0.15, field.radius_mm + 0.2});
   const AxisEstimate axis = find_axis(mean_view(views));
   const auto rms_of = [&](bool refraction) {
-    OstOptions options;
-    options.refraction = refraction;
+    OstOptions options{.refraction = refraction};
     const OstReconstructor rig(printer, voxel_mm, columns / binning, rows / binning, axis.pose, options);
     return surface_rms(field, solid::isosurface(rig.reconstruct(views), 0.5));
   };

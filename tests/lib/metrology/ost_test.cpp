@@ -119,8 +119,7 @@ TEST_CASE("the volume is as high as the rows, and z = 0 is at the row of the len
   // A row is as high as seen from the lens: glass of 1 mm and resin of 11.7 bring the axis nearer.
   const double row_mm = 0.16 * (200 - 12.7 + 1 / 1.52 + 11.7 / 1.5) / 200;
   const auto middle_mm = [&](std::optional<double> axis_row) {
-    OstOptions options;
-    options.axis_row = axis_row;
+    OstOptions options{.axis_row = axis_row};
     const model::Grid grid = OstReconstructor(printer, 0.16, 128, 64, {0.5 * 127, 0}, options).grid();
     CHECK(grid.nz == static_cast<int>(64 * row_mm / 0.16));
     return grid.z_mm(0.5 * (grid.nz - 1));

@@ -27,13 +27,7 @@ std::vector<CameraView> views_of(const oracle::ViewBench& bench, const std::vect
 }
 
 oracle::ViewBench small_bench() {
-  oracle::ViewBench bench;
-  bench.columns = 120;
-  bench.rows = 64;
-  bench.pixel_mm = 0.15;
-  bench.axis_column = 59.5;
-  bench.axis_row = 31.5;
-  return bench;
+  return {.columns = 120, .rows = 64, .pixel_mm = 0.15, .axis_column = 59.5, .axis_row = 31.5};
 }
 
 std::vector<oracle::Body> part() {

@@ -38,14 +38,7 @@ std::vector<CameraView> seen(const oracle::ViewBench& bench, const std::vector<o
 }
 
 oracle::ViewBench coarse_bench() {
-  oracle::ViewBench bench;
-  bench.columns = 160;
-  bench.rows = 96;
-  bench.pixel_mm = 0.15;
-  bench.rays = 2;
-  bench.axis_column = 79.5;
-  bench.axis_row = 47.5;
-  return bench;
+  return {.columns = 160, .rows = 96, .pixel_mm = 0.15, .axis_column = 79.5, .axis_row = 47.5, .rays = 2};
 }
 
 // A post with a hole, two blocks beside the axis.
@@ -153,15 +146,14 @@ TEST_CASE("a run-out of 0.1 mm is seen, and a print without it is as it is") {
                                        {Kind::block, {5.2, 0.5, -1.3}, {0.9, 1.2, 0.7}, 1}};
   for (const double bath : {1.0, 1.4}) {
     CAPTURE(bath);
-    oracle::ViewBench bench;
-    bench.columns = 400;
-    bench.rows = 140;
-    bench.axis_column = 199.5;
-    bench.axis_row = 69.5;
-    bench.rays = 2;
-    bench.run_out_mm = {0.06, -0.08};
-    bench.bath_index = bath;
-    bench.window_mm = bath > 1 ? 20 : 0;
+    oracle::ViewBench bench{.window_mm = bath > 1 ? 20.0 : 0.0,
+                            .bath_index = bath,
+                            .columns = 400,
+                            .rows = 140,
+                            .axis_column = 199.5,
+                            .axis_row = 69.5,
+                            .rays = 2,
+                            .run_out_mm = {0.06, -0.08}};
     const auto views = seen(bench, post, 0, 1, 120);
     const AxisEstimate axis = find_axis(mean_view(views));
     const RunOut found = found_in(bench, views, axis.pose);

@@ -127,9 +127,7 @@ TEST_CASE("The axis is found by the doses with the axis to either side, on its s
   const ScatterCurve curve = resin_curve();
   constexpr double px_mm = 0.05;
   const PlannedDose dose{{ripples(-2 * px_mm), ripples(0), ripples(2 * px_mm)}, 2};
-  SensitivityPrior prior;
-  prior.axis_px = 1;
-  const SensitivityField before = expected_sensitivity(dose.middle(), curve, prior);
+  const SensitivityField before = expected_sensitivity(dose.middle(), curve, SensitivityPrior{.axis_px = 1});
   CHECK(before.axis_sigma_px() == doctest::Approx(1));
   for (const double px : {-1.5, 0.0, 1.0}) {
     CAPTURE(px);

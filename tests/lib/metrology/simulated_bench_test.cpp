@@ -45,11 +45,7 @@ metrology::SweepScan swept(const sim::SimBench& bench, int pitch_px, int bits = 
 }
 
 sim::SimBench small_bench() {
-  sim::SimBench bench;
-  bench.columns = 200;
-  bench.rows = 60;
-  bench.axis_column = 2.5;
-  bench.tilt_deg = 0.4;
+  sim::SimBench bench{.columns = 200, .rows = 60, .axis_column = 2.5, .tilt_deg = 0.4};
   auto& printer = bench.printer;
   printer.projector.columns = 256;
   printer.projector.rows = 64;

@@ -18,10 +18,7 @@ TEST_CASE("a coarser voxel is where the eight that it covers are") {
 }
 
 TEST_CASE("coarser pixels are where the finer ones are, and the lens stays") {
-  Printer fine;
-  fine.projector.columns = 1025;
-  fine.projector.rows = 769;
-  fine.projector.axis_column = 500;
+  Printer fine{.projector = {.columns = 1025, .rows = 769, .axis_column = 500}};
   const Printer coarse = coarser(fine);
   CHECK(coarse.projector.columns == 513);
   CHECK(coarse.projector.rows == 385);

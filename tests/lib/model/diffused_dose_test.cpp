@@ -9,9 +9,7 @@ namespace {
 constexpr vam::oracle::SlitPrint slit{.slit_mm = 0.5, .diffusion_mm2_s = 1e-4, .seconds = 180};
 
 double spread_mm(double diffusion_mm2_s, double seconds) {
-  vam::model::Resin resin;
-  resin.diffusion_mm2_s = diffusion_mm2_s;
-  return vam::model::spread_mm(resin, seconds);
+  return vam::model::spread_mm(vam::model::Resin{.diffusion_mm2_s = diffusion_mm2_s}, seconds);
 }
 
 }  // namespace

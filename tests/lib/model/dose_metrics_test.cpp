@@ -143,9 +143,7 @@ TEST_CASE("conditions") {
 }
 
 TEST_CASE("a figure of merit is found by its name, any other is none") {
-  DoseMetrics metrics;
-  metrics.ver = 0.25;
-  metrics.pw = -0.5;
+  DoseMetrics metrics{.ver = 0.25, .pw = -0.5};
   CHECK(figure(metrics, "ver") == 0.25);
   CHECK(figure(metrics, "pw") == -0.5);
   CHECK(std::isnan(figure(metrics, "no figure")));

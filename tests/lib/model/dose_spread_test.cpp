@@ -42,12 +42,8 @@ struct Flashes {
   }
 };
 
-model::Resin resin_of(std::optional<double> lifetime_s, double dark_s = 0) {
-  model::Resin resin;
-  resin.dark_s = dark_s;
-  resin.diffusion_mm2_s = diffusion_mm2_s;
-  resin.dose_lifetime_s = lifetime_s;
-  return resin;
+model::Resin resin_of(std::optional<double> lifetime_s) {
+  return {.diffusion_mm2_s = diffusion_mm2_s, .dose_lifetime_s = lifetime_s};
 }
 
 }  // namespace

@@ -177,9 +177,7 @@ TEST_CASE("impossible geometries are refused") {
 }
 
 TEST_CASE("the window of a bath is between the vial and the lens") {
-  model::Printer printer;
-  printer.bath.index = 1.5;
-  printer.projector.lens_distance_mm = 60;
+  model::Printer printer{.projector = {.lens_distance_mm = 60}, .bath = {.index = 1.5}};
   const auto stands = [&](double window_mm) {
     printer.bath.window_mm = window_mm;
     try {

@@ -26,9 +26,7 @@ TEST_CASE("a smeared projection has the value of the detector's place under each
 }
 
 TEST_CASE("the projection at an angle is that of the row, between two rows their mean, and of a turn without an end") {
-  vam::model::StackInfo info;
-  info.angle_start_deg = 10;
-  info.angle_step_deg = 45;
+  vam::model::StackInfo info{.angle_start_deg = 10, .angle_step_deg = 45};
   vam::Image sinogram(3, 8);
   for (const auto [a, c] : indices(8, 3)) sinogram(c, a) = static_cast<float>(a + 10 * c);
   const auto at = [&](double angle_deg, double span_deg) { return projection_at(sinogram, info, angle_deg, span_deg); };
@@ -47,11 +45,7 @@ TEST_CASE("the projection at an angle is that of the row, between two rows their
 }
 
 TEST_CASE("the canvas has its axis in the middle of the projector's image, moved by the offsets") {
-  vam::model::Projector projector;
-  projector.columns = 10;
-  projector.rows = 7;
-  projector.pixel_mm = 0.3;
-  const ImagePlane canvas = flatland_canvas(projector, 1.5, -2);
+  const ImagePlane canvas = flatland_canvas(vam::model::Projector{.columns = 10, .rows = 7, .pixel_mm = 0.3}, 1.5, -2);
   CHECK(canvas.columns == 10);
   CHECK(canvas.rows == 7);
   CHECK(canvas.pixel_mm == 0.3);

@@ -37,13 +37,8 @@ double crossed(const oracle::Bench& bench, double half_width_mm, double radius_m
 }  // namespace
 
 TEST_CASE("beyond the writable radius light comes from the angles that traced rays cross") {
-  model::Printer printer;
-  printer.vial.wall_mm = 0.5;
-  printer.vial.index_glass = 1.47;
-  printer.projector.lens_distance_mm = 120;
-  oracle::Bench bench;
-  bench.lens_distance = 120;
-  bench.cylinders = {{12.7L, 1.47L}, {12.2L, 1.53L}};
+  model::Printer printer{.projector = {.lens_distance_mm = 120}, .vial = {.wall_mm = 0.5, .index_glass = 1.47}};
+  oracle::Bench bench{.lens_distance = 120, .cylinders = {{12.7L, 1.47L}, {12.2L, 1.53L}}};
   const double writable = writable_radius_mm(printer);
   CHECK(optics::lit_fraction(printer, 0) == 1);
   CHECK(optics::lit_fraction(printer, 0.99 * writable) == 1);

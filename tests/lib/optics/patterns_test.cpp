@@ -8,14 +8,7 @@ using namespace vam::optics;
 
 namespace {
 
-model::Projector small_projector() {
-  model::Projector projector;
-  projector.columns = 64;
-  projector.rows = 48;
-  projector.axis_column = 30;
-  projector.axis_row = 20;
-  return projector;
-}
+model::Projector small_projector() { return {.columns = 64, .rows = 48, .axis_column = 30, .axis_row = 20}; }
 
 long lit(const GreyImage& image) {
   return std::count_if(image.values.begin(), image.values.end(), [](std::uint16_t level) { return level > 0; });

@@ -35,10 +35,7 @@ FrameComposer composed(const StackInfo& info, const FramePlace& place) {
 
 TEST_CASE("a stack with poses is shown for the turns that it has, and does not wrap unless it can be repeated") {
   StackInfo info = two_turns();
-  FramePlace place;
-  place.columns = 12;
-  place.rows = 1;
-  place.pixel_mm = 0.1;
+  FramePlace place{.columns = 12, .rows = 1, .pixel_mm = 0.1};
   CHECK(fault_of([&] { FrameComposer("part.exr", info, place); }) == vam::Fault::data);  // two turns
   for (int k = 0; k < 8; ++k) info.poses.push_back({90.0 * k, 0, 0, 0.1 * k, vam::model::Moves::vial});
   const FrameComposer helix = composed(info, place);

@@ -12,16 +12,14 @@ using vam::model::StackInfo;
 namespace {
 
 StackInfo sinograms(int width, int angles, int count, double pixel_mm, double row_mm, double z_start_mm) {
-  StackInfo info;
-  info.space = vam::model::Space::projector;
-  info.width = width;
-  info.height = angles;
-  info.count = count;
-  info.pixel_mm = pixel_mm;
-  info.row_mm = row_mm;
-  info.z_start_mm = z_start_mm;
-  info.angle_step_deg = 360.0 / angles;
-  return info;
+  return {.space = vam::model::Space::projector,
+          .width = width,
+          .height = angles,
+          .count = count,
+          .pixel_mm = pixel_mm,
+          .row_mm = row_mm,
+          .z_start_mm = z_start_mm,
+          .angle_step_deg = 360.0 / angles};
 }
 
 // A value that tells slice, angle and column apart; dark in the outer two columns.

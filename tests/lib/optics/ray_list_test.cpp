@@ -10,12 +10,8 @@
 using namespace vam;
 
 TEST_CASE("the rays of the middle row are those of the map") {
-  model::Printer printer;
-  printer.projector.columns = 3;
-  printer.projector.axis_column = 1;
-  printer.projector.axis_row = 383;
-  printer.projector.pixel_mm = 2;
-  printer.projector.lens_distance_mm = 120;
+  model::Printer printer{
+      .projector = {.columns = 3, .pixel_mm = 2, .lens_distance_mm = 120, .axis_column = 1, .axis_row = 383}};
   std::ostringstream level;
   optics::write_rays(level, printer, optics::projector_detector(printer, {}), 383);
   const auto ray = optics::chief_ray(optics::projector_view(printer), 2);

@@ -210,8 +210,7 @@ TEST_CASE("resampling is what traced rays say, in both directions") {
     const Detector real = centred_detector(221, pixel_mm);
     const Detector virtual_ = centred_detector(161, pixel_mm);
     const Turn turn{120, 0, turn_rad / 120};
-    ResampleOptions plain;
-    plain.jacobian = false;
+    ResampleOptions plain{.jacobian = false};
     const double inside = 0.97 * reach_mm(view);
     double worst = 0;
     const Image to_real =

@@ -52,8 +52,7 @@ Image apply(const ResamplePlan& plan, const Image& in) {
 // RMS error against the definition S_v(x_v, theta + delta) J / T, all columns.
 double projector_error(int fineness, Interpolation interpolation) {
   const Sampling s = sampling(fineness);
-  ResampleOptions options;
-  options.interpolation = interpolation;
+  ResampleOptions options{.interpolation = interpolation};
   const Image got = apply(plan_to_projector(vial, s.virtual_, s.projector, s.turn, options), virtual_blob(s));
   double sum = 0;
   for (int c = 0; c < got.width; ++c) {
@@ -127,8 +126,7 @@ TEST_CASE("resampling there and back converges with the order of the cubic") {
 TEST_CASE("a matched telecentric bench changes nothing") {
   const Sampling s = sampling(1);
   const View matched{std::nullopt, 1.53, 20, {{40, 1.53}}};
-  ResampleOptions options;
-  options.fresnel = false;
+  ResampleOptions options{.fresnel = false};
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
     options.interpolation = interpolation;
     const Image in = virtual_blob(s);
@@ -155,8 +153,7 @@ TEST_CASE("direction and angle offset move the part, not the optics") {
   const Sampling s = sampling(1);
   const Image in = virtual_blob(s);
   const Image plain = apply(plan_to_projector(vial, s.virtual_, s.projector, s.turn, {}), in);
-  ResampleOptions options;
-  options.angle_offset_rad = 10 * s.turn.step_rad;
+  ResampleOptions options{.angle_offset_rad = 10 * s.turn.step_rad};
   const Image offset = apply(plan_to_projector(vial, s.virtual_, s.projector, s.turn, options), in);
   options.direction = -1;
   const Image reversed = apply(plan_to_projector(vial, s.virtual_, s.projector, s.turn, options), in);
@@ -239,12 +236,7 @@ TEST_CASE("half a turn and mixed shapes are refused") {
 }
 
 TEST_CASE("a stack without a column pitch is refused") {
-  model::StackInfo info;
-  info.width = 64;
-  info.height = 36;
-  info.count = 1;
-  info.row_mm = 0.1;
-  info.angle_step_deg = 10;
+  model::StackInfo info{.width = 64, .height = 36, .count = 1, .row_mm = 0.1, .angle_step_deg = 10};
   for (const double pitch : {0.0, -0.1, std::nan("")}) {
     info.pixel_mm = pitch;
     CHECK_THROWS_WITH_AS((void)stack_to_projector(model::Printer(), {}, info, {}),

@@ -8,24 +8,10 @@ using optics::SlicePlace;
 
 namespace {
 
-model::Projector projector() {
-  model::Projector projector;
-  projector.columns = 10;
-  projector.rows = 8;
-  projector.pixel_mm = 0.1;
-  projector.axis_column = 5;
-  projector.axis_row = 2.5;
-  return projector;
-}
+model::Projector projector() { return {.columns = 10, .rows = 8, .pixel_mm = 0.1, .axis_column = 5, .axis_row = 2.5}; }
 
 model::StackInfo slice(int width, int height, double pixel_mm = 0.1) {
-  model::StackInfo info;
-  info.width = width;
-  info.height = height;
-  info.pixel_mm = pixel_mm;
-  info.row_mm = 0.1;
-  info.z_start_mm = 1;
-  return info;
+  return {.width = width, .height = height, .pixel_mm = pixel_mm, .row_mm = 0.1, .z_start_mm = 1};
 }
 
 Image numbered(int width, int height) {

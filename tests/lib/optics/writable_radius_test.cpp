@@ -20,16 +20,11 @@ TEST_CASE("a glass wall does not narrow what is lit, until the resin itself ends
 }
 
 TEST_CASE("a matched bath opens the whole vial") {
-  model::Printer printer;
-  printer.bath = {1.53, 20};
-  CHECK(writable_radius_mm(printer) == doctest::Approx(12.7));
+  CHECK(writable_radius_mm(model::Printer{.bath = {1.53, 20}}) == doctest::Approx(12.7));
 }
 
 TEST_CASE("too few columns reduce the writable radius, the narrower side decides") {
-  model::Printer printer;
-  printer.projector.lens_distance_mm = 120;
-  printer.projector.columns = 201;
-  printer.projector.axis_column = 100;
+  model::Printer printer{.projector = {.columns = 201, .lens_distance_mm = 120, .axis_column = 100}};
   const double edge_mm = 100 * 0.065;
   const double narrow = edge_mm / std::hypot(1, edge_mm / 120) / 1.53;  // b / n, in air
   CHECK(writable_radius_mm(printer) == doctest::Approx(narrow));

@@ -13,11 +13,7 @@ constexpr double half_mm = 6.75;  // corners at 1.15 R/n
 constexpr int angles = 60;
 
 model::Printer printer() {
-  model::Printer printer;
-  printer.vial.wall_mm = 0.5;
-  printer.projector.telecentric = true;
-  printer.resin.absorption_per_mm = 0.05;
-  return printer;
+  return {.projector = {.telecentric = true}, .vial = {.wall_mm = 0.5}, .resin = {.absorption_per_mm = 0.05}};
 }
 
 parts::Part bar(double voxel_mm) {

@@ -106,8 +106,7 @@ TEST_CASE("weights: voxels of weight 0 are unconstrained, and errors move to whe
     if (x >= size / 2) weight[y * size + x] = 0.02F;
   }
   // Few angles and a wide window, so that errors remain.
-  Demands demands;
-  demands.window = {0.5, 1.1};
+  Demands demands{.window = {0.5, 1.1}};
   const auto even = problem_of(target, demands);
   const auto left = problem_of(target, demands, weight);
   for (const std::string name : {"apg", "pm"}) {

@@ -12,14 +12,7 @@ namespace {
 
 model::DoseMetrics slice(std::int64_t part, std::int64_t void_, double ver, double iou, double cv, double pw,
                          double ipdr) {
-  model::DoseMetrics m;
-  m.part = part;
-  m.void_ = void_;
-  m.ver = ver;
-  m.iou = iou;
-  m.cv = cv;
-  m.pw = pw;
-  m.ipdr = ipdr;
+  model::DoseMetrics m{.part = part, .void_ = void_, .ver = ver, .pw = pw, .ipdr = ipdr, .cv = cv, .iou = iou};
   return m;
 }
 

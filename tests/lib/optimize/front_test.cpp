@@ -17,11 +17,7 @@ VolumeTask front_task() {
   task.limit.of_even = shortest_of_even;
   task.raising = front_raising;
   task.limits = {.iterations = front_iterations, .until = {}, .patience = 0};
-  task.make = [](double limit) {
-    MethodOptions options;
-    options.max_intensity = limit;
-    return make_method("apg", options);
-  };
+  task.make = [](double limit) { return make_method("apg", MethodOptions{.max_intensity = limit}); };
   task.front = [](std::vector<Image> frames) { return frames; };
   return task;
 }

@@ -108,11 +108,7 @@ TEST_CASE("a limit too low for the goal is raised until the goal is met, and no 
     task.raising = raising;
     task.limits = {.iterations = iterations, .until = model::parse_conditions("ver=0", SliceFigures::names())};
     task.limits.patience = 0;
-    task.make = [](double limit) {
-      MethodOptions options;
-      options.max_intensity = limit;
-      return make_method("apg", options);
-    };
+    task.make = [](double limit) { return make_method("apg", MethodOptions{.max_intensity = limit}); };
     return run(slices, task).outcome;
   };
   constexpr double start = 1.1;

@@ -120,11 +120,7 @@ TEST_CASE("the same where a run ends without progress, at its best iterate or it
       task.limits = {.iterations = 40, .until = {}, .patience = 6};
       task.limit.of_even = 1.5;
       task.raising = {.factor = 1.3, .first = 12, .next = 8};
-      task.make = [&](double most) {
-        MethodOptions options;
-        options.max_intensity = most;
-        return make_method(name, options);
-      };
+      task.make = [&](double most) { return make_method(name, MethodOptions{.max_intensity = most}); };
       const auto whole = run(slices, task);
       const auto broken = run_in_pieces(slices, task, 2);
       CHECK(broken.times >= 2);
@@ -205,11 +201,7 @@ TEST_CASE("the same while the limit on intensity is raised") {
   task.limit.of_even = 1.1;
   task.raising = {.factor = 1.3, .first = 4, .next = 3};
   task.limits = {.iterations = 20, .until = {}, .patience = 0};
-  task.make = [](double limit) {
-    MethodOptions options;
-    options.max_intensity = limit;
-    return make_method("apg", options);
-  };
+  task.make = [](double limit) { return make_method("apg", MethodOptions{.max_intensity = limit}); };
   const auto whole = run(slices, task);
   CHECK(whole.outcome.max_intensity > 2 * 1.1 * whole.outcome.even_intensity);
   for (const int steps : {1, 4, 5}) {

@@ -82,9 +82,7 @@ TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps wi
   Demands demands;
   demands.free_surface = true;  // no loss but the voxels'
   const auto problem = parts::make_problem(all.data(), 4, size, size, parts::circle(size), demands);
-  MethodOptions options;
-  options.max_intensity = 3;
-  const auto method = make_method("apg", options);
+  const auto method = make_method("apg", MethodOptions{.max_intensity = 3});
   Iterate state;
   method->start(problem, light, state);
   PerSlice before = losses(state.dose, problem);
@@ -148,8 +146,7 @@ TEST_CASE("osmo, pm and bclp widen the process window of fbp and leave fewer vox
 
 TEST_CASE("a steeper norm works as well, and the chosen step never makes pm's loss worse") {
   const auto part = vam::oracle::wheel(96);
-  MethodOptions options;
-  options.power = 4;
+  MethodOptions options{.power = 4};
   const auto fbp = parts::run({part}, 96, 180, "fbp", {}, 0)[0];
   CHECK(parts::run({part}, 96, 180, "pm", options, 20)[0].pw > fbp.pw);
   const auto made = parts::parallel_light(96, 180);
@@ -217,9 +214,7 @@ TEST_CASE("projections are never negative") {
 }
 
 TEST_CASE("offset projections keep the shape of the filtered ones") {
-  MethodOptions offset;
-  offset.offset = true;
-  const auto m = parts::run({vam::oracle::wheel(64)}, 64, 90, "fbp", offset, 0)[0];
+  const auto m = parts::run({vam::oracle::wheel(64)}, 64, 90, "fbp", MethodOptions{.offset = true}, 0)[0];
   // Back-projecting the constant adds the same dose everywhere in the circle, so only the contrast suffers.
   CHECK(m.cv < parts::run({vam::oracle::wheel(64)}, 64, 90, "fbp", {}, 0)[0].cv);
 }
@@ -232,8 +227,7 @@ TEST_CASE("the methods that read --robust are those that face other printers") {
 }
 
 TEST_CASE("contradictory thresholds and unknown methods are refused") {
-  Demands demands;
-  demands.window = {0.9, 0.7};
+  Demands demands{.window = {0.9, 0.7}};
   CHECK_THROWS_WITH_AS(check(demands), doctest::Contains("0.9, is not below the least part dose, 0.7"), vam::Error);
   const std::string known = "there are " + vam::join(method_names(), ", ");
   CHECK_THROWS_WITH_AS(make_method("magic", {}), doctest::Contains(known.c_str()), vam::Error);

@@ -19,14 +19,12 @@ struct Case {
   Problem problem = parts::make_problem(part.data(), 1, size, size, parts::circle(size), free_surface());
 
   static Demands free_surface() {
-    Demands demands;
-    demands.free_surface = true;
+    Demands demands{.free_surface = true};
     return demands;
   }
   [[nodiscard]] double threshold() const { return problem.demands.window.threshold(); }
   [[nodiscard]] MethodOptions options(double limit) const {
-    MethodOptions options;
-    options.max_intensity = limit * threshold() / even_dose(*light, parts::circle(size), lanes).mean;
+    MethodOptions options{.max_intensity = limit * threshold() / even_dose(*light, parts::circle(size), lanes).mean};
     return options;
   }
 };

@@ -42,8 +42,7 @@ TEST_CASE("a part without a voxel that is covered by half is refused") {
 }
 
 TEST_CASE("unconstrained or unexposed parts are refused") {
-  VolumeOutcome outcome;
-  outcome.dark_part_voxels = 12;
+  VolumeOutcome outcome{.dark_part_voxels = 12};
   CHECK_THROWS_WITH_AS(require_light(outcome, "part.vdb"),
                        doctest::Contains("part.vdb: no part voxel is constrained (12 are"), Error);
   outcome.metrics.part = 100;

@@ -88,11 +88,7 @@ Printing print(bool robust) {
   Printing made;
   const VolumeTask task = make_task(made.frames, robust);
   optimise(task, *light::make_operator(setup_of({})));
-  Trial trial;
-  trial.tolerances = coarse;
-  trial.info = frames_info();
-  trial.grid = grid;
-  trial.printers = 12;
+  Trial trial{.tolerances = coarse, .info = frames_info(), .grid = grid, .printers = 12};
   made.trials = run_trials(trial, task, made.frames);
   return made;
 }

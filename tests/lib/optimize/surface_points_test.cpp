@@ -252,8 +252,7 @@ TEST_CASE("the surface is constrained only where it is neither free nor constrai
   };
   const std::size_t all = count({}, nullptr, true);
   CHECK(count({}, nullptr, false) > all / 2);
-  Demands demands;
-  demands.free_surface = true;
+  Demands demands{.free_surface = true};
   CHECK(count(demands, nullptr, true) == 0);
   demands = {};
   demands.surface = true;
@@ -278,8 +277,7 @@ TEST_CASE("apg brings the dose on the surface to the threshold, in light that is
     const auto asked = parts::make_problem(all.data(), 2, 96, 96, parts::circle(96), demands);
     demands.free_surface = free;
     const auto problem = parts::make_problem(all.data(), 2, 96, 96, parts::circle(96), demands);
-    MethodOptions options;
-    options.max_intensity = max_intensity;
+    MethodOptions options{.max_intensity = max_intensity};
     Iterate state;
     run_method(*make_method("apg", options), problem, *light, {.iterations = 25, .until = {}, .patience = 0}, state);
     const SurfacePoints surface(asked);

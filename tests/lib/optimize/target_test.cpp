@@ -141,9 +141,7 @@ TEST_CASE("in a stack the slice beside a whole one is where the part ends") {
   const Problem problem = problem_of(slices, 5, {}, true);
   const std::vector<float> gains{1 / 0.6F, 1, 1, 1, 1 / 0.6F};
   for (int k = 0; k < 5; ++k) CHECK(problem.gain[k] == doctest::Approx(static_cast<double>(gains[k])));
-  Demands free;
-  free.free_surface = true;
-  const Problem unasked = problem_of(slices, 5, free, true);
+  const Problem unasked = problem_of(slices, 5, Demands{.free_surface = true}, true);
   CHECK(unasked.gain[1] == doctest::Approx(1 / 0.6));
   CHECK(unasked.gain[3] == doctest::Approx(1 / 0.6));
 }

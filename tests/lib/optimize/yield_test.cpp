@@ -21,8 +21,7 @@ model::Printer near_printer() {
 }
 
 Trial trial_of(const model::Printer& printer) {
-  Trial trial;
-  trial.printer = printer;
+  Trial trial{.printer = printer};
   trial.tolerances[static_cast<std::size_t>(model::Deviating::index)] = index_error;
   trial.grid = grid;
   trial.info.space = model::Space::projector;

@@ -56,10 +56,8 @@ TEST_CASE("a frame maps values to positions, y upwards, also on logarithmic axes
 }
 
 TEST_CASE("a curve is where its values are") {
-  Plot plot;
-  plot.title = "a parabola, and points of a line";
-  plot.x = {"x / mm", 0, 10, false};
-  plot.y = {"y / mm2", 0, 100, false};
+  Plot plot{
+      .title = "a parabola, and points of a line", .x = {"x / mm", 0, 10, false}, .y = {"y / mm2", 0, 100, false}};
   Series parabola{"x squared", {}, {}, paint::blue, SeriesStyle::line};
   Series points{"8 x", {}, {}, paint::orange, SeriesStyle::points};
   for (int i = 0; i <= 100; ++i) {

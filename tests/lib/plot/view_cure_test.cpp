@@ -47,8 +47,7 @@ TEST_CASE("the cure map tells what is missing and what is too much, and where th
   CHECK(judged.legend[1].words == "missing (40 % of the part seen)");
   CHECK(judged.legend[2].words == "overcured (100 % of the void seen)");
   for (const Plane plane : {Plane::coronal, Plane::sagittal}) {
-    ViewOptions along;
-    along.plane = plane;
+    ViewOptions along{.plane = plane};
     along.at = plane == Plane::coronal ? 0.0 : 1.0;  // the column of 0.6, in the circle
     CHECK(view_cure(dose, target, 0.5, inner, along).legend[2].words == "overcured (100 % of the void seen)");
   }
@@ -69,8 +68,7 @@ TEST_CASE("the cure map shows walls that no voxel is half covered by, and where 
   target.write_slices(0, grid.nz, covered.data());
   dose.write_slices(0, grid.nz, doses.data());
   const vam::model::Circle all{1, 1, 2};
-  ViewOptions along;
-  along.plane = Plane::coronal;
+  ViewOptions along{.plane = Plane::coronal};
   const ImageFigure figure = view_cure(dose, target, 0.5, all, along);
   const auto& seen = figure.panels[0].picture;
   for (const int k : {2, 7, 8}) CHECK(seen(1, 8 - k) == paint::blue);

@@ -135,9 +135,7 @@ TEST_CASE("a figure shows every voxel as a square of its colour, right way up") 
   std::vector<float> slices(grid.size(), 0.25F);
   slices[2 * grid.slice_size() + 5 * 8 + 7] = 1;  // slice 2, uppermost row, last column
   volume.write_slices(0, grid.nz, slices.data());
-  ViewOptions options;
-  options.name = "dose.vdb";
-  options.at = 1.0;
+  ViewOptions options{.name = "dose.vdb", .at = 1.0};
   const ImageFigure figure = view_volume(volume, nullptr, options);
   CHECK(figure.title == "dose.vdb: dose, axial section at z = 1 mm");
   CHECK(figure.x.low == doctest::Approx(-2));
@@ -169,8 +167,7 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
     doses.push_back(c > 0.999F ? 0.9F : c < 0.001F ? 0.2F : 5.0F);  // the surface must not count
   dose.write_slices(0, grid.nz, doses.data());
   const vam::model::Circle circle{19.5, 19.5, 18};
-  ViewOptions options;
-  options.name = "dose.vdb";
+  ViewOptions options{.name = "dose.vdb"};
   const Plot plot = dose_histogram(dose, target, circle, options);
   REQUIRE(plot.series.size() == 2);
   CHECK(plot.x.high == doctest::Approx(0.9));
@@ -233,9 +230,7 @@ TEST_CASE("a section far wider than high is drawn, a pixel high") {
   SparseVolume volume("dose", grid);
   const std::vector<float> slice(grid.size(), 1.0F);
   volume.write_slices(0, 1, slice.data());
-  ViewOptions options;
-  options.plane = Plane::coronal;
-  const auto image = draw(view_volume(volume, nullptr, options)).image();
+  const auto image = draw(view_volume(volume, nullptr, ViewOptions{.plane = Plane::coronal})).image();
   CHECK(std::count(image.values.begin(), image.values.end(), paint::black) > 700);
 }
 

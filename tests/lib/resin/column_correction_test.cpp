@@ -258,8 +258,7 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
 }
 
 TEST_CASE("a layer-by-layer print has sharp bottom edges and needs no extra layers when one exposure is enough") {
-  resin::Process process;
-  process.exposure = ExposureMode::layered;
+  resin::Process process{.exposure = ExposureMode::layered};
   const resin::CureLimits limits = resin::limits_of(process);
   CHECK(limits.gain * limits.phi_max < 1);  // not here: 110 mW/cm2 for 0.18 s
   process.speed_mm_h = 100;

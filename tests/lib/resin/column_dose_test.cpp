@@ -44,19 +44,15 @@ void compare(const resin::Process& process, std::uint32_t seed) {
 TEST_CASE("the recursion is Beer's law integrated over time") {
   for (const auto exposure : {ExposureMode::continuous, ExposureMode::layered}) {
     for (const double absorbance_um : {150.0, 500.0, 2000.0}) {
-      resin::Process process;
-      process.exposure = exposure;
-      process.absorbance_height_um = absorbance_um;
-      process.full_cure_dose_mj_cm3 = 173;
-      process.speed_mm_h = 800;
+      resin::Process process{
+          .exposure = exposure, .absorbance_height_um = absorbance_um, .full_cure_dose_mj_cm3 = 173, .speed_mm_h = 800};
       compare(process, static_cast<std::uint32_t>(absorbance_um));
     }
   }
 }
 
 TEST_CASE("the dose half way through a slice and the cured thickness agree with Beer's law") {
-  resin::Process process;
-  process.absorbance_height_um = 300;
+  resin::Process process{.absorbance_height_um = 300};
   const resin::CureLimits limits = resin::limits_of(process);
   const double critical = resin::full_cure_intensity_mw_cm2(process);
   vam::oracle::Print print{0.05, 0.3, 1000.0 / 3600, random_intensities(12, 1, 110, 5), 2000};
@@ -78,9 +74,7 @@ TEST_CASE("the dose half way through a slice and the cured thickness agree with 
 }
 
 TEST_CASE("cured fraction of a layer") {
-  resin::Process process;
-  process.exposure = ExposureMode::layered;
-  const resin::CureLimits limits = resin::limits_of(process);
+  const resin::CureLimits limits = resin::limits_of(resin::Process{.exposure = ExposureMode::layered});
   CHECK(resin::cured_fraction(2, 0, 1, limits) == 1);
   CHECK(resin::cured_fraction(0.5, 0.1, 1, limits) == 0);
   // Dose 1.02 at the window side falls to 1 after h_a log10(1.02) = 17.2 um = 0.344 slices.
@@ -122,8 +116,7 @@ TEST_CASE("impossible processes are refused with their numbers") {
     }
     return std::string("accepted");
   };
-  resin::Process process;
-  process.min_intensity_mw_cm2 = 110;
+  resin::Process process{.min_intensity_mw_cm2 = 110};
   CHECK(message(process) ==
         "intensity range: the minimum, 110 mW/cm2, must be at least 0 and below the maximum, 110 mW/cm2");
   process = {};
@@ -141,9 +134,7 @@ TEST_CASE("impossible processes are refused with their numbers") {
 }
 
 TEST_CASE("within a slice: the dose half way, and where it crosses the threshold, by Beer's law") {
-  resin::Process process;
-  process.slice_um = 400;
-  process.absorbance_height_um = 1000;
+  resin::Process process{.slice_um = 400, .absorbance_height_um = 1000};
   const double q = std::pow(10, -0.4);
   resin::CureLimits limits = resin::limits_of(process);
   CHECK(limits.q == doctest::Approx(q).epsilon(1e-14));

@@ -77,10 +77,7 @@ TEST_CASE("dark pixels stay dark, and no error is carried beyond full intensity"
 }
 
 TEST_CASE("levels of one intensity count as one") {
-  model::ResponseTable table;
-  table.grey = {0, 1, 2, 3};
-  table.intensity = {0, 0, 1, 1};
-  const GreyLevels levels(Response(table), 2);
+  const GreyLevels levels(Response(model::ResponseTable{.grey = {0, 1, 2, 3}, .intensity = {0, 0, 1, 1}}), 2);
   const Dither dither(levels, 1);
   std::vector<float> carried(1, 0.0F);
   std::vector<int> steps(1);

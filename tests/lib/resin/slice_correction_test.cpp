@@ -50,10 +50,7 @@ resin::PartColumns part_of(const std::vector<float>& values, int slices, Exposur
 }
 
 resin::CureLimits limits_for(ExposureMode exposure) {
-  resin::Process process;
-  process.exposure = exposure;
-  process.absorbance_height_um = 700;
-  return resin::limits_of(process);
+  return resin::limits_of(resin::Process{.exposure = exposure, .absorbance_height_um = 700});
 }
 
 }  // namespace

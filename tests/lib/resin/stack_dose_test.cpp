@@ -92,11 +92,8 @@ TEST_CASE("height errors of the paper's ladder") {
 
 TEST_CASE("height errors are attributed to the feature whose light cures the gap") {
   // Layered, opaque resin: what is exposed is cured and nothing else.
-  resin::Process process;
-  process.exposure = resin::ExposureMode::layered;
-  process.slice_um = 1000;
-  process.absorbance_height_um = 100;
-  process.speed_mm_h = 10;
+  resin::Process process{
+      .exposure = resin::ExposureMode::layered, .slice_um = 1000, .absorbance_height_um = 100, .speed_mm_h = 10};
   const resin::CureLimits limits = resin::limits_of(process);
   const double on = 2 / limits.q;
   const std::vector<std::uint8_t> part{0, 0, 0, 1, 1, 0, 0, 1, 0, 0};

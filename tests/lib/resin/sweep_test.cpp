@@ -37,9 +37,7 @@ TEST_CASE("the error is gone where the assumed full-cure dose is the real one, a
 }
 
 TEST_CASE("a study needs values in range") {
-  resin::Study study;
-  study.gel_dose_mj_cm3 = 100;
-  study.omega_max = {1};
+  resin::Study study{.gel_dose_mj_cm3 = 100, .omega_max = {1}};
   CHECK_THROWS_WITH_AS((void)resin::run_study({0, 1, 0}, study), "df_over_dc: no values; give a list or a range",
                        Error);
   study.dose_factors = {0};
@@ -52,9 +50,7 @@ TEST_CASE("a study needs values in range") {
 
 TEST_CASE("the least dose in a gap is the one that a correction reaches") {
   for (const auto exposure : {resin::ExposureMode::continuous, resin::ExposureMode::layered}) {
-    resin::Process process;
-    process.exposure = exposure;
-    process.absorbance_height_um = 600;
+    resin::Process process{.exposure = exposure, .absorbance_height_um = 600};
     const resin::CureLimits limits = resin::limits_of(process);
     for (int gap = 2; gap < 60; gap += 3) {
       std::vector<std::uint8_t> part(static_cast<std::size_t>(gap + 20), 0);

@@ -13,11 +13,7 @@ using namespace vam::light;
 namespace {
 
 model::Printer printer_of(double absorption_per_mm, double critical) {
-  model::Printer printer;
-  printer.projector.columns = 200;
-  printer.projector.pixel_mm = 0.15;
-  printer.projector.axis_column = 99.5;
-  printer.projector.telecentric = true;
+  model::Printer printer{.projector = {.columns = 200, .pixel_mm = 0.15, .telecentric = true, .axis_column = 99.5}};
   printer.bath.index = 1.53;  // that of the resin: rays go straight through
   printer.bath.window_mm = 20;
   printer.resin.absorption_per_mm = absorption_per_mm;
@@ -46,11 +42,7 @@ ExposurePlan rod(const model::Printer& printer) {
 }
 
 model::DoseMetrics window(double low, double high) {
-  model::DoseMetrics doses;
-  doses.max_void = low;
-  doses.min_part = high;
-  doses.iou_threshold = 0.5 * (low + high);
-  return doses;
+  return {.min_part = high, .max_void = low, .iou_threshold = 0.5 * (low + high)};
 }
 
 // Without a window: the critical dose is reached at that dose alone.
@@ -90,19 +82,14 @@ TEST_CASE("the fewest whole turns, and the intensity that makes them exact") {
 }
 
 TEST_CASE("the middle of the window, or of the best thresholds where there is none") {
-  model::DoseMetrics doses;
-  doses.min_part = 8;
-  doses.max_void = 5;
-  doses.iou_threshold = 6.7;
+  model::DoseMetrics doses{.min_part = 8, .max_void = 5, .iou_threshold = 6.7};
   CHECK(window_middle(doses) == 6.5);
   doses.max_void = 9;
   CHECK(window_middle(doses) == 6.7);
 }
 
 TEST_CASE("the aim is the threshold of the light within the middle half of the window, else its middle") {
-  model::DoseMetrics doses;
-  doses.min_part = 9;
-  doses.max_void = 5;
+  model::DoseMetrics doses{.min_part = 9, .max_void = 5};
   CHECK(aimed_dose(doses, std::nullopt) == 7);
   CHECK(aimed_dose(doses, 6.1) == 6.1);
   CHECK(aimed_dose(doses, 7.9) == 7.9);

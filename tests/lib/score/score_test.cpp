@@ -13,11 +13,7 @@ namespace {
 const std::vector<float> target{0, 0, 0, 0, 1, 0.5F, 0, 1, 0};
 const std::vector<float> dose{9, 0.2F, 9, 0.1F, 0.8F, 0.7F, 9, 1.0F, 9};
 
-ScoreOptions options() {
-  ScoreOptions o;
-  o.circle = {1, 1, 1};
-  return o;
-}
+ScoreOptions options() { return {.circle = {1, 1, 1}}; }
 
 }  // namespace
 

@@ -82,8 +82,7 @@ TEST_CASE("a grey target is met within the band of each voxel, and that of the o
   const model::Grid grid = cube(8, -3.5 * voxel_mm);
   const io::SparseVolume target = volume("target", grid, 1, 0);
   const io::SparseVolume dose = volume("dose", grid, 1.3F, 0);
-  score::GreyOptions how;
-  how.band = 0.4;
+  score::GreyOptions how{.band = 0.4};
   const model::Printer printer;
   CHECK(score_grey(dose, target, how, nullptr, printer, "dose").is_met());
   how.band = 0.2;

@@ -8,9 +8,7 @@ using vam::sim::MotorSettings;
 using vam::sim::SimMotor;
 
 TEST_CASE("The stage follows the trapezoidal speed profile") {
-  MotorSettings settings;
-  settings.acceleration_deg_s2 = 50;
-  SimMotor motor(settings, 0);
+  SimMotor motor(MotorSettings{.acceleration_deg_s2 = 50}, 0);
   motor.set_speed(20);
   motor.go_to(100);
   // Ramp v/a = 0.4 s over v^2/2a = 4 deg, so at 2 s: 4 + 20 * 1.6 = 36 deg; whole way 100/20 + 0.4 = 5.4 s.
@@ -26,8 +24,7 @@ TEST_CASE("The stage follows the trapezoidal speed profile") {
 }
 
 TEST_CASE("Its path does not depend on the sampling") {
-  MotorSettings settings;
-  settings.ripple = 0.02;
+  MotorSettings settings{.ripple = 0.02};
   SimMotor often(settings, 0);
   SimMotor seldom(settings, 0);
   often.go_to(-77);

@@ -36,22 +36,11 @@ model::Printer small_printer() {
 }
 
 SimBench small_bench() {
-  SimBench bench;
-  bench.printer = small_printer();
-  bench.columns = 110;
-  bench.rows = 48;
-  bench.background = 0;
-  bench.resin = SimResin{};
-  return bench;
+  return {.printer = small_printer(), .columns = 110, .rows = 48, .background = 0, .resin = SimResin{}};
 }
 
 /// A resin of a few voxels without diffusion.
-SimResin still_resin() {
-  SimResin resin;
-  resin.critical_dose_mj_cm3 = 40;
-  resin.inhibitor_diffusion_mm2_s = 0;
-  return resin;
-}
+SimResin still_resin() { return {.critical_dose_mj_cm3 = 40, .inhibitor_diffusion_mm2_s = 0}; }
 
 void expose(Photoresin& resin, double dose_mj_cm3, double seconds) {
   constexpr int steps = 400;
@@ -310,10 +299,7 @@ TEST_CASE("The simulated bench cures by the flips of its log, each at the angle 
   for (int r = 12; r < 20; ++r) {
     for (int c = 28; c < 36; ++c) frame(c, r) = 255;
   }
-  SimSources sources;
-  sources.angles = folder + "/angles";
-  sources.shown = folder + "/shown";
-  sources.images = {frame};
+  SimSources sources{.angles = folder + "/angles", .shown = folder + "/shown", .images = {frame}};
   std::ofstream table(sources.angles);
   std::ofstream flips(sources.shown);
   table << R"({"t_monotonic_s":100.0,"event":"standing","angle_deg":40})"

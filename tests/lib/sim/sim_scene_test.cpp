@@ -131,9 +131,7 @@ TEST_CASE("The simulated bench follows stage and flip logs as they grow: true an
   std::filesystem::create_directory(folder);
   const std::string angles = folder + "/angles";
   const std::string shown = folder + "/shown";
-  SimSources sources;
-  sources.angles = angles;
-  sources.shown = shown;
+  SimSources sources{.angles = angles, .shown = shown};
   sources.images.resize(2, GreyImage(2, 2, 8));
   SimWorld world(sources, 100);
   CHECK(world.at(100).angle_deg == 0);
@@ -175,9 +173,9 @@ TEST_CASE("The simulated bench follows stage and flip logs as they grow: true an
 
 TEST_CASE("The simulated bench shows the test pattern that the projector's log names") {
   const std::string shown = std::filesystem::temp_directory_path() / ("vam-world-shown-" + std::to_string(getpid()));
-  SimSources sources;
-  sources.shown = shown;
-  sources.draw = [](const Json& event) { return std::vector(1, GreyImage(event.value("width_px", 0), 1, 8)); };
+  SimSources sources{.shown = shown, .draw = [](const Json& event) {
+                       return std::vector(1, GreyImage(event.value("width_px", 0), 1, 8));
+                     }};
   SimWorld world(sources, 100);
   std::ofstream flips(shown);
   flips << R"({"t_monotonic_s":99.0,"event":"pattern","name":"row","width_px":7})"
@@ -207,8 +205,7 @@ TEST_CASE("The simulated bench refuses frames of which it has no images, and fol
                        << "\n"
                        << R"({"t_monotonic_s":101.1,"event":"flip","frame":0})"
                        << "\n";
-  SimSources sources;
-  sources.shown = shown;
+  SimSources sources{.shown = shown};
   CHECK(SimWorld(sources, 100).at(102).lit_s == doctest::Approx(2));
   sources.images.resize(1, GreyImage(2, 2, 8));
   SimWorld world(sources, 100);
@@ -222,8 +219,7 @@ TEST_CASE("The simulated bench refuses frames of which it has no images, and fol
 
 TEST_CASE("The simulated bench follows a log by its name: the old file to its end, then the new one") {
   const std::string shown = std::filesystem::temp_directory_path() / ("vam-world-again-" + std::to_string(getpid()));
-  SimSources sources;
-  sources.shown = shown;
+  SimSources sources{.shown = shown};
   sources.images.resize(2, GreyImage(2, 2, 8));
   SimWorld world(sources, 100);
   const auto flip = [](double t_s, int frame) {

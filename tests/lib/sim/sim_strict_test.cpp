@@ -46,11 +46,7 @@ class Terminal {
   double now_s_ = 0;
 };
 
-Terminal gcs(int address = 1) {
-  SimGcsSettings settings;
-  settings.address = address;
-  return Terminal(make_sim_gcs, settings);
-}
+Terminal gcs(int address = 1) { return Terminal(make_sim_gcs, SimGcsSettings{.address = address}); }
 
 bool begins(const std::string& text, const std::string& with) { return text.rfind(with, 0) == 0; }
 
@@ -123,9 +119,7 @@ TEST_CASE("GCS: units and the lines of HLP? as the controller writes them") {
 
 TEST_CASE(
     "GRBL: real-time bytes act inside a line and get no ok; a board that was reset greets and has lost its place") {
-  SimGcsSettings settings;
-  settings.reset_at_open = true;
-  Terminal say(make_sim_grbl, settings);
+  Terminal say(make_sim_grbl, SimGcsSettings{.reset_at_open = true});
   CHECK(begins(say("\n"), "\r\nGrbl 1.1"));
   CHECK(begins(say("$?"), "<Idle|MPos:0.000"));
   CHECK(say("X\n").find("ok\r\n") != std::string::npos);
@@ -148,9 +142,7 @@ TEST_CASE("GRBL: reports wait until homing is over, and so does its ok") {
 }
 
 TEST_CASE("Zaber: device 0 or no number addresses all devices, the message number is returned, WR lasts until homing") {
-  SimGcsSettings settings;
-  settings.address = 2;
-  Terminal say(make_sim_zaber, settings);
+  Terminal say(make_sim_zaber, SimGcsSettings{.address = 2});
   CHECK(say("/1 get pos\n").empty());
   CHECK(begins(say("/0 get version\n"), "@02 0 OK IDLE WR"));
   CHECK(begins(say("/2 1 07 get limit.cycle.dist\r"), "@02 1 07 OK IDLE WR 384000\r\n"));
@@ -165,9 +157,7 @@ TEST_CASE("Zaber: device 0 or no number addresses all devices, the message numbe
 
 TEST_CASE("Zaber: microsteps are whole, and a speed follows a motion from firmware 7.25 on") {
   for (const bool old : {false, true}) {
-    SimGcsSettings settings;
-    settings.old_firmware = old;
-    Terminal say(make_sim_zaber, settings);
+    Terminal say(make_sim_zaber, SimGcsSettings{.old_firmware = old});
     say("/1 1 home\n");
     say.wait(5);
     say.heard();

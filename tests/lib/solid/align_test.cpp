@@ -62,9 +62,7 @@ TriangleSoup moved(TriangleSoup mesh, const solid::Similarity& motion) {
 solid::Similarity turn(const Vector3& axis, double degrees, const Vector3& shift, double scale = 1) {
   const double a = degrees * std::numbers::pi / 180;
   const Vector3 u = (1 / length(axis)) * axis;
-  solid::Similarity s;
-  s.scale = scale;
-  s.shift_mm = shift;
+  solid::Similarity s{.scale = scale, .shift_mm = shift};
   for (std::size_t r = 0; r < 3; ++r) {
     Vector3 unit{};
     unit[r] = 1;
@@ -157,8 +155,7 @@ TEST_CASE("shrinkage is measured with the scale") {
   const TriangleSoup reference = blocks();
   const solid::Surface surface(reference);
   const TriangleSoup print = moved(reference, turn({1, 2, 3}, 40, {1, 2, 3}, 0.97));
-  solid::AlignOptions options;
-  options.with_scale = true;
+  solid::AlignOptions options{.with_scale = true};
   CHECK(solid::align(print, reference, surface, options).transform.scale == doctest::Approx(1 / 0.97).epsilon(1e-4));
 }
 

@@ -55,8 +55,7 @@ TEST_CASE("rotations are right-handed, about x, then y, then z; quarter turns ar
 
 TEST_CASE("scale, rotate, fit, centre, stretch, in this order") {
   const model::TriangleSoup brick = vam::oracle::box({10, 10, 10}, {12, 14, 11});
-  Placement placement;
-  placement.centre = false;
+  Placement placement{.centre = false};
   CHECK(placed(brick, placement).box.high == Point{12, 14, 11});
   placement.scale = 2;
   CHECK(placed(brick, placement).box.high == Point{24, 28, 22});
@@ -71,9 +70,7 @@ TEST_CASE("scale, rotate, fit, centre, stretch, in this order") {
 }
 
 TEST_CASE("to fit the writable cylinder") {
-  Placement placement;
-  placement.fit_writable = true;
-  placement.stretch_z = 1.1;
+  Placement placement{.fit_writable = true, .stretch_z = 1.1};
   const PlacedExtent flat = placed(vam::oracle::box({0, 0, 0}, {6, 8, 1}), placement);
   CHECK(flat.radius_mm == doctest::Approx(8));  // bound by the circle
   const PlacedExtent tall = placed(vam::oracle::box({0, 0, 0}, {1, 1, 30}), placement);
@@ -129,9 +126,7 @@ TEST_CASE("slices begin where rows do, wherever the lens is, with voxels of any 
 }
 
 TEST_CASE("a thin rod may have 65536 slices, and no more") {
-  PlacedExtent rod;
-  rod.box = {{-0.012, -0.012, 0}, {0.012, 0.012, 65.536}};
-  rod.radius_mm = 0.012;
+  PlacedExtent rod{.box = {{-0.012, -0.012, 0}, {0.012, 0.012, 65.536}}, .radius_mm = 0.012};
   CHECK(grid_around(rod, 1e-3, 0, {}, "test").nz == 65536);
   rod.box.high[2] += 1e-3;
   CHECK(data_error([&] {
@@ -172,11 +167,7 @@ TEST_CASE("the refusal names the value that fits, rounded down, and it does fit"
   CHECK(fitting_factor(tall, room, 0) == doctest::Approx(40.0 / 70));
   CHECK(fitting_factor(tall, {8, -2, 38}, 0.5) == doctest::Approx(39.5 / 70));  // lifted by whole voxels
   const auto sized = [](const char* size, double value, double stretch_z) {
-    PlacementAdvice advice;
-    advice.size = size;
-    advice.value = value;
-    advice.stretch_z = stretch_z;
-    advice.or_fit = " or --fit";
+    PlacementAdvice advice{.size = size, .value = value, .stretch_z = stretch_z, .or_fit = " or --fit"};
     return advice;
   };
   const auto has = [&](const std::string& words, const PlacementAdvice& size) {
@@ -199,9 +190,7 @@ TEST_CASE("which axis of the file points up, and mirrors") {
   CHECK(upright("-z")(there)[2] == -3);
   CHECK(mirrored("x")(there) == Point{-1, 2, 3});
   CHECK(mirrored("z")(there) == Point{1, 2, -3});
-  Placement placement;
-  placement.axes = upright("y");
-  CHECK(placed(vam::oracle::box({0, 0, 0}, {2, 8, 4}), placement).box.high == Point{1, 2, 4});
+  CHECK(placed(vam::oracle::box({0, 0, 0}, {2, 8, 4}), Placement{.axes = upright("y")}).box.high == Point{1, 2, 4});
 }
 
 TEST_CASE("a mirror turns triangles over, so that outside stays outside") {

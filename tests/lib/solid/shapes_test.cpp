@@ -24,8 +24,7 @@ Covered covered(const Field& field, double voxel_mm) {
   const double reach = std::max({field.box.high[0], field.box.high[1], -field.box.low[0], -field.box.low[1]});
   const int side = 2 * (static_cast<int>(std::ceil(reach / voxel_mm)) + 1);
   const int height = 2 * (static_cast<int>(std::ceil(std::max(field.box.high[2], -field.box.low[2]) / voxel_mm)) + 1);
-  Covered result;
-  result.grid = model::centred_grid(side, side, height, voxel_mm, -0.5 * (height - 1) * voxel_mm);
+  Covered result{.grid = model::centred_grid(side, side, height, voxel_mm, -0.5 * (height - 1) * voxel_mm)};
   result.values.resize(result.grid.size());
   cover(field, result.grid, 0, height, result.values.data());
   result.volume_mm3 = std::accumulate(result.values.begin(), result.values.end(), 0.0) * std::pow(voxel_mm, 3);
@@ -313,9 +312,11 @@ TEST_CASE("errors of shapes state the valid range") {
 }
 
 TEST_CASE("a box under any map is bounded by its mapped corners") {
-  Field field;
-  field.value = [](const Point& p) { return std::max({1 - p[0], p[0] - 2, -3 - p[1], p[1], 4 - p[2], p[2] - 9}); };
-  field.box = {{1, -3, 4}, {2, 0, 9}};
+  Field field{.value =
+                  [](const Point& p) {
+                    return std::max({1 - p[0], p[0] - 2, -3 - p[1], p[1], 4 - p[2], p[2] - 9});
+                  },
+              .box = {{1, -3, 4}, {2, 0, 9}}};
   field.radius_mm = field.ball_mm = 1e3;  // neither bounds the corners
   const Affine map{{{{0.9, -0.3, 0.2}, {0.5, 1.1, -0.4}, {-0.2, 0.6, 0.8}}}, {3, -7, 1}};
   Bounds want{{1e9, 1e9, 1e9}, {-1e9, -1e9, -1e9}};

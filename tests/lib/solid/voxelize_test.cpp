@@ -30,8 +30,7 @@ struct Result {
 };
 
 Result voxels(TriangleSoup mesh, const model::Grid& grid) {
-  Result result;
-  result.repair = repair(mesh, "test");
+  Result result{.repair = repair(mesh, "test")};
   result.values.reserve(grid.size());
   result.vote = voxelize(mesh, grid, result.repair.closed() ? Fill::exact : Fill::vote, result.repair.shared,
                          [&](int k0, int count, const float* slices) {
@@ -64,8 +63,7 @@ struct Turned {
   TriangleSoup mesh;
 };
 Turned turned_box(const Vector3& half, const Affine& turn) {
-  Turned result;
-  result.mesh = vam::oracle::box(-1.0 * half, half);
+  Turned result{.mesh = vam::oracle::box(-1.0 * half, half)};
   for (Vector3& p : result.mesh.points) p = turn(p);
   const Affine linear{turn.linear, {}};
   for (std::size_t a = 0; a < 3; ++a) {

@@ -11,9 +11,7 @@ TEST_CASE("projections of a Gaussian in closed form: lengths in mm, and filtered
   constexpr double pi = std::numbers::pi;
   constexpr double sigma = 10;
   constexpr int n = 128;
-  ProjectionSpec spec;
-  spec.geometry = full_turn(vam::model::centred_grid(n, n, 1, 1.0), 16);
-  spec.voxel_mm = 0.1;
+  ProjectionSpec spec{.geometry = full_turn(vam::model::centred_grid(n, n, 1, 1.0), 16), .voxel_mm = 0.1};
   std::vector<Slab> image{Slab(n, n)};
   for (const auto [j, i] : indices(n, n)) {
     const double r = std::hypot(i - spec.geometry.axis_x, j - spec.geometry.axis_y);
@@ -35,11 +33,7 @@ TEST_CASE("projections of a Gaussian in closed form: lengths in mm, and filtered
 }
 
 TEST_CASE("as many slabs a pass as the budget holds, one at least and four at most") {
-  ParallelGeometry geometry;
-  geometry.nx = 10;
-  geometry.ny = 20;
-  geometry.columns = 30;
-  geometry.angles = 40;
+  ParallelGeometry geometry{.nx = 10, .ny = 20, .columns = 30, .angles = 40};
   const std::size_t slab = (2 * 10 * 20 + 3 * 30 * 40) * lanes * sizeof(float);
   CHECK(slabs_a_pass(geometry, 0) == 1);
   CHECK(slabs_a_pass(geometry, 2 * slab - 1) == 1);
