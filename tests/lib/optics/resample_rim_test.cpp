@@ -170,7 +170,6 @@ TEST_CASE("10,000 round configurations: plans are finite, bounded and cover what
   // bright.
   constexpr double most = 1.4;
   Draw draw(3);
-  double worst_s = 0;
   for (int trial = 0; trial < 10000; ++trial) {
     CAPTURE(trial);
     const Rig rig = round_rig(draw);
@@ -195,9 +194,8 @@ TEST_CASE("10,000 round configurations: plans are finite, bounded and cover what
       const Image out = apply(plan, Image(plan.columns_in, plan.rows, 1.0F));
       REQUIRE(std::all_of(out.values.begin(), out.values.end(), [](float v) { return std::isfinite(v); }));
     }
-    worst_s = std::max(worst_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < 2);
   }
-  CHECK(worst_s < 2);
 }
 
 TEST_CASE("resampling is what traced rays say, in both directions") {
