@@ -18,7 +18,7 @@ TEST_CASE("versions up to the tool's are read; a newer one is refused with both 
                                        "), and this tool reads up to version " + kind.version() +
                                        "; install newer VAM tools");
     for (const char* nonsense : {"abc", "-1", "1e9", "0", "", "1.5", " 1", "1 ", "99999999999"})
-      CHECK(kind.objection(nonsense).find("no whole number from 1 on") != std::string::npos);
+      CHECK(has(kind.objection(nonsense), "no whole number from 1 on"));
   }
 }
 

@@ -159,7 +159,7 @@ TEST_CASE("only the first operand names a command") {
 TEST_CASE("an option behind -- is named in the error") {
   Tool tool;
   const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--", "part.vdb", "--half"}) == 64); });
-  CHECK(text.find("--half: ") != std::string::npos);
+  CHECK(has(text, "--half: "));
 }
 
 TEST_CASE("options of a command may stand before or behind it") {
@@ -221,37 +221,37 @@ TEST_CASE("the manual prints options of several commands once, and the plain for
   const std::string page = man_of(commands);
   CHECK(count_of(page, ".It Fl -device") == 1);
   CHECK(count_of(page, "Options described above: --device.") == 2);
-  CHECK(page.find("Default: stage.speed_deg_s.") != std::string::npos);
-  CHECK(page.find("--pace") == std::string::npos);
-  CHECK(page.find(".Sh SYNOPSIS\n.Nm\n.Cm spin\n") != std::string::npos);
-  CHECK(man_of(both).find(".Sh SYNOPSIS\n.Nm\n.Op Ar OPTIONS\n.Op Ar \\&INPUT\n.Nm\n.Cm spin\n") != std::string::npos);
+  CHECK(has(page, "Default: stage.speed_deg_s."));
+  CHECK_FALSE(has(page, "--pace"));
+  CHECK(has(page, ".Sh SYNOPSIS\n.Nm\n.Cm spin\n"));
+  CHECK(has(man_of(both), ".Sh SYNOPSIS\n.Nm\n.Op Ar OPTIONS\n.Op Ar \\&INPUT\n.Nm\n.Cm spin\n"));
 }
 
 TEST_CASE("an operand without a default, and any before it, is shown as required") {
   Stage stage;
   std::string print = "-", reference;
   stage.app.positional("PRINT", print, "Print.").positional("REFERENCE", reference, "Design.");
-  CHECK(man_of(stage).find(".Nm\n.Ar \\&PRINT\n.Ar \\&REFERENCE\n") != std::string::npos);
+  CHECK(has(man_of(stage), ".Nm\n.Ar \\&PRINT\n.Ar \\&REFERENCE\n"));
 }
 
 TEST_CASE("the manual lists the variables and statuses of what the tool has") {
   Declaration tool{.manual = {"vam-demo", "shows"}};
   const std::string bare = printed_manual(tool);
-  CHECK(bare.find("VAM_PRINTER") == std::string::npos);
-  CHECK(bare.find(".It 1\n") == std::string::npos);
-  CHECK(bare.find(".It 76\n") == std::string::npos);
-  CHECK(bare.find("VAM_LOCK_DIR") == std::string::npos);
+  CHECK_FALSE(has(bare, "VAM_PRINTER"));
+  CHECK_FALSE(has(bare, ".It 1\n"));
+  CHECK_FALSE(has(bare, ".It 76\n"));
+  CHECK_FALSE(has(bare, "VAM_LOCK_DIR"));
   tool.manual.locks = true;
-  CHECK(printed_manual(tool).find("VAM_LOCK_DIR") != std::string::npos);
+  CHECK(has(printed_manual(tool), "VAM_LOCK_DIR"));
   tool.manual.locks = false;
   tool.manual.statuses = device_statuses;
   tool.groups = {
       {"Options", {{"--printer", "FILE", "Settings.", "", "", {}}, {"--require", "C", "Limits.", "", "", {}}}}};
   const std::string page = printed_manual(tool);
-  CHECK(page.find("VAM_PRINTER") != std::string::npos);
-  CHECK(page.find("VAM_LOCK_DIR") != std::string::npos);
-  CHECK(page.find(".It 1\n") != std::string::npos);
-  CHECK(page.find(".It 76\nDevice protocol error.\n") != std::string::npos);
+  CHECK(has(page, "VAM_PRINTER"));
+  CHECK(has(page, "VAM_LOCK_DIR"));
+  CHECK(has(page, ".It 1\n"));
+  CHECK(has(page, ".It 76\nDevice protocol error.\n"));
 }
 
 TEST_CASE("an option that stands for an operand is a form of its own in the synopsis") {
@@ -268,9 +268,10 @@ TEST_CASE("an option that stands for an operand is a form of its own in the syno
       printed("--help").starts_with("Usage: vam-demo [OPTIONS] [PART]\n"
                                     "       vam-demo [OPTIONS] --shape NAME\n"
                                     "       vam-demo [OPTIONS] --live [PART]\n"));
-  CHECK(printed("--man").find(".Sh SYNOPSIS\n.Nm\n.Op Ar OPTIONS\n.Op Ar \\&PART\n"
-                              ".Nm\n.Op Ar OPTIONS\n.Fl -shape Ar \\&NAME\n"
-                              ".Nm\n.Op Ar OPTIONS\n.Fl -live\n.Op Ar \\&PART\n.\\\"") != std::string::npos);
+  CHECK(has(printed("--man"),
+            ".Sh SYNOPSIS\n.Nm\n.Op Ar OPTIONS\n.Op Ar \\&PART\n"
+            ".Nm\n.Op Ar OPTIONS\n.Fl -shape Ar \\&NAME\n"
+            ".Nm\n.Op Ar OPTIONS\n.Fl -live\n.Op Ar \\&PART\n.\\\""));
 }
 
 TEST_CASE("required options of a form are shown as such and refused where missing") {
@@ -288,9 +289,8 @@ TEST_CASE("required options of a form are shown as such and refused where missin
   CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; see --help\n");
   CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; see --help\n");
   CHECK(said({"scan", "--help"}, stdout).starts_with("Usage: vam-demo scan [OPTIONS] --flips FILE FRAMES\n"));
-  CHECK(said({"--help"}, stdout).find("\nOptions of a command, e.g.: vam-demo scan --help\nCommon options: --memory") !=
-        std::string::npos);
-  CHECK(said({"--help=all"}, stdout).find("\n  --memory GIB\n") != std::string::npos);
+  CHECK(has(said({"--help"}, stdout), "\nOptions of a command, e.g.: vam-demo scan --help\nCommon options: --memory"));
+  CHECK(has(said({"--help=all"}, stdout), "\n  --memory GIB\n"));
 }
 
 TEST_CASE("an option that stands for others is a form of its own without them") {
@@ -311,8 +311,8 @@ TEST_CASE("an option that stands for others is a form of its own without them") 
   CHECK(
       help.starts_with("Usage: vam-demo beam [OPTIONS] --first MM\n"
                        "       vam-demo beam [OPTIONS] --side\n"));
-  CHECK(help.find("First plane. Required without --side.") != std::string::npos);
-  CHECK(said({"--man"}, stdout).find(".Cm beam\n.Op Ar OPTIONS\n.Fl -side\n.\\\"") != std::string::npos);
+  CHECK(has(help, "First plane. Required without --side."));
+  CHECK(has(said({"--man"}, stdout), ".Cm beam\n.Op Ar OPTIONS\n.Fl -side\n.\\\""));
 }
 
 TEST_CASE("a job is every option but those declared to be none of it, with the value in force") {
@@ -340,7 +340,7 @@ TEST_CASE("the manual page escapes the control characters of roff") {
   Declaration tool{.manual = {"vam-demo", "shows"}};
   tool.manual.lists = {{"kinds", {".starts with a dot and a \\ and 5 µm. Next sentence."}}};
   const std::string page = printed_manual(tool);
-  CHECK(page.find("\\&.starts") != std::string::npos);
-  CHECK(page.find("\\e") != std::string::npos);
-  CHECK(page.find("\\[u00B5]m.\nNext sentence.") != std::string::npos);
+  CHECK(has(page, "\\&.starts"));
+  CHECK(has(page, "\\e"));
+  CHECK(has(page, "\\[u00B5]m.\nNext sentence."));
 }

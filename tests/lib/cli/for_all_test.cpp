@@ -78,12 +78,12 @@ TEST_CASE("--help shows the usual options, --help=all all") {
     return written_to(stdout, [&] { CHECK(tool.run({word}) == 0); });
   };
   const std::string some = help(true, "--help");
-  CHECK(some.find("\n  --voxel MM            ") != std::string::npos);
-  CHECK(some.find("--angles") == std::string::npos);
-  CHECK(some.find("\n4 more options, and all of each: vam-demo --help=all\n") != std::string::npos);
-  CHECK(some.find("--quiet") != std::string::npos);
-  CHECK(some.find("json: one object a\n") == std::string::npos);  // the first sentence of each
-  CHECK(help(true, "--help=all").find("json: one object a\n") != std::string::npos);
+  CHECK(has(some, "\n  --voxel MM            "));
+  CHECK_FALSE(has(some, "--angles"));
+  CHECK(has(some, "\n4 more options, and all of each: vam-demo --help=all\n"));
+  CHECK(has(some, "--quiet"));
+  CHECK_FALSE(has(some, "json: one object a\n"));  // the first sentence of each
+  CHECK(has(help(true, "--help=all"), "json: one object a\n"));
   CHECK(help(true, "--help=all") == help(false, "--help"));
 }
 
@@ -93,8 +93,8 @@ TEST_CASE("progress as JSON: a line when the work ends, with its figures") {
     Progress progress("optimising", 8);
     progress.set_progress(3, 9, {{"iteration", 3}, {"VER", 0.25}});
   });
-  CHECK(text.find(R"("task":"optimising","done":3,"total":9,)") != std::string::npos);
-  CHECK(text.find(R"("left_s":0.0,"finished":true,"iteration":3.0,"ver":0.25})") != std::string::npos);
+  CHECK(has(text, R"("task":"optimising","done":3,"total":9,)"));
+  CHECK(has(text, R"("left_s":0.0,"finished":true,"iteration":3.0,"ver":0.25})"));
   const std::string failed = written_to(stderr, [] {
     try {
       const Progress progress("slicing", 8);

@@ -44,7 +44,7 @@ TEST_CASE("an option is refused without what it requires: an option, a value in 
 TEST_CASE("an option is refused beside what it excludes, in either order") {
   CHECK(said({"--mesh", "a", "--both", "--half"}) == "vam-demo: --mesh: conflicts with --both; omit one of them\n");
   CHECK(said({"--both", "--half", "--mesh", "a"}) == "vam-demo: --mesh: conflicts with --both; omit one of them\n");
-  CHECK(said({"--window", "cosine", "--mesh", "a"}).find("--window cosine; omit one") != std::string::npos);
+  CHECK(has(said({"--window", "cosine", "--mesh", "a"}), "--window cosine; omit one"));
   CHECK(said({"--window", "hann", "--mesh", "a"}).empty());
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("a rule that names what is not declared is a bug that every run finds"
     bool points = false;
     tool.app.flag("--points", points, "Points.").excludes({condition});
     const std::string text = written_to(stderr, [&] { CHECK(tool.run({}) == 70); });
-    CHECK(text.find(condition) != std::string::npos);
+    CHECK(has(text, condition));
   }
 }
 
@@ -89,6 +89,6 @@ TEST_CASE("help and manual state the rules") {
   const std::string help = written_to(stdout, [&] { CHECK(tool.run({"--help"}) == 0); });
   for (const char* sentence : {"Requires --mesh or --beam parallel.", "Not for images.", "Not with --both or --window",
                                "disc: requires --beam parallel."}) {
-    CHECK(help.find(sentence) != std::string::npos);
+    CHECK(has(help, sentence));
   }
 }

@@ -65,7 +65,7 @@ TEST_CASE("Lines of samples are written and read back unchanged") {
   CHECK(back.t_s == sample.t_s);
   CHECK(back.angle_deg == sample.angle_deg);
   CHECK(back.sigma_deg == sample.sigma_deg);
-  CHECK(to_line({1, 2, 3, true}).find(R"(,"ramp":true)") != std::string::npos);
+  CHECK(has(to_line({1, 2, 3, true}), R"(,"ramp":true)"));
   CHECK(parse_angle_line(to_line({1, 2, 3, true}), 1).ramp);
   CHECK_FALSE(back.ramp);
   CHECK(to_line(sample, true) == R"({"t_monotonic_s":123.4567891,"angle_deg":-12.34567,"sigma_deg":0.00123,)"
@@ -76,6 +76,6 @@ TEST_CASE("Lines of samples are written and read back unchanged") {
                           R"({"t_monotonic_s":1,"angle_deg":1,"sigma_deg":1,"schema":"vam-angles/2"})"}) {
     CAPTURE(bad);
     CHECK(fault_of([&] { (void)parse_angle_line(bad, 7); }) == Fault::data);
-    CHECK(message_of([&] { (void)parse_angle_line(bad, 7); }).find("line 7") != std::string::npos);
+    CHECK(has(message_of([&] { (void)parse_angle_line(bad, 7); }), "line 7"));
   }
 }

@@ -38,9 +38,9 @@ TEST_CASE("Followed lines: a prediction, then stale, ended or bad ones are error
     clock.sleep_until(50.4);
     angles->update();
     clock.sleep_until(50.6);
-    CHECK(message_of([&] { angles->update(); }).find("none for 0.5 s after line 101") != std::string::npos);
+    CHECK(has(message_of([&] { angles->update(); }), "none for 0.5 s after line 101"));
     close(line[1]);
-    CHECK(message_of([&] { angles->update(); }).find("ended") != std::string::npos);
+    CHECK(has(message_of([&] { angles->update(); }), "ended"));
     close(line[0]);
   }
   {  // a stage that has come where it must, and brakes: who is late still has the angles before
@@ -112,6 +112,6 @@ TEST_CASE("A line of a stage's angles: three finite numbers") {
        {"", "[]", "{}", "{\"t_monotonic_s\":1,\"angle_deg\":\"1\",\"sigma_deg\":1}",
         "{\"t_monotonic_s\":1,\"angle_deg\":1}", "{\"t_monotonic_s\":1e999,\"angle_deg\":1,\"sigma_deg\":1}"}) {
     CAPTURE(line);
-    CHECK(message_of([&] { (void)parse_angle_line(line, 12); }).find("line 12: ") != std::string::npos);
+    CHECK(has(message_of([&] { (void)parse_angle_line(line, 12); }), "line 12: "));
   }
 }

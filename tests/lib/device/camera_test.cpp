@@ -287,7 +287,7 @@ TEST_CASE("A simulated camera: virtual pace does not wait, lost and cut frames, 
   const auto shrinking = open_camera("sim:?pace=virtual&shrink=1", settings, {}, clock);
   shrinking->start();
   CHECK(shrinking->next()->complete);
-  CHECK(message_of([&] { (void)shrinking->next(); }).find("90 x 33 pixels instead of 90 x 67") != std::string::npos);
+  CHECK(has(message_of([&] { (void)shrinking->next(); }), "90 x 33 pixels instead of 90 x 67"));
 }
 
 TEST_CASE("A camera's address and settings are checked before anything is opened") {

@@ -50,7 +50,7 @@ TEST_CASE("A DLPC900 without an image at its input is given 15 s; its light stay
   LightLab lab({.dlpc900 = true, .no_signal = true});
   const double start_s = lab.clock.now_s();
   const std::string message = error_of([&] { lab.light->prepare(); }, Fault::busy);
-  CHECK(message.find("finds no video signal at its input within 15 s") != std::string::npos);
+  CHECK(has(message, "finds no video signal at its input within 15 s"));
   CHECK(lab.clock.now_s() - start_s == doctest::Approx(15).epsilon(0.01));
   CHECK(lab.shining() == 0);
 }
@@ -150,8 +150,7 @@ TEST_CASE("Every byte to a DLPC900: its grey is linear in three patterns of 8 bi
                                         "40220300000201"};  // power 1: asleep
   CHECK(heard_by({.dlpc900 = true}) == wanted);
   // A board without a receiver of that kind refuses to tell of it.
-  CHECK(error_of([] { (void)heard_by({.dlpc900 = true, .refuse = 0x1A01}); }, Fault::busy).find("no video signal") !=
-        std::string::npos);
+  CHECK(has(error_of([] { (void)heard_by({.dlpc900 = true, .refuse = 0x1A01}); }, Fault::busy), "no video signal"));
 }
 
 TEST_CASE("An engine that refuses to stop a pattern is still put to sleep") {
@@ -190,8 +189,7 @@ TEST_CASE("LED current never exceeds the requested value, on either board and fr
 
 TEST_CASE("The current is capped, as given and as found") {
   LightSettings settings{.current_percent = 41};
-  CHECK(error_of([&] { LightLab lab({}, settings); }, Fault::usage).find("41 % is above the limit of 40 %") !=
-        std::string::npos);
+  CHECK(has(error_of([&] { LightLab lab({}, settings); }, Fault::usage), "41 % is above the limit of 40 %"));
   settings.max_current_percent = 50;
   LightLab bright({}, settings);
   bright.light->prepare();
@@ -200,16 +198,15 @@ TEST_CASE("The current is capped, as given and as found") {
       CAPTURE(dlpc900);
       CAPTURE(inverted);
       LightLab found({.dlpc900 = dlpc900, .current_percent = 78, .inverted = inverted});
-      CHECK(error_of([&] { found.light->prepare(); }, Fault::protocol).find("is 78 %, above the limit of 40 %") !=
-            std::string::npos);
+      CHECK(has(error_of([&] { found.light->prepare(); }, Fault::protocol), "is 78 %, above the limit of 40 %"));
       CHECK(found.shining() == 0);
       LightLab dim({.dlpc900 = dlpc900, .current_percent = 22, .inverted = inverted});
       dim.light->prepare();
     }
   }
   LightLab stuck({.inverted = true, .stuck_polarity = true}, settings);
-  CHECK(error_of([&] { stuck.light->prepare(); }, Fault::protocol)
-            .find("LED polarity was set to 00 but reads back as 01") != std::string::npos);
+  CHECK(has(error_of([&] { stuck.light->prepare(); }, Fault::protocol),
+            "LED polarity was set to 00 but reads back as 01"));
   LightSettings odd{.leds = std::string("bx")};
   CHECK(fault_of([&] { LightLab lab({}, odd); }) == Fault::usage);
 }
@@ -217,12 +214,11 @@ TEST_CASE("The current is capped, as given and as found") {
 TEST_CASE("Grey that stays non-linear is found by reading back") {
   LightLab gamma({.stuck_grey = true});
   CHECK(
-      error_of([&] { gamma.light->prepare(); }, Fault::protocol).find("gamma off was set to 00 but reads back as 80") !=
-      std::string::npos);
+      has(error_of([&] { gamma.light->prepare(); }, Fault::protocol), "gamma off was set to 00 but reads back as 80"));
   CHECK(gamma.shining() == 0);
   LightLab mode({.dlpc900 = true, .stuck_grey = true});
-  CHECK(error_of([&] { mode.light->prepare(); }, Fault::protocol)
-            .find("video pattern mode was set to 02 but reads back as 00") != std::string::npos);
+  CHECK(has(error_of([&] { mode.light->prepare(); }, Fault::protocol),
+            "video pattern mode was set to 02 but reads back as 00"));
   CHECK(mode.shining() == 0);
 }
 
@@ -257,7 +253,7 @@ TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and n
     CAPTURE(command);
     const bool dlpc900 = command == 0x1A0C || command == 0x1A34 || command == 0x1A31;
     LightLab lab({.dlpc900 = dlpc900, .refuse = command});
-    CHECK(message_of([&] { lab.light->prepare(); }).find("refused") != std::string::npos);
+    CHECK(has(message_of([&] { lab.light->prepare(); }), "refused"));
     CHECK((lab.leds.empty() || lab.shining() == 0));
   }
 }

@@ -53,9 +53,8 @@ TEST_CASE(
   VirtualStage lab;
   CHECK(describe(*lab.stage)["unit"] == "deg");  // the controller answers DEG
   lab.stage->enable();
-  CHECK(error_of([&] { lab.stage->start_move(10); }, Fault::data)
-            .find("not referenced: give --home, or run `vam-stage home` if the controller keeps the reference") !=
-        std::string::npos);
+  CHECK(has(error_of([&] { lab.stage->start_move(10); }, Fault::data),
+            "not referenced: give --home, or run `vam-stage home` if the controller keeps the reference"));
 }
 
 TEST_CASE("An axis that the controller does not have is named, with those it has") {
@@ -65,7 +64,7 @@ TEST_CASE("An axis that the controller does not have is named, with those it has
   GcsLink link(make_sim_port(make_sim_gcs(sim, clock.now_s(), {}), clock), clock, {});
   require_axis(link, "1");
   const auto wrong = [&] { require_axis(link, "7"); };
-  CHECK(message_of(wrong).find(": no axis 7; the controller has 1") != std::string::npos);
+  CHECK(has(message_of(wrong), ": no axis 7; the controller has 1"));
   require_axis(link, "7");  // a controller that does not know the question may have it
   CHECK(fault_of(wrong) == Fault::usage);
 }
@@ -85,12 +84,11 @@ TEST_CASE("Homing ends at the reference, moves end at their angle") {
 
 TEST_CASE("The controller's refusals are errors with their meaning") {
   VirtualStage lab(SimGcsSettings{.max_deg = 100});
-  CHECK(message_of([&] { move(*lab.stage, lab.clock, 5, false, 10, 10); }).find("not referenced") != std::string::npos);
+  CHECK(has(message_of([&] { move(*lab.stage, lab.clock, 5, false, 10, 10); }), "not referenced"));
   home(*lab.stage, lab.clock, 60);
-  CHECK(message_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }).find("limits") != std::string::npos);
-  CHECK(message_of([&] { lab.stage->set_speed(1000); }).find("faster than") != std::string::npos);
-  CHECK(error_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }, Fault::data).find("maximum of") !=
-        std::string::npos);
+  CHECK(has(message_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }), "limits"));
+  CHECK(has(message_of([&] { lab.stage->set_speed(1000); }), "faster than"));
+  CHECK(has(error_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }, Fault::data), "maximum of"));
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }) == Fault::data);
   CHECK(fault_of([&] { lab.stage->start_move(101); }) == Fault::protocol);
   CHECK_FALSE(lab.truly_moves());
@@ -104,7 +102,7 @@ TEST_CASE("A stage that stands elsewhere than at its target has not arrived") {
   sim.faults.push_back({"block", "#5", 6});
   VirtualStage lab(sim);
   const auto told = error_of([&] { move(*lab.stage, lab.clock, 90, false, 30, 60); }, Fault::protocol);
-  CHECK(told.find("deg, not at 90; it is blocked, or its drive is off") != std::string::npos);
+  CHECK(has(told, "deg, not at 90; it is blocked, or its drive is off"));
 }
 
 TEST_CASE("A slow motion times out and is stopped") {

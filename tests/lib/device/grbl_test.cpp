@@ -27,8 +27,7 @@ TEST_CASE("GRBL: refuses motion before homing") {
   lab.open();
   SpinPlan plan{.speed_deg_s = 60};
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
-  CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
-        std::string::npos);
+  CHECK(has(error_of(print, Fault::data), "not referenced: the position of its zero is unknown; give --home"));
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
   CHECK_FALSE(lab.truly_moves());
   move(*lab.stage, lab.clock, 10, true, 30, 60);  // by an angle it may turn
@@ -40,7 +39,7 @@ TEST_CASE("GRBL: a board that reports inches is refused, as its angles are none"
   GrblLab lab(SimGcsSettings{.inches = true});
   lab.open();
   const auto told = error_of([&] { move(*lab.stage, lab.clock, 10, true, 30, 60); }, Fault::protocol);
-  CHECK(told.find("reports inches ($13=1), which are no degrees; send it $13=0") != std::string::npos);
+  CHECK(has(told, "reports inches ($13=1), which are no degrees; send it $13=0"));
   CHECK_FALSE(lab.truly_moves());
 }
 
@@ -68,7 +67,7 @@ TEST_CASE("GRBL: each process homes, with or without a start-up message; only ho
 TEST_CASE("GRBL: a board without switches takes its present position as zero, for one session") {
   GrblLab lab(SimGcsSettings{.no_switches = true});
   lab.open();
-  CHECK(error_of([&] { home(*lab.stage, lab.clock, 60); }, Fault::protocol).find("?home=here") != std::string::npos);
+  CHECK(has(error_of([&] { home(*lab.stage, lab.clock, 60); }, Fault::protocol), "?home=here"));
   lab.open(true);
   SpinPlan plan{.speed_deg_s = 60};
   std::vector<AngleSample> samples;
@@ -77,8 +76,7 @@ TEST_CASE("GRBL: a board without switches takes its present position as zero, fo
   move(*lab.stage, lab.clock, 40, true, 30, 60);
   home(*lab.stage, lab.clock, 60);
   CHECK(lab.stage->sample().angle_deg == 0);
-  CHECK(error_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }, Fault::data).find("home=here") !=
-        std::string::npos);
+  CHECK(has(error_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }, Fault::data), "home=here"));
   print();
   CHECK(samples.back().angle_deg >= 360);
   lab.open(true);
@@ -101,8 +99,7 @@ TEST_CASE("GRBL: home=here unlocks a board without switches, and is refused by o
   move(*lab.stage, lab.clock, 10, true, 30, 60);
   GrblLab homes;
   homes.open(true);
-  CHECK(error_of([&] { home(*homes.stage, homes.clock, 60); }, Fault::data).find("omit home=here") !=
-        std::string::npos);
+  CHECK(has(error_of([&] { home(*homes.stage, homes.clock, 60); }, Fault::data), "omit home=here"));
 }
 
 TEST_CASE("GRBL: a locked board is not unlocked by a motion") {
@@ -116,8 +113,7 @@ TEST_CASE("GRBL: a locked board is not unlocked by a motion") {
   lab.clock.sleep_until(lab.clock.now_s() + 0.5);
   (void)other->read(0.1);  // its greeting
   lab.open();
-  CHECK(error_of([&] { move(*lab.stage, lab.clock, 10, true, 30, 60); }, Fault::protocol).find("vam-stage home") !=
-        std::string::npos);
+  CHECK(has(error_of([&] { move(*lab.stage, lab.clock, 10, true, 30, 60); }, Fault::protocol), "vam-stage home"));
   CHECK_FALSE(lab.truly_moves());
   home(*lab.stage, lab.clock, 60);
   move(*lab.stage, lab.clock, 10, true, 30, 60);

@@ -58,7 +58,7 @@ TEST_CASE("The second user learns who the first one is; kill -9 frees the device
   const pid_t first = holder("/dev/null");
   CHECK(fault_of([] { DeviceLock("/dev/null"); }) == Fault::busy);
   const std::string message = message_of([] { DeviceLock("/dev/null"); });
-  CHECK(message.find("process " + std::to_string(first)) != std::string::npos);
+  CHECK(has(message, "process " + std::to_string(first)));
   kill(first, SIGKILL);
   waitpid(first, nullptr, 0);
   CHECK_FALSE(fault_of([] { DeviceLock("/dev/null"); }).has_value());

@@ -57,7 +57,7 @@ TEST_CASE("A relay is closed while it hears a heartbeat, and no longer") {
   lab.clock.sleep_until(last_s + 0.31);
   CHECK(lab.state() == "open: heartbeat");
   // It stays open, and the print is told.
-  CHECK(error_of([&] { lab.show(1); }, Fault::protocol).find("has switched off the lamp") != std::string::npos);
+  CHECK(has(error_of([&] { lab.show(1); }, Fault::protocol), "has switched off the lamp"));
   CHECK(lab.state() == "open: heartbeat");
 }
 

@@ -113,8 +113,7 @@ TEST_CASE("GCS: a stage without reference does not spin, and is not made one tha
   SpinPlan plan{.speed_deg_s = 60};
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
   for (int attempt = 0; attempt < 2; ++attempt) {
-    CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
-          std::string::npos);
+    CHECK(has(error_of(print, Fault::data), "not referenced: the position of its zero is unknown; give --home"));
     CHECK(fault_of([&] { (void)plan_spin(*lab.stage, plan, false); }) == Fault::data);
   }
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);

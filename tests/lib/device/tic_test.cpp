@@ -50,8 +50,7 @@ TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smoot
   TicLab lab;
   SpinPlan plan{.speed_deg_s = 60};
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
-  CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
-        std::string::npos);
+  CHECK(has(error_of(print, Fault::data), "not referenced: the position of its zero is unknown; give --home"));
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
   CHECK(lab.log.empty());
   home(*lab.stage, lab.clock, 60);
@@ -79,9 +78,8 @@ TEST_CASE("A Tic that stops in a print says why") {
   const auto hold_up = [&](const AngleSample& sample) {  // its command time-out
     if (sample.angle_deg > 90 && !std::exchange(late, true)) lab.clock.sleep_until(lab.clock.now_s() + 4);
   };
-  CHECK(message_of([&] {
-          spin(*lab.stage, lab.clock, plan, hold_up);
-        }).find("the controller reports: safe start violation") != std::string::npos);
+  CHECK(has(message_of([&] { spin(*lab.stage, lab.clock, plan, hold_up); }),
+            "the controller reports: safe start violation"));
 }
 
 // The controller counts a staircase about an even motion, which is the least-squares line through all samples.
@@ -130,7 +128,7 @@ TEST_CASE("Tic stops after its command time-out") {
 
 TEST_CASE("The Tic's errors are named and stop the start") {
   TicLab lab(SimTicSettings{.error_bits = 8});
-  CHECK(message_of([&] { lab.stage->enable(); }).find("kill switch") != std::string::npos);
+  CHECK(has(message_of([&] { lab.stage->enable(); }), "kill switch"));
   CHECK(fault_of([&] { lab.stage->enable(); }) == Fault::protocol);
 }
 

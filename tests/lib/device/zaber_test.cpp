@@ -73,8 +73,8 @@ TEST_CASE("Zaber: the speed goes with the motion, into the memory only of old fi
 TEST_CASE("Zaber: refuses motion to an angle before homing, and takes one by an angle") {
   ZaberLab lab;
   lab.open();
-  CHECK(error_of([&] { spin(*lab.stage, lab.clock, one_turn(), [](const AngleSample&) {}); }, Fault::data)
-            .find("not referenced") != std::string::npos);
+  CHECK(has(error_of([&] { spin(*lab.stage, lab.clock, one_turn(), [](const AngleSample&) {}); }, Fault::data),
+            "not referenced"));
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
   CHECK_FALSE(lab.truly_moves());
   move(*lab.stage, lab.clock, 10, true, 30, 60);
@@ -88,7 +88,7 @@ TEST_CASE("Zaber: only the addressed device obeys, and its axis") {
   lab.open(second);
   home(*lab.stage, lab.clock, 60);
   second.axis = 2;
-  CHECK(error_of([&] { lab.open(second); }, Fault::protocol).find("BADAXIS") != std::string::npos);
+  CHECK(has(error_of([&] { lab.open(second); }, Fault::protocol), "BADAXIS"));
 }
 
 TEST_CASE("A device other than a Zaber is refused") {
@@ -103,8 +103,7 @@ TEST_CASE("Zaber: a stalled stage is reported by name") {
   sim.faults.push_back({"stall", "", 3});
   ZaberLab lab(sim);
   lab.open();
-  CHECK(error_of([&] { home(*lab.stage, lab.clock, 60); }, Fault::protocol).find("FS (stalled and stopped)") !=
-        std::string::npos);
+  CHECK(has(error_of([&] { home(*lab.stage, lab.clock, 60); }, Fault::protocol), "FS (stalled and stopped)"));
   CHECK_FALSE(lab.stage->fault());
 }
 

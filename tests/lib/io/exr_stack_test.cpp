@@ -213,13 +213,12 @@ TEST_CASE("the wrong kind or space is an error that names it") {
   auto info = sinogram(4, 4, 4);
   CHECK(status([&] { require("a.exr", info, model::Kind::sinogram, model::Space::virtual_); }) == 0);
   CHECK(status([&] { require("a.exr", info, model::Kind::sinogram); }) == 0);
-  std::string line;
-  CHECK(status([&] { require("a.exr", info, model::Kind::frames, model::Space::projector); }, &line) == 65);
-  CHECK(line == "a.exr: holds sinogram (virtual), but frames (projector) is needed");
-  CHECK(status([&] { require("a.exr", info, model::Kind::sinogram, model::Space::projector); }, &line) == 65);
-  CHECK(line == "a.exr: holds sinogram (virtual), but sinogram (projector) is needed; convert it by vam-resample");
-  CHECK(status([&] { require("-", info, model::Kind::frames); }, &line) == 65);
-  CHECK(line == "stdin: holds sinogram (virtual), but frames is needed");
+  CHECK(error_of([&] { require("a.exr", info, model::Kind::frames, model::Space::projector); }, Fault::data) ==
+        "a.exr: holds sinogram (virtual), but frames (projector) is needed");
+  CHECK(error_of([&] { require("a.exr", info, model::Kind::sinogram, model::Space::projector); }, Fault::data) ==
+        "a.exr: holds sinogram (virtual), but sinogram (projector) is needed; convert it by vam-resample");
+  CHECK(error_of([&] { require("-", info, model::Kind::frames); }, Fault::data) ==
+        "stdin: holds sinogram (virtual), but frames is needed");
 }
 
 TEST_CASE("poses travel in the first header, one a row") {

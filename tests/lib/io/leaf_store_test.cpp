@@ -72,15 +72,9 @@ TEST_CASE("a volume that fits needs no scratch file; without a folder for one th
   setenv("TMPDIR", "/nonexistent", 1);
   vam::io::SparseVolume small("dose", vam::model::centred_grid(edge, edge, 8, 0.1));
   CHECK_NOTHROW(small.write_slices(0, 8, slices_of(0, 8, 0).data()));
-  std::string message;
-  try {
-    (void)filled();
-  } catch (const Error& error) {
-    message = error.what();
-    CHECK(error.fault == Fault::no_output);
-  }
-  CHECK(message.find("/nonexistent: cannot create a scratch file") != std::string::npos);
-  CHECK(message.find("set TMPDIR") != std::string::npos);
+  const std::string message = error_of([] { (void)filled(); }, Fault::no_output);
+  CHECK(has(message, "/nonexistent: cannot create a scratch file"));
+  CHECK(has(message, "set TMPDIR"));
   if (before == nullptr) {
     unsetenv("TMPDIR");
   } else {

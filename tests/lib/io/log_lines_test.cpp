@@ -46,8 +46,7 @@ TEST_CASE("a log gives its whole lines, and later those that were added") {
 TEST_CASE("the end of a log is of the version that its first line states") {
   const scratch::Folder folder;
   scratch::spill(folder / "log", "{\"schema\":\"vam-log/2\"}\none\ntwo\n");
-  CHECK(message_of([&] { LogLines(folder / "log", 8); }).find("log: is of version 2 of its format (vam-log)") !=
-        std::string::npos);
+  CHECK(has(message_of([&] { LogLines(folder / "log", 8); }), "log: is of version 2 of its format (vam-log)"));
 }
 
 TEST_CASE("a line of 1 MiB is the longest") {
@@ -60,8 +59,7 @@ TEST_CASE("a line of 1 MiB is the longest") {
   LogLines beyond(folder / "log");
   std::string line;
   CHECK(beyond.next(line));
-  CHECK(message_of([&] { (void)beyond.next(line); }).find("log: has a line of more than 1 MiB, from byte 2 on") !=
-        std::string::npos);
+  CHECK(has(message_of([&] { (void)beyond.next(line); }), "log: has a line of more than 1 MiB, from byte 2 on"));
 }
 
 TEST_CASE("what is no regular file is not waited for, and a link that leads nowhere is an error") {

@@ -93,9 +93,8 @@ TEST_CASE("a named temporary keeps the extension, which some writers go by") {
 
 TEST_CASE("an output that cannot be created is 73") {
   const scratch::Folder folder;
-  std::string line;
-  CHECK(status([&] { const OutputFile file(folder / "absent/a.txt"); }, &line) == 73);
-  CHECK(line.find("No such file or directory") != std::string::npos);
+  CHECK(has(error_of([&] { const OutputFile file(folder / "absent/a.txt"); }, vam::Fault::no_output),
+            "No such file or directory"));
   CHECK(status([&] { const OutputFile file(folder.path.string()); }) == 73);
 }
 
@@ -103,16 +102,14 @@ TEST_CASE("a full device is 74 and is not renamed over") {
   struct stat before = {};
   struct stat after = {};
   stat("/dev/full", &before);
-  std::string line;
-  CHECK(status(
+  CHECK(error_of(
             [] {
               OutputFile file("/dev/full");
               CHECK(file.is_stream());
               file.write("x");
               file.commit();
             },
-            &line) == 74);
-  CHECK(line == "/dev/full: cannot write: No space left on device");
+            vam::Fault::io) == "/dev/full: cannot write: No space left on device");
   stat("/dev/full", &after);
   CHECK(S_ISCHR(after.st_mode));
   CHECK(before.st_ino == after.st_ino);

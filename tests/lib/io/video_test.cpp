@@ -165,14 +165,6 @@ TEST_CASE("without commit no file is left; other endings, missing and foreign fi
     writer.write(frame_of(0, 8));
   }
   CHECK(std::filesystem::is_empty(folder.path));
-  const auto fault_of = [](auto call) {
-    try {
-      call();
-    } catch (const vam::Error& error) {
-      return error.fault;
-    }
-    return vam::Fault::judged;
-  };
   CHECK(fault_of([&] { VideoWriter{(folder / "a.avi"), {64, 48, 8, 16, ""}}; }) == vam::Fault::usage);
   CHECK(fault_of([&] { VideoWriter{(folder / "none/a.mkv"), {64, 48, 8, 16, ""}}; }) == vam::Fault::no_output);
   CHECK(fault_of([&] { VideoReader{(folder / "a.mkv")}; }) == vam::Fault::no_input);
@@ -263,9 +255,9 @@ TEST_CASE("without the container's checksums the slices' own are held to, and th
   std::string damaged = bare;
   damaged[at + 100] ^= 4;
   CHECK(read(damaged, &line) == 65);
-  CHECK(line.find("frame 0 is damaged") != std::string::npos);
+  CHECK(has(line, "frame 0 is damaged"));
   std::string fewer = bare;
   fewer[at + 3] = '\xec';  // the frame is a filler, too
   CHECK(read(fewer, &line) == 65);
-  CHECK(line.find("has 11 of 12 frames") != std::string::npos);
+  CHECK(has(line, "has 11 of 12 frames"));
 }

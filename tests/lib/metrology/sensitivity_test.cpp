@@ -110,7 +110,7 @@ TEST_CASE("The sensitivity that made the densities of a turn is found, within it
   const SensitivityFit past = fit_sensitivity(scatter, nullptr, {later}, curve, carried_on(fit.field, {}), 0);
   const auto changed = doubts(past, range_of(past.field, dose.middle(), 60), range, {});
   REQUIRE(changed.size() == 1);
-  CHECK(changed.front().find(" was expected, a difference of more than") != std::string::npos);
+  CHECK(has(changed.front(), " was expected, a difference of more than"));
 }
 
 TEST_CASE("Densities are of the print's heights, doses of the stretched ones") {
@@ -152,7 +152,7 @@ TEST_CASE("Before anything scatters, and where nothing fits, there is doubt") {
   const SensitivityRange expected = range_of(before, dose.middle(), 60);
   const auto unsure = doubts(dark, range_of(dark.field, dose.middle(), 60), expected, {});
   REQUIRE(unsure.size() == 1);
-  CHECK(unsure.front().find("is known to") != std::string::npos);
+  CHECK(has(unsure.front(), "is known to"));
 
   model::Volume noise = nothing;
   std::mt19937_64 random(3);

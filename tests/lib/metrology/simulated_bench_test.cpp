@@ -189,12 +189,11 @@ TEST_CASE("A lit row seen from the side: waist, focus and divergence of the simu
     CHECK(beam.divergence_deg.value == doctest::Approx(3.5).epsilon(0.02));
   }
   printer.camera.azimuth_deg = 60;
-  CHECK(message_of([&] {
-          (void)metrology::side_widths(Image(200, 60), {0.15, 99.5}, printer, 9);
-        }).find("at 60 degrees to the beam") != std::string::npos);
+  CHECK(has(message_of([&] {
+              (void)metrology::side_widths(Image(200, 60), {0.15, 99.5}, printer, 9);
+            }),
+            "at 60 degrees to the beam"));
   printer.camera.azimuth_deg = 90;
-  CHECK(message_of([&] {
-          (void)metrology::side_widths(Image(20, 60), {0.15, 9.5}, printer, 9);
-        }).find("at least 32") != std::string::npos);
+  CHECK(has(message_of([&] { (void)metrology::side_widths(Image(20, 60), {0.15, 9.5}, printer, 9); }), "at least 32"));
   CHECK(fault_of([&] { (void)metrology::side_widths(Image(200, 60), {0.15, 99.5}, printer, 9); }) == Fault::data);
 }

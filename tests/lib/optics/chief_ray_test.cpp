@@ -180,12 +180,7 @@ TEST_CASE("the window of a bath is between the vial and the lens") {
   model::Printer printer{.projector = {.lens_distance_mm = 60}, .bath = {.index = 1.5}};
   const auto stands = [&](double window_mm) {
     printer.bath.window_mm = window_mm;
-    try {
-      static_cast<void>(projector_view(printer));
-    } catch (const Error&) {
-      return false;
-    }
-    return true;
+    return !fault_of([&] { (void)projector_view(printer); });
   };
   CHECK(stands(printer.vial.radius_mm));  // a vial that touches it
   CHECK_FALSE(stands(std::nextafter(printer.vial.radius_mm, 0)));

@@ -21,9 +21,9 @@ TEST_CASE("the rays of the middle row are those of the map") {
   CHECK(level.str().find(want.str()) == 0);
   want.str("");
   want << "\n2,383,2,0," << ray.x_v_mm << ",0,0,";
-  CHECK(level.str().find(want.str()) != std::string::npos);
+  CHECK(has(level.str(), want.str()));
   printer.vial.radius_mm = 1.5;  // the outer columns pass beside it
   std::ostringstream beside;
   optics::write_rays(beside, printer, optics::projector_detector(printer, {}), 373);
-  CHECK(beside.str().find("\n2,373,2,20,,,,,\n") != std::string::npos);
+  CHECK(has(beside.str(), "\n2,373,2,20,,,,,\n"));
 }

@@ -52,13 +52,8 @@ TEST_CASE("a saturated end answers with its lowest grey") {
 }
 
 TEST_CASE("tables that fall, or do not rise in grey, are data errors") {
-  const auto fault_of = [](std::vector<double> grey, std::vector<double> intensity) {
-    try {
-      Response{vam::model::ResponseTable{"t.csv", std::move(grey), std::move(intensity)}};
-    } catch (const vam::Error& error) {
-      return error.fault;
-    }
-    return vam::Fault::judged;
+  const auto fault_of = [](const std::vector<double>& grey, const std::vector<double>& intensity) {
+    return ::fault_of([&] { Response{vam::model::ResponseTable{"t.csv", grey, intensity}}; });
   };
   CHECK(fault_of({0, 1, 2}, {0, 2, 1}) == vam::Fault::data);
   CHECK(fault_of({0, 2, 2}, {0, 1, 2}) == vam::Fault::data);

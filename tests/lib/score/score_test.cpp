@@ -49,7 +49,7 @@ TEST_CASE("absolute figures keep the dose's unit, and the critical dose is judge
   CHECK(score.figure("cured_part") == doctest::Approx(0.5));
   CHECK(score.figure("cured_void") == 0.0);
   CHECK(score.figure("cured_wrong") == doctest::Approx(0.25));
-  CHECK(score.table().find("cured_wrong") != std::string::npos);
+  CHECK(has(score.table(), "cured_wrong"));
 }
 
 TEST_CASE("a dose without light has no exposure: its figures are unknown, and there is no verdict") {

@@ -113,7 +113,7 @@ TEST_CASE("GCS: units and the lines of HLP? as the controller writes them") {
   Terminal say = gcs();
   CHECK(say("PUN? 1\n") == "1=DEG\n");  // capitals, unlike other models
   const std::string help = say("HLP?\n");
-  CHECK(help.find(" \n") != std::string::npos);
+  CHECK(has(help, " \n"));
   CHECK(help.substr(help.size() - 2) != " \n");
 }
 
@@ -122,11 +122,11 @@ TEST_CASE(
   Terminal say(make_sim_grbl, SimGcsSettings{.reset_at_open = true});
   CHECK(begins(say("\n"), "\r\nGrbl 1.1"));
   CHECK(begins(say("$?"), "<Idle|MPos:0.000"));
-  CHECK(say("X\n").find("ok\r\n") != std::string::npos);
+  CHECK(has(say("X\n"), "ok\r\n"));
   CHECK(say("hello\n") == "error:20\r\n");
   CHECK(say("$J=G53 G90 X1e7 F600\n") == "error:15\r\n");
   CHECK(say("$J=G53 G90 X90 F600\n") == "ok\r\n");
-  CHECK(say("\x18").find("Grbl 1.1") != std::string::npos);
+  CHECK(has(say("\x18"), "Grbl 1.1"));
   CHECK(begins(say("?"), "<Alarm"));
   CHECK(say("$J=G53 G90 X0 F600\n") == "error:9\r\n");
 }
@@ -138,7 +138,7 @@ TEST_CASE("GRBL: reports wait until homing is over, and so does its ok") {
   say.wait(5);
   const std::string text = say.heard();
   CHECK(begins(text, "<Idle|MPos:0.000"));
-  CHECK(text.find("ok\r\n") != std::string::npos);
+  CHECK(has(text, "ok\r\n"));
 }
 
 TEST_CASE("Zaber: device 0 or no number addresses all devices, the message number is returned, WR lasts until homing") {

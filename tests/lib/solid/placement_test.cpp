@@ -18,16 +18,7 @@ PlacedExtent placed(model::TriangleSoup mesh, const Placement& placement) {
   return extent(mesh);
 }
 
-std::string data_error(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    CHECK(error.fault == Fault::data);
-    return error.what();
-  }
-  FAIL("no error");
-  return "";
-}
+std::string data_error(const std::function<void()>& work) { return error_of(work, Fault::data); }
 
 }  // namespace
 

@@ -70,7 +70,7 @@ TEST_CASE("walls are told from a thousandth of the part on, with their share, he
       much[0] ==
       "a.stl: 0.15 % of the part is in walls too thin for the voxels: between z = 1.9 and 2.9 mm no voxel of theirs is "
       "half covered, and they will not be printed; voxels of 0.08 mm or thicker walls may help");
-  CHECK(doubts(wall(0.4, 6), 1.25)[0].find("between z = 1.52 and 2.32 mm") != std::string::npos);
+  CHECK(has(doubts(wall(0.4, 6), 1.25)[0], "between z = 1.52 and 2.32 mm"));
   // A wall that stands beside the block, so that it counts by its share alone.
   const auto at_block = [](int long_voxels) {
     return beside_block(
@@ -101,8 +101,8 @@ TEST_CASE("the part's own surface names thickness and place, and keeps silent of
   CHECK(told(wall(0.4, 6)).empty());
   CHECK(told(gap(0.2, 3)).empty());
   places.relief = {5, 0.11, {1, 2, 3}};
-  CHECK(told(wall(0.4, 6)).front().find("; voxels of 0.055 mm or thicker walls may help") != std::string::npos);
-  CHECK(told(gap(0.2, 3)).front().find("gaps of 0.11 mm are too narrow") != std::string::npos);
+  CHECK(has(told(wall(0.4, 6)).front(), "; voxels of 0.055 mm or thicker walls may help"));
+  CHECK(has(told(gap(0.2, 3)).front(), "gaps of 0.11 mm are too narrow"));
   CHECK(told({}) ==
         std::vector<std::string>{"a.stl: ridges and grooves of 0.11 mm are too fine for voxels of 0.2 mm, as "
                                  "near (1, 2, 2.4) mm, and whether they print is not judged; voxels of "
@@ -115,15 +115,15 @@ TEST_CASE("the part's own surface names thickness and place, and keeps silent of
         "a.stl: walls of 0.35 mm are too fine for voxels of 0.2 mm, as near (1, 2, 2.4) mm, and may not print, as "
         "vam-score "
         "tells; voxels of 0.17 mm resolve them");
-  CHECK(both[1].find("gaps of 0.25 mm are too fine") != std::string::npos);
-  CHECK(both[1].find("and whether they print is not judged; voxels of 0.088 mm resolve them") != std::string::npos);
-  CHECK(told(wall(0.4, 6)).front().find("; voxels of 0.17 mm or thicker walls may help") != std::string::npos);
+  CHECK(has(both[1], "gaps of 0.25 mm are too fine"));
+  CHECK(has(both[1], "and whether they print is not judged; voxels of 0.088 mm resolve them"));
+  CHECK(has(told(wall(0.4, 6)).front(), "; voxels of 0.17 mm or thicker walls may help"));
   places.gaps = {1, 0.37, {1, 2, 3}};
-  CHECK(told({})[1].find("gaps of 0.37 mm are too fine") != std::string::npos);
-  CHECK(told({})[1].find("and may be printed shut, as vam-score tells; voxels of 0.18 mm") != std::string::npos);
+  CHECK(has(told({})[1], "gaps of 0.37 mm are too fine"));
+  CHECK(has(told({})[1], "and may be printed shut, as vam-score tells; voxels of 0.18 mm"));
   places.blocked = {1, 0.41, {1, 2, 3}};
-  CHECK(told({})[1].find("gaps of 0.41 mm are too fine") != std::string::npos);
-  CHECK(told({})[1].find("and whether they print is not judged; voxels of 0.14 mm") != std::string::npos);
+  CHECK(has(told({})[1], "gaps of 0.41 mm are too fine"));
+  CHECK(has(told({})[1], "and whether they print is not judged; voxels of 0.14 mm"));
   places = {};
   places.walls = {1, 0.397, {}};  // of a tube, by its facets
   CHECK(told({}).empty());
@@ -158,8 +158,8 @@ TEST_CASE(
   both.lost_gaps = gap(0.2, 3).lost_gaps;
   const std::vector<std::string> two = doubts(both);
   REQUIRE(two.size() == 2);
-  CHECK(two[0].find("too thin") != std::string::npos);
-  CHECK(two[1].find("too narrow") != std::string::npos);
+  CHECK(has(two[0], "too thin"));
+  CHECK(has(two[1], "too narrow"));
   const std::vector<std::string> thin = doubts(wall(0.6, 40));
   CHECK(thin.empty());
   const std::vector<std::string> much =

@@ -71,7 +71,7 @@ TEST_CASE("a part of which hardly anything is judged may print, whatever its sur
   CHECK(answer(rods) == Answer::yes);
   rods.unresolved.part = 600;
   CHECK(answer(rods) == Answer::unsure);
-  CHECK(words(rods).find("are not judged: 60 % of the part") != std::string::npos);
+  CHECK(has(words(rods), "are not judged: 60 % of the part"));
 }
 
 TEST_CASE("walls and gaps that no voxel shows are told") {
@@ -82,12 +82,11 @@ TEST_CASE("walls and gaps that no voxel shows are told") {
   thin.unresolved.gaps = 261;
   CHECK(answer(thin) == Answer::unsure);
   CHECK(words(thin).starts_with("may print: "));
-  CHECK(words(thin).find("not judged: 28 % of the part; smaller voxels resolve them") != std::string::npos);
+  CHECK(has(words(thin), "not judged: 28 % of the part; smaller voxels resolve them"));
   thin.unresolved.lost_walls.voxels = 14;
   CHECK(answer(thin) == Answer::not_as_designed);
   CHECK(words(thin).starts_with("will not print as designed: "));
-  CHECK(words(thin).find("; 1.4 % of the part is in walls too thin for the voxels and will be missing") !=
-        std::string::npos);
+  CHECK(has(words(thin), "; 1.4 % of the part is in walls too thin for the voxels and will be missing"));
   thin.whole.pw = -0.1;
   CHECK(words(thin).starts_with("will not print: "));
 }
@@ -96,7 +95,7 @@ TEST_CASE("slits and hairs are told however small their share is") {
   Verdict slit = printable();
   slit.unresolved.lost_gaps = {40, 0.5F, 3, 9};
   CHECK(answer(slit) == Answer::not_as_designed);
-  CHECK(words(slit).find("gaps too narrow for the voxels will be shut") != std::string::npos);
+  CHECK(has(words(slit), "gaps too narrow for the voxels will be shut"));
   Verdict hair = printable();
   hair.unresolved.whole = 1e6;
   hair.unresolved.lost_walls.far = hair.unresolved.lost_walls.voxels = 3;
@@ -131,7 +130,7 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   cut.pieces = {.part = 2, .part_at_half = 2, .print = 2, .print_fewer = 1};
   CHECK(answer(cut) == Answer::unsure);
   cut.pieces->part = 1;  // which the voxels are too coarse to tell
-  CHECK(words(cut).find("2 %") == std::string::npos);
+  CHECK_FALSE(has(words(cut), "2 %"));
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .broken = {.voxels = 4}};
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; walls are cut or missing: 4 voxels that the part fills by half or more do not cure"));
@@ -154,7 +153,7 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   cut.pieces->firm_holes = 1;
   CHECK(words(cut).ends_with("the print has 1 hole that the part has not"));
   cut.whole.pw = -0.1;  // pieces of what does not print at all say nothing
-  CHECK(words(cut).find("pierced") == std::string::npos);
+  CHECK_FALSE(has(words(cut), "pierced"));
 }
 
 // A dose that is the same everywhere has it: what prints the part prints the void, too.
@@ -191,7 +190,7 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
     set_pieces(made, counted);
     CHECK(answer(made) == wanted);
   }
-  CHECK(words(made).find("; the print is in 2 pieces, the part in 3") != std::string::npos);
+  CHECK(has(words(made), "; the print is in 2 pieces, the part in 3"));
   made.unresolved.surface->places.specks = 1;  // a third solid that is too small to count on
   set_pieces(made, counted);
   CHECK(answer(made) == Answer::yes);
@@ -214,8 +213,7 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
   made.unresolved.lost_walls.voxels = 0;
   made.unresolved.surface->places.gaps = {1, 0.1, {}};
   CHECK(answer(made) == Answer::unsure);
-  CHECK(words(made).find("; walls of 0.9 voxels and gaps of 0.5 voxels are not judged; smaller voxels resolve them") !=
-        std::string::npos);
+  CHECK(has(words(made), "; walls of 0.9 voxels and gaps of 0.5 voxels are not judged; smaller voxels resolve them"));
   // What is thicker than one and a half voxels is judged.
   made.unresolved.surface->places.walls = {1, 0.31, {}};
   made.unresolved.surface->places.gaps = {1, 0.31, {}};
@@ -224,5 +222,5 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
   CHECK(answer(made) == Answer::not_as_designed);
   made.unresolved.lost_walls.voxels = 0;
   made.unresolved.surface->places.relief = {2, 0.1, {}};
-  CHECK(words(made).find("; ridges and grooves of 0.5 voxels are not judged") != std::string::npos);
+  CHECK(has(words(made), "; ridges and grooves of 0.5 voxels are not judged"));
 }
