@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # scripts/bench: medians, ratios, and what it refuses, on benchmarks whose times are known.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

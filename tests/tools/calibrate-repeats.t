@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # What vam-calibrate-all repeats and what it refuses, with stand-ins for its tools: each call takes the next line of

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # Cameras as their makers document them: as delivered, seen by a client that shares nothing with ours; and the times of
@@ -22,7 +21,6 @@ late() {  # late LAG SIMULATOR-OPTIONS... [-- CAPTURE-OPTIONS]: $stamp, and by h
   while [ $# -gt 0 ] && [ "$1" != -- ]; do options="$options $1"; shift; done
   [ $# -eq 0 ] || shift
   rm -rf views log
-  # shellcheck disable=SC2086
   camera_up $options --lag "$lag" --speed 30 --columns 64 --rows 48 --log log
   # A busy machine may lose some, and take its time.
   vam-capture --device aravis:127.0.0.1 --fps 50 --exposure 15000 --frames 30 --timeout 20 "$@" -o views/ 2>errors

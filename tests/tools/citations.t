@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the source cites stands in the manual pages of section 7; and the check that verifies it finds what does not.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

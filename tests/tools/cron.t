@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The crontab line and the systemd units of vam-calibrate-all(1), as cron and systemd run them: installed, in an empty
 # environment with their own PATH; the devices alone are simulated ones. And the progress on a terminal.

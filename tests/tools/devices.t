@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK camera COST 110
 # Every device [devices guarantees 4 and 6]: one user at a time, reported with its pid within a second, free again after kill -9;

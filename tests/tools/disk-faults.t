@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What a full disk, a bad one and kill -9 leave behind, at every system call that matters: of a file the old one; of a
 # capture folder one that can be resumed, to the identical result [devices guarantee 5].

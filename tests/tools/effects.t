@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # No option is without effect: on each kind of input it changes what its tool writes, or is refused.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The check that every source begins with its licence finds those that do not, and mends them.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # scripts/lab: every command of vam-lab(7), in order, on the simulated bench; and what Control-C leaves.

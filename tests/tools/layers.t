@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every include keeps to lib/layers.txt; and the check that verifies it finds those that do not.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

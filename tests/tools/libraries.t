@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Tools start with the libraries that they always need: those of videos, desktops and figures are loaded by who opens one.
 . "$VAM_SOURCE/tests/tools/testlib.sh"

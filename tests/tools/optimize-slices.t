@@ -8,7 +8,6 @@ optimised() {  # optimised NAME PIECES OPTIONS...: in pieces and as a whole
   name=$1 pieces=$2; shift 2
   vam-optimize part.vdb "$@" | vam-convert join -o "$name.exr"
   for i in $(seq "$pieces"); do vam-optimize part.vdb "$@" --slices "$i/$pieces" -o "$name.$i.exr" || echo '# failed'; done
-  # shellcheck disable=SC2046
   vam-convert join $(seq "$pieces" | sed "s/.*/$name.&.exr/") -o "$name.joined.exr"
   same "$name: $pieces pieces are the undivided stack" "$name.exr" "$name.joined.exr"
 }
@@ -22,7 +21,6 @@ is 'the report is that of the piece' "$(json low.json distinct_slices)" 3
 fails 64 '^vam-optimize: --slices: rays that climb couple all slices, and light of a piece differs from that of the whole part by a tenth of the peak or more' \
   vam-optimize part.vdb --slices 0:9 -o x.exr
 for option in '--budget 3' '--bits 8' '--robust lamp=3%' '--certify x.vdb' '--tradeoff x.csv'; do
-  # shellcheck disable=SC2086
   misuse --slices "${option%% *}" \
     vam-optimize part.vdb --slices 0:9 $option
 done

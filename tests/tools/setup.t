@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # scripts/setup without the right to install: it says what to ask for. Nothing is installed here, as dpkg and sudo are
 # stood in for.

@@ -43,7 +43,6 @@ munged --foreground --force --key-file="$scratch/slurm/key" --socket="$scratch/s
 await test -S slurm/socket
 slurmctld -D >slurm/slurmctld.log 2>&1 & daemons="$daemons $!"
 slurmd -D >slurm/slurmd.log 2>&1 & daemons="$daemons $!"
-# shellcheck disable=SC2064,SC2086
 trap "scancel --user=$user; sleep 1; kill $daemons; wait; rm -rf '$scratch'" EXIT
 node_is_idle() { [ "$(sinfo -h -o %t 2>/dev/null)" = idle ]; }
 await node_is_idle || { echo '1..0 # SKIP slurmd does not start here'; tail -n 3 slurm/*.log | sed 's/^/# /'; exit 77; }
@@ -69,7 +68,6 @@ quiet 'a queue is made by Slurm' vam-batch --slurm --prefix ./mortal parts.tsv
 is 'no state is left of either' "$(ls batch/*.state 2>/dev/null | wc -l)" 0
 is 'each job has its log' "$(cd batch/log && ls | sed 's/[0-9][0-9]*/N/g' | tr '\n' ' ')" 'end-N.log part.gather-N.log part.piece-N_N.log part.piece-N_N.log part.slice-N.log '
 is 'no job is left' "$(squeue -h | wc -l)" 0
-# shellcheck disable=SC2086
 vam-optimize batch/part.vdb $optimize --printer level.toml | vam-convert join -o whole.exr
 same 'the projections are those of one undivided run' batch/part.exr whole.exr
 is 'the part has its figures' "$(cut -f 1 batch/summary.tsv | tr '\n' ' ')" 'name part '

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock RUN_SERIAL ON COST 150
 # trials: 100

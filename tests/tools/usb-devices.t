@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # USB devices through the real libusb, on simulated buses: the Tic stage, and the DLPC350 and DLPC900 light engines,

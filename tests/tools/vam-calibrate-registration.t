@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # vam-calibrate registration: a camera that is turned, too low and of another scale than the printer file has it; its
 # views are the oracle's.

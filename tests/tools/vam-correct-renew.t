@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: COST 50
 # vam-correct renew in a simulated print without a clock: the resin is less sensitive at its upper end, absorbs

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock COST 200
 # A print that is ended, from outside or by the end of one of its tools: dark and at standstill in time, with the right

@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # A print whose stage replies wrongly, by every kind of fault in turn: it ends dark and at standstill, with the right status.

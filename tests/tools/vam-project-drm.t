@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # vam-project by page flips: the real libdrm on a simulated graphics card, whose log is the judge.
@@ -10,7 +9,6 @@ card=$VAM_BUILD/lib/vam-test/drm_card.so
 tiny_print part.exr
 printf '[stage]\nspeed_deg_s = 360\n' >>printer.toml
 judge="python3 $VAM_SOURCE/tests/device/drm_trials.py"
-exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 shown() { grep '"shade"' card/log | tail -n 1 | grep -o '"shade":"[a-z]*"'; }
 print() { rm -f card/log flips leds; LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 "$@"; }
 

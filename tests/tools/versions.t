@@ -2,7 +2,6 @@
 # Every file states the version of its format; each tool refuses a newer one with both numbers, and reads one without.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
-exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 
 cat >edit.py <<'PY'
 """edit.py newer|bare FILE OUT: the version counted up, or its name changed by a letter, in whatever kind of file."""
