@@ -90,6 +90,8 @@ TEST_CASE("wrong options are usage errors") {
                                              {"--rotate", "1,2"},
                                              {"--window", "han"},
                                              {"a", "b"},
+                                             {"--window", ""},
+                                             {""},
                                              {"--half", "--half=x"},
                                              {"--voxel", "1", "--voxel", "2"}}) {
     Tool tool;

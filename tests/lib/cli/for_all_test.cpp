@@ -44,6 +44,9 @@ TEST_CASE("what is wrong with them is a usage error") {
   CHECK(refused({"--progress", "jason"}) ==
         "vam-demo: --progress: 'jason' is not one of line, json, none; did you mean json?\n");
   CHECK(refused({"--progress"}) == "vam-demo: --progress: needs a value\n");
+  CHECK(refused({"--memory", "1", "--memory=2"}) == "vam-demo: --memory: given twice\n");
+  CHECK(refused({"--memory", "much"}).starts_with("vam-demo: --memory: 'much' is not a number"));
+  CHECK(refused({"--memory", "0"}).starts_with("vam-demo: --memory: 0 is out of range"));
   CHECK(refused({"--quiet=yes"}) == "vam-demo: --quiet: takes no value\n");
   CHECK(refused({"-q", "--quiet"}) == "vam-demo: --quiet: given twice\n");
   CHECK(refused({"-q", "-v"}) == "vam-demo: --quiet: contradicts --verbose\n");
