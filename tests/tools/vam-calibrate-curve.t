@@ -3,18 +3,8 @@
 # vam-calibrate working-curve: volumes and doses to the record of a resin, and what it refuses;
 # tests/lib/metrology judges the fit.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-python3 - <<'PY'
-import math, struct
-def save(path, nz, ny, nx, value):
-    head = "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, %d), }" % (nz, ny, nx)
-    head += " " * (-(len(head) + 11) % 64) + "\n"
-    with open(path, "wb") as out:
-        out.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode())
-        out.write(struct.pack("<%df" % (nz * ny * nx), *(value(k) for k in range(nz) for _ in range(ny * nx))))
-dose = lambda k: 20 + 6 * (k // 6)  # ten steps of 20 to 74 mJ/cm3
-save("dose.npy", 60, 12, 12, dose)
-save("scatter.npy", 60, 12, 12, lambda k: 0.08 / (1 + math.exp((50 - dose(k)) / 4)))
-PY
+$npy of dose.npy 60,12,12 '20 + 6 * (k // 6)'  # ten steps of 20 to 74 mJ/cm3
+$npy of scatter.npy 60,12,12 '0.08 / (1 + exp((50 - 20 - 6 * (k // 6)) / 4))'
 volume() { vam-convert $1.npy --voxel 0.2 --grid $1 --value-unit "$2" -o $3.vdb; }
 volume dose mJ/cm3 dose; volume dose relative relative; volume scatter 'view units per mm' scatter
 quiet 'a working curve' vam-calibrate working-curve scatter.vdb --dose dose.vdb --lit-turns 1 -o curve.json
@@ -41,7 +31,7 @@ fails 66 'absent' vam-calibrate working-curve absent.vdb --dose dose.vdb
 # show its mean.
 mkdir views
 PYTHONPATH=$VAM_SOURCE/tests/tools python3 - <<'PY'
-import json, math, random, struct
+import json, math, random
 from scans import write_png
 per_turn = lambda k: 4 + 1.5 * (k // 4)  # ten steps of four rows, mJ/cm3
 def density(k, turn):
@@ -59,14 +49,8 @@ with open("views/manifest.jsonl", "w") as manifest:  # as vam-capture writes it
                                          for s in rows])
         print(json.dumps({"frame": n, "number": n, "t_monotonic_s": 100 + 0.2 * n, "angle_deg": 12 * n, "complete": True,
                           "levels": ""}), file=manifest)
-head = "{'descr': '<f4', 'fortran_order': False, 'shape': (40, 32, 32), }"
-head += " " * (-(len(head) + 11) % 64) + "\n"
-with open("turn.npy", "wb") as out:
-    out.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode())
-    for k in range(40):
-        out.write(struct.pack("<1024f", *(per_turn(k) * (math.hypot(j - 15.5, i - 15.5) < 13)
-                                          for j in range(32) for i in range(32))))
 PY
+$npy of turn.npy 40,32,32 '(4 + 1.5 * (k // 4)) * (hypot(j - 15.5, i - 15.5) < 13)'
 vam-convert turn.npy --voxel 0.2 --grid dose --value-unit mJ/cm3 -o turn.vdb
 ok 'volumes of ten turns' vam-ost views --live --no-refraction --pixel 0.2 --axis-column 23.5 --tilt 0 --keep-run-out -o live
 curve() { vam-calibrate working-curve live --dose turn.vdb "$@"; }

@@ -13,8 +13,4 @@ is "dark reading subtracted" "$(tail -n 1 table.csv)" "255,110"
 quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --max-irradiance 110 --response table.csv -o x.exr
 printf 'grey,reading\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
 fails 65 'the reading falls from 5 at grey 100 to 4 at grey 200' vam-calibrate photodiode falling.csv -o no.csv
-printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n' >few.csv
-fails 65 '2 different exposures are too few for a line fit; measure at least 3' vam-calibrate cure-depth few.csv --plot no.png
-printf 'exposure,thickness_um\n20,370\n' >names.csv
-fails 65 "no column 'exposure_mj_cm2'" vam-calibrate cure-depth names.csv
 done_testing
