@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # vam-sinogram end to end: values with their units, filters, absorption, streams, and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 
 vam-slice --shape cylinder:diameter=8,height=2 --voxel 0.1 --stretch-z 1 -o part.vdb
 ok "a sinogram of a cylinder" vam-sinogram part.vdb -o radon.exr
@@ -27,9 +26,6 @@ vam-sinogram --filter ram-lak part.vdb >light.exr
 is "units of intensity" "$($exr attr light.exr vam:units)" 1/rad
 holds "intensity is negative beside the part" "$($exr get light.exr $middle $((centre + 43)) 7) < 0"
 holds "intensity through the axis sums to 1" "($($exr get light.exr $middle $centre 0) * 6.2831853 - 1)^2 < 0.05^2"
-for filter in shepp-logan cosine hamming hann gaussian exponential; do
-  ok "filter $filter" vam-sinogram --filter $filter --cutoff 0.8 --angles 12 part.vdb -o $filter.exr
-done
 vam-sinogram --filter ram-lak --negative clip part.vdb >clip.exr
 is "clip leaves 0" "$($exr get clip.exr $middle $((centre + 43)) 7)" 0
 is "clip keeps positive values" "$($exr get clip.exr $middle $centre 7)" "$($exr get light.exr $middle $centre 7)"
@@ -56,34 +52,13 @@ is "stdin and file give the same pixels" "$($exr sum stdin.exr)" "$($exr sum pip
 taskset -c 0 vam-sinogram --filter hann part.vdb >one.exr  # the history, and so the seal, has the options
 vam-sinogram --filter hann part.vdb >two.exr
 same "1 and 2 threads give identical bytes" one.exr two.exr
-ok "half floats in a file" vam-sinogram --half --compression zip part.vdb -o half.exr
 quiet "success is silent" vam-sinogram part.vdb -o silent.exr
-ok "settings in force" vam-sinogram --print-printer -o printer.toml
 
 # --- wrong inputs ---
-head -c 3000 part.vdb >cut.vdb
-printf 'no volume' >noise.vdb
-fails 66 'nothing.vdb' vam-sinogram nothing.vdb -o x.exr
-fails 65 'cut.vdb' vam-sinogram cut.vdb -o x.exr
-fails 65 'noise.vdb' vam-sinogram noise.vdb -o x.exr
-fails 65 'target' vam-sinogram --grid dose part.vdb -o x.exr
-fails 64 'angles' vam-sinogram --angles 0 part.vdb -o x.exr
-fails 64 'detector-bins' vam-sinogram --detector-bins 0 part.vdb -o x.exr
-fails 64 'filter' vam-sinogram --filter ramp part.vdb -o x.exr
-fails 64 'cutoff' vam-sinogram --filter hann --cutoff 0 part.vdb -o x.exr
-misuse --cutoff '--filter none' vam-sinogram --cutoff 0.5 part.vdb -o x.exr
-misuse --printer-absorption --absorption vam-sinogram --printer-absorption --absorption 1 part.vdb -o x.exr
-fails 64 'absorption' vam-sinogram --absorption -1 part.vdb -o x.exr
-python3 - <<'PY'
-head = "{'descr': '<f4', 'fortran_order': False, 'shape': (4, 8, 8), }"
-open("zero.npy", "wb").write(b"\x93NUMPY\x01\0\x76\0" + head.ljust(117).encode() + b"\n" + bytes(4 * 256))
-PY
+$npy of zero.npy 4,8,8 0
 vam-convert zero.npy --voxel 0.5 --stretch-z 1 -o zero.vdb
 fails 65 'zero.vdb: the target is empty \(no coverage anywhere\); there is nothing to project' vam-sinogram zero.vdb -o x.exr
 vam-convert zero.npy --voxel 0.5 --grid dose --value-unit relative -o dark.vdb
 ok 'which holds for targets' vam-sinogram --grid dose dark.vdb -o dark.exr
 fails 65 'overflows' vam-sinogram --absorption 100 part.vdb -o x.exr
-fails 64 'also the input' vam-sinogram part.vdb -o part.vdb
-fails 73 'nowhere' vam-sinogram part.vdb -o nowhere/x.exr
-fails 74 'full' vam-sinogram part.vdb -o /dev/full
 done_testing
