@@ -8,7 +8,7 @@ n=$(vam-check whole.exr | sed -n 's/.*stack of \([0-9]*\) images.*/\1/p')
 vam-convert cut whole.exr --slices 0:20 -o a.exr && vam-convert cut whole.exr --slices "20:$n" -o b.exr
 quiet 'pieces are joined, in any order' vam-convert join b.exr a.exr -o joined.exr
 same 'to the undivided stack' whole.exr joined.exr
-is 'a piece is named' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr a.exr vam:piece)" "0:20 of $n"
+is 'a piece is named' "$($exr attr a.exr vam:piece)" "0:20 of $n"
 ok 'and intact' vam-check a.exr b.exr
 for i in 1 2 3; do vam-convert cut whole.exr --slices $i/3; done >stream || report 1 'shares are cut'
 vam-convert join <stream >piped.exr
@@ -28,7 +28,7 @@ for how in '-o f.exr' '--freeze f.toml' '-o null: --plan'; do
   fails 65 "ra.exr: holds 20 of $n slices \(vam:piece 0:20 of $n\); join the pieces by vam-convert join" vam-project ra.exr $how
 done
 
-python3 "$VAM_SOURCE/tests/tools/exr.py" make frames.exr kind=frames space=camera width=6 height=5 count=4
+$exr make frames.exr kind=frames space=camera width=6 height=5 count=4
 vam-convert join frames.exr -o all.exr && vam-convert cut frames.exr --slices 0:1 -o f1.exr && vam-convert cut frames.exr --slices 1:4 -o f2.exr
 vam-convert join f1.exr f2.exr -o f.exr
 same 'frames are cut and joined, too' all.exr f.exr
@@ -51,15 +51,10 @@ else
 fi
 
 # ---- what is no stack together ---------------------------------------------------------------------------------------
-fails 65 "^vam-convert: a.exr: holds images 0:20 of $n; name the other pieces, too, or cut some of these" vam-convert join a.exr -o x.exr
 fails 65 'c.exr: holds images 30:40, but the pieces before it end at 20; the piece in between is missing' vam-convert join a.exr c.exr -o x.exr
 fails 65 'c.exr: holds images 30:40, but the pieces before it end at .*; omit one of those that overlap' vam-convert join a.exr b.exr c.exr -o x.exr
 fails 65 'whole.exr: is no piece of a stack \(no vam:piece\)' vam-convert join a.exr whole.exr -o x.exr
-fails 65 'a.exr: holds images 0:20 of .*, not all of --slices 10:30' vam-convert cut a.exr --slices 10:30 -o x.exr
-fails 65 "whole.exr: has $n slices, too few for --slices 0:500" vam-convert cut whole.exr --slices 0:500 -o x.exr
-fails 64 "^vam-convert: --slices: '4' is neither a range FROM:TO" vam-convert cut none.exr --slices 4 -o x.exr
 fails 64 "'5:5' is neither" vam-convert cut none.exr --slices 5:5 -o x.exr
-fails 66 'none.exr: cannot open' vam-convert join none.exr -o x.exr
 fails 65 "stdin: ends after image 20 of $n; the other pieces are missing" sh -c 'vam-convert join <a.exr -o x.exr'
 fails 65 'stdin: .*the piece in between is missing' sh -c 'cat a.exr c.exr | vam-convert join -o x.exr'
 fails 65 'another stack follows, which is no piece' sh -c 'cat whole.exr whole.exr | vam-convert join -o x.exr'

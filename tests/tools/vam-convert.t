@@ -3,39 +3,27 @@
 # vam-convert: arrays, images and videos of other programs in, arrays out; anybody's projections judged.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
-npy() { python3 "$VAM_SOURCE/tests/tools/npy.py" "$@"; }
-shown() { npy show "$1" >shown; cat shown; }
+shown() { $npy show "$1" >shown; cat shown; }
 values() { seq 0 "$(($1 - 1))" | awk '{ printf " %d", $1 % 101 } END { print "" }'; }
 
 # Every type and order: the same numbers in [z][y][x].
 want="2 3 4 <f4$(values 24)"
 for kind in '|u1' '|i1' '<u2' '>u2' '<i2' '<u4' '>i4' '<i8' '>u8' '<f2' '>f2' '<f4' '>f4' '<f8' '>f8'; do
-  npy make a.npy "$kind" 2,3,4
+  $npy make a.npy "$kind" 2,3,4
   vam-convert a.npy --voxel 0.5 --grid weight | vam-convert >b.npy
   is "$kind in C order" "$(shown b.npy)" "$want"
-  npy make f.npy "$kind" 2,3,4 F
+  $npy make f.npy "$kind" 2,3,4 F
   vam-convert --voxel 0.5 --grid weight <f.npy | vam-convert >b.npy
   is "$kind in Fortran order" "$(shown b.npy)" "$want"
 done
-npy make t.npy '|b1' 1,2,4
-vam-convert t.npy --voxel 0.5 | vam-convert >b.npy
-is 'truth' "$(shown b.npy)" '1 2 4 <f4 0 1 0 1 0 1 0 1'
-npy make p.npy '<f4' 3,4
-vam-convert p.npy --voxel 0.5 --grid weight | vam-convert >b.npy
-is 'a plane is one slice' "$(shown b.npy)" "1 3 4 <f4$(values 12)"
-npy make a.npy '<f4' 2,3,4
+$npy make p.npy '<f4' 3,4
+$npy make a.npy '<f4' 2,3,4
 vam-convert a.npy --axes xyz --voxel 0.5 --grid weight | vam-convert >b.npy
 is 'axes in another order' "$(shown b.npy | cut -d' ' -f1-8)" '4 3 2 <f4 0 12 4 16'
 vam-convert a.npy --voxel 0.5 --full-scale 100 | vam-convert >b.npy
 is 'values divided' "$(shown b.npy | cut -d' ' -f5,6,28)" '0 0.01 0.23'
 python3 -c 'import zipfile
-with zipfile.ZipFile("one.npz", "w", zipfile.ZIP_DEFLATED) as z: z.write("a.npy", "dose.npy")
-with zipfile.ZipFile("two.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "plan/e.npy"); z.write("p.npy", "text")
-with zipfile.ZipFile("none.npz", "w") as z: z.write("a.npy", "a.txt")'
-vam-convert one.npz --voxel 0.5 --grid weight | vam-convert >b.npy
-is 'the only array of a .npz' "$(shown b.npy)" "$want"
-vam-convert two.npz --array plan/e --voxel 0.5 --grid weight | vam-convert >b.npy
-is 'one of several' "$(shown b.npy)" "1 3 4 <f4$(values 12)"
+with zipfile.ZipFile("two.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "plan/e.npy"); z.write("p.npy", "text")'
 vam-convert --array dose --voxel 0.5 --grid weight <two.npz | vam-convert >b.npy
 is 'from a pipe' "$(shown b.npy)" "$want"
 
@@ -47,12 +35,7 @@ is 'or where it is put' "$(vam-view a.vdb --export /dev/stdout | grep -a '^space
 ok 'whole' vam-check a.vdb
 
 # As high as its print is to be.
-python3 - <<'PY'
-import struct
-head = "{'descr': '<f4', 'fortran_order': False, 'shape': (10, 1, 1), }"
-head += " " * (-(len(head) + 11) % 64) + "\n"
-open("ramp.npy", "wb").write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + struct.pack("<10f", *range(10)))
-PY
+$npy of ramp.npy 10,1,1 k
 quiet 'stretched' vam-convert ramp.npy --voxel 0.5 --grid weight --stretch-z 1.5 -o tall.vdb
 vam-convert tall.vdb >b.npy
 is 'in more slices' "$(shown b.npy | cut -d' ' -f1-3)" '15 1 1'
@@ -61,104 +44,35 @@ is 'the factor is recorded' "$(vam-check --verbose tall.vdb 2>/dev/null | grep -
 vam-convert ramp.npy --voxel 0.5 --full-scale 9 -o short.vdb 2>err
 is 'a target that is not is told' "$(grep -c 'ramp.npy: the print will be 3.7 % too short.*--stretch-z 1.038[0-9]* corrects it' err)" 1
 quiet 'as it is, if so meant' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --stretch-z 1 -o short.vdb
-printf '[projector\n' >broken.toml
-fails 65 'broken.toml' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --printer broken.toml -o x.vdb
-below() { npy make low.npy '<f4' 1,1,2; perl -pi -e 's/\0\0\0\0\0\0\x80\x3f$/pack("f<2", '"$1"', 1)/e' low.npy; }
+below() { $npy make low.npy '<f4' 1,1,2; perl -pi -e 's/\0\0\0\0\0\0\x80\x3f$/pack("f<2", '"$1"', 1)/e' low.npy; }
 below -5e-5
 quiet 'a value that rounding left just below 0' vam-convert low.npy --voxel 0.5 --stretch-z 1 -o low.vdb
 ok 'is taken by those that read targets' vam-sinogram low.vdb -o low.exr
 below -2e-4
 fails 65 "low.npy: grid 'target' has -0.0002 in voxel .0, 0, 0." vam-convert low.npy --voxel 0.5 --stretch-z 1 -o none.vdb
-npy make one.npy '<f4' 1,3,4
+$npy make one.npy '<f4' 1,3,4
 quiet 'a plane stays one, however low' vam-convert one.npy --voxel 0.5 --grid weight --stretch-z 0.1 -o low.vdb
 vam-convert low.vdb >b.npy
 is 'with its values' "$(shown b.npy)" "1 3 4 <f4$(values 12)"
-head -c 160 ramp.npy >cut.npy
-fails 65 'cut' vam-convert cut.npy --voxel 0.5 --grid weight --stretch-z 0.3 -o x.vdb
 fails 64 'vam-convert: low.nrrd: a volume or stack is written as .npy; vam-view --export writes a volume as NRRD' vam-convert low.vdb -o low.nrrd
-npy make grey.npy '<u1' 3,4,5
+$npy make grey.npy '<u1' 3,4,5
 vam-convert grey.npy --voxel 0.5 --stretch-z 1 -o grey.vdb 2>err
 is 'grey levels taken as coverage are told' "$(cat err)" 'vam-convert: warning: grey.npy: its values reach 59, where a full voxel is 1; if they are grey levels, give --full-scale 255'
-npy make zero.npy '|u1' 1,1,1
+$npy make zero.npy '|u1' 1,1,1
 vam-convert zero.npy --voxel 0.5 --stretch-z 1 -o zero.vdb 2>err
 is 'an empty target is told' "$(cat err)" 'vam-convert: warning: zero.npy: its values reach 0, where a full voxel is 1, and nothing of it is part; check the array'
 vam-convert grey.npy --voxel 0.5 --stretch-z 1 --full-scale 65535 -o zero.vdb 2>err
 is 'and one by a wrong scale' "$(grep -c 'reach 0.0009.*, and nothing of it is part; check the array and --full-scale$' err)" 1
 quiet 'but not other empty volumes' vam-convert zero.npy --voxel 0.5 --grid weight -o zero.vdb
-printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 3 3 3\nencoding: raw\ndata file: a.raw\n' >detached.nrrd
-fails 65 'detached.nrrd: has its values in another file' vam-convert detached.nrrd --voxel 1 -o x.vdb
-fails 64 'voxel: 1e-5 is out of range; give 0.0001 to 1000' vam-convert ramp.npy --voxel 1e-5 --stretch-z 1 -o x.vdb
-fails 64 'stretch-z' vam-convert ramp.npy --voxel 0.5 --stretch-z 0 -o x.vdb
 
 # What is refused.
-fails 64 'the kind of data is not given; use --voxel MM' vam-convert a.npy -o x.vdb
 : >empty.vdb
 fails 65 'empty.vdb: is empty; the program that should have written it failed' vam-convert empty.vdb -o x.npy
 fails 64 'stdin: the kind of data is not given; use --voxel MM' sh -c 'vam-convert <a.npy'
 fails 64 'x.exr: a volume is written as .vdb' vam-convert a.npy --voxel 1 -o x.exr
 fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --geometry parallel -o x.vdb
 fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.tif
-fails 64 '--voxel: is for data of other programs' vam-convert a.vdb --voxel 1 -o x.npy
-fails 64 "--axes: 'zyy' is not an order of the letters zyx" vam-convert a.npy --voxel 1 --axes zyy -o x.vdb
 fails 64 '--pixel: is for projections' vam-convert a.npy --voxel 1 --pixel 1 -o x.vdb
-fails 64 'two.npz: holds 2 arrays \(dose, plan/e\); name one by --array' vam-convert two.npz --voxel 1 -o x.vdb
-fails 64 'holds 2 arrays \(dose, plan/e\), but none is called dos$' vam-convert two.npz --array dos --voxel 1 -o x.vdb
-python3 -c '
-import zipfile
-data = open("one.npz", "rb").read()
-open("long.npz", "wb").write(data + b"x")
-open("twice.npz", "wb").write(data + b"PK\5\6" + bytes(5))
-with zipfile.ZipFile("noted.npz", "w") as z: z.write("a.npy", "dose.npy"); z.comment = b"by hand PK\5\6" + bytes(40)'
-cat one.npz one.npz >pair.npz
-fails 65 "pair.npz: the .npz archive begins at byte $(wc -c <one.npz) only" vam-convert pair.npz --voxel 1 -o x.vdb
-for name in long twice; do
-  fails 65 "$name.npz: trailing data after the end of the .npz archive, from byte $(wc -c <one.npz) on; save it again" vam-convert $name.npz --voxel 1 -o x.vdb
-done
-ok 'the comment of an archive belongs to it' vam-convert noted.npz --voxel 0.5 --grid weight -o x.vdb
-rm x.vdb
-python3 -W ignore -c '
-import zipfile
-with zipfile.ZipFile("same.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "other.npy"); z.write("p.npy", "dose.npy")'
-for name in dose other; do
-  fails 65 "same.npz: holds two arrays called 'dose', of which only one would be read; save it again" vam-convert same.npz --array $name --voxel 1 -o x.vdb
-done
-fails 65 'none.npz: is a zip archive without an array' vam-convert none.npz --voxel 1 -o x.vdb
-fails 66 'no.npy: cannot open' vam-convert no.npy --voxel 1 -o x.vdb
-refused() {  # refused DICTIONARY REGEX
-  npy head bad.npy "$1"
-  fails 65 "bad.npy: $2" vam-convert bad.npy --voxel 1 -o x.vdb
-}
-refused "{'descr': '|O', 'fortran_order': False, 'shape': (2, 3), }" 'holds Python objects \(a pickle\), which are never read'
-refused "{'descr': '<c8', 'fortran_order': False, 'shape': (2, 3), }" "has values of type '<c8'"
-refused "{'descr': '<U5', 'fortran_order': False, 'shape': (2, 3), }" "has values of type '<U5'"
-refused "{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (2, 3), }" 'holds records of several fields'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (24,), }" 'has 1 axes \(24\)'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (), }" 'has 0 axes;'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4, 5), }" 'has 4 axes \(2 x 3 x 4 x 5\)'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 0, 4), }" 'is an empty array'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 99999999999999999999, 4), }" 'its sizes exceed all memory'
-refused "{'descr': '<f4', 'fortran_order': True, 'shape': (4294967296, 4294967296, 4294967296), }" 'has 4294967296 x 4294967296 x 4294967296 values; up to 65536 along'
-refused "{'descr': '<f4', 'fortran_order': True, 'shape': (65536, 65536, 65536), }" 'has 65536 x 65536 x 65536 values; up to 2\^40 are read'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 65536, 65536), }" 'has images of more than 2\^28'
-refused "{'descr': '<f8', 'fortran_order': True, 'shape': (8192, 8192, 8192), }" '(requires more than|is cut off)'
-refused "{'descr': '<f4', 'fortran_order': False, 'shape': (70000, 2, 2), }" 'has 70000 x 2 x 2 values; up to 65536 along an axis'
-refused "{'descr': '<f4', 'shape': (2, 3), }" 'its NumPy header is damaged'
-refused "{'descr': '<f4', 'fortran_order': Maybe, 'shape': (2, 3), }" 'its NumPy header is damaged'
-refused "import os" 'its NumPy header is damaged'
-cp a.npy more.npy; echo >>more.npy
-fails 65 'more.npy: has bytes behind its 24 values' vam-convert more.npy --voxel 1 -o x.vdb
-python3 -c 'import struct
-data = open("a.npy", "rb").read()
-open("nan.npy", "wb").write(data[:-8] + struct.pack("<2f", float("nan"), 1))'
-fails 65 'nan.npy: column 2, row 2 of image 1 is not a finite number' vam-convert nan.npy --voxel 1 -o x.vdb
-python3 -c 'import struct
-data = open("a.npy", "rb").read().replace(b"<f4", b"<f8")
-open("huge.npy", "wb").write(data[:128] + struct.pack("<24d", *[1e300] * 24))'
-fails 65 'huge.npy: column 0, row 0 of image 0 is not a finite number' vam-convert huge.npy --voxel 1 -o x.vdb
-printf 'solid' >mesh.stl
-fails 65 'mesh.stl: is not an array \(NumPy, HDF5, NRRD, MRC, TIFF\)' vam-convert mesh.stl --voxel 1 -o x.vdb
-: >empty.npy
-fails 65 'empty.npy: is empty' vam-convert empty.npy --voxel 1 -o x.vdb
 
 # Patterns of Dr.TVAM: an EXR file an angle, of intensities, the top row first.
 mkdir patterns
@@ -179,11 +93,8 @@ for a in range(n):
     first = len(head) + 8 * h
     table = b"".join(struct.pack("<Q", first + y * len(chunks[0])) for y in range(h))
     open("patterns/%04d.exr" % a, "wb").write(head + table + b"".join(chunks))
-header = "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, %d), }" % (n, h, w)
-header += " " * (117 - len(header)) + "\n"
-open("patterns.npy", "wb").write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode()
-    + b"".join(struct.pack("<f", value(a, h - 1 - y, x)) for a in range(n) for y in range(h) for x in range(w)))
 PY
+$npy of patterns.npy 8,3,4 '50.0 * k + 10 * (2 - j) + i'
 for how in 'parallel --pixel 0.1' 'vial --axis-column 1.5 --set projector.response=[[0,0],[0.5,0.2],[1,1]]'; do
   vam-convert patterns --geometry $how -o exr.exr
   vam-convert patterns.npy --axes azx --geometry $how -o npy.exr 2>/dev/null
@@ -237,11 +148,11 @@ done
 
 # No beginning of a file is taken for the file, and none crashes.
 statuses() {  # statuses FILE: of every fifth of its beginnings; array_test.cpp has all
-  npy cuts "$1" 5
+  $npy cuts "$1" 5
   for cut in "$1".*; do vam-convert "$cut" --voxel 1 -o x.vdb 2>>cut.err; echo $?; done | sort | uniq -c | tr -s ' '
   rm -f "$1".*
 }
-npy make cut.npy '<f4' 2,2,2
+$npy make cut.npy '<f4' 2,2,2
 fifths() { echo $((($(wc -c <"$1") + 4) / 5)); }
 is 'every fifth cut of a .npy is status 65' "$(statuses cut.npy)" " $(fifths cut.npy) 65"
 is 'in one line each' "$(wc -l <cut.err)" "$(fifths cut.npy)"
@@ -275,9 +186,7 @@ like_even='--geometry parallel --pixel 1 -o odd.exr'
 quiet 'an index of frames' vam-convert even $like_even
 cp -r even odd
 index '3s/-90/nan/'; fails 65 'odd/frames.csv:3: not a file name, a time and an angle; restore it' vam-convert odd $like_even
-index '3s/,1,/,/'; fails 65 'odd/frames.csv:3: not a file name' vam-convert odd $like_even
 index '3d'; fails 65 "odd/frames.csv:3: '00002.png' is not image 1 of the folder" vam-convert odd $like_even
-index '$d'; fails 65 'odd/frames.csv:4: the last line, of 3 for 4 images' vam-convert odd $like_even
 index 's/-180/-170/'; fails 65 'odd: the stage angles are uneven' vam-convert odd $like_even
 : >odd/frames.csv; fails 65 'odd/frames.csv:1: does not begin with' vam-convert odd $like_even
 rm odd/frames.csv; quiet 'without it they make a turn' vam-convert odd $like_even
@@ -289,33 +198,28 @@ is 'but not where it is stated' "$(grep -c 'one turn' err)" 0
 # Frames of the projector, to 8 bits: the dose within one level of 255.
 set="--set projector.columns=64 --set projector.rows=48 --set projector.pixel_mm=0.5"
 set="$set --set projector.axis_column=30.5 --set projector.axis_row=21.5"
-# shellcheck disable=SC2086
-{
-  vam-resample sino.exr $set -o projector.exr
-  vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o frames
-  vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o film.mkv
-  vam-project projector.exr $set --turns 2 --fps 12 --speed 12 --orientation rotate-180 -o turned
-  ok 'frames of the projector' vam-convert frames --geometry vial --like part.vdb $set -o back.exr
-  quiet 'a video is the same' vam-convert film.mkv --view-step 1 --geometry vial --like part.vdb $set -o film.exr
-  vam-convert film.mkv --geometry vial --like part.vdb $set -o turn.exr 2>err
-  vam-dose film.exr --like part.vdb $set --report film.json -o film.vdb
-  is 'whose full grey is the full light' "$(json film.json full_scale)" 1.0
-  quiet 'and two turns of turned frames' vam-convert turned --geometry vial --orientation rotate-180 --like part.vdb $set -o turned.exr
-  for name in projector back film turned; do vam-dose $name.exr --like part.vdb $set | vam-convert >$name.npy; done
-}
+vam-resample sino.exr $set -o projector.exr
+vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o frames
+vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o film.mkv
+vam-project projector.exr $set --turns 2 --fps 12 --speed 12 --orientation rotate-180 -o turned
+ok 'frames of the projector' vam-convert frames --geometry vial --like part.vdb $set -o back.exr
+quiet 'a video is the same' vam-convert film.mkv --view-step 1 --geometry vial --like part.vdb $set -o film.exr
+vam-convert film.mkv --geometry vial --like part.vdb $set -o turn.exr 2>err
+vam-dose film.exr --like part.vdb $set --report film.json -o film.vdb
+is 'whose full grey is the full light' "$(json film.json full_scale)" 1.0
+quiet 'and two turns of turned frames' vam-convert turned --geometry vial --orientation rotate-180 --like part.vdb $set -o turned.exr
+for name in projector back film turned; do vam-dose $name.exr --like part.vdb $set | vam-convert >$name.npy; done
 same 'video and folder' film.npy back.npy
 is 'the step that is assumed of a video is told' "$(cat err)" \
   'vam-convert: warning: film.mkv: 360 frames are taken as one turn, 1 degrees each; give --view-step otherwise'
 ffmpeg -v error -i film.mkv -c:v ffv1 -vf transpose=clock side.mkv
 ffmpeg -v error -i film.mkv -c:v ffv1 -vf transpose=cclock other.mkv
 for side in 'side 90' 'other 270'; do
-  # shellcheck disable=SC2086
   quiet "a video for a projector on its side: $side" vam-convert ${side% *}.mkv --orientation rotate-${side#* } --view-step 1 \
     --geometry vial --like part.vdb $set -o side.exr
   vam-convert film.exr -o film-slices.npy; vam-convert side.exr -o side-slices.npy
   same 'is the same' film-slices.npy side-slices.npy
 done
-# shellcheck disable=SC2086
 vam-convert side.mkv --view-step 1 --geometry vial --like part.vdb $set -o side.exr 2>err
 is 'which is told where it is not given' "$(sed 's/.*; //' err | sort -u)" "$(printf '%s\n' 'columns and rows look exchanged' \
   'columns and rows look exchanged: give --orientation rotate-90 or rotate-270')"
@@ -337,14 +241,9 @@ holds "turns are averaged: $worst" "$worst < 1e-5"
 
 # Slices as images: the top row at the largest y, as vam-slice has it.
 mkdir seen
-python3 - <<'PY'
-import struct, zlib
-rows = [[0] * 6, [0, 255, 0, 0, 0, 0], [0] * 6, [0, 0, 0, 255, 255, 0], [0] * 6, [0] * 6]
-def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 6, 6, 8, 0, 0, 0, 0))
-data += chunk(b"IDAT", zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))) + chunk(b"IEND", b"")
-for k in range(2): open("seen/%d.png" % k, "wb").write(data)
-PY
+for k in 0 1; do
+  $png make seen/$k.png 6 6 '255 * ((x, y) in ((1, 1), (3, 3), (4, 3)))'
+done
 vam-slice seen --voxel 0.5 --set projector.telecentric=true -o sliced.vdb
 vam-convert seen --voxel 0.5 -o converted.vdb
 seen() { python3 - "$VAM_SOURCE/scripts" "$1" <<'PY'
@@ -398,21 +297,17 @@ is 'but not dim grey' "$(cat quarters.err)" ''
 
 # Rays climb: rows above and below the part light it, too.
 sizes() { vam-view "$1" --export /dev/stdout | grep -a '^sizes\|^axis mins' | tr '\n' ' '; }
-# shellcheck disable=SC2086
-{
-  vam-optimize part.vdb --angles 60 --iterations 4 $set -o climb.exr 2>err
-  vam-project climb.exr $set --turns 1 --fps 12 --speed 72 -o climb
-  quiet 'frames whose light climbs' vam-convert climb --geometry vial --like part.vdb $set -o risen.exr
-}
+vam-optimize part.vdb --angles 60 --iterations 4 $set -o climb.exr 2>err
+vam-project climb.exr $set --turns 1 --fps 12 --speed 72 -o climb
+quiet 'frames whose light climbs' vam-convert climb --geometry vial --like part.vdb $set -o risen.exr
 is 'have the slices of the stack' "$(sizes risen.exr)" "$(sizes climb.exr)"
 vam-convert sino.npy --geometry parallel --pixel 0.2 --like part.vdb -o short.exr 2>err
 is 'slices that end within the volume are reported' \
   "$(grep -c 'sino.npy: its slices are at z = .* mm, those of part.vdb at .*, and the rest is dark; check --slice-height' err)" 1
-npy make frames.npy '<f4' 72,48,64
-npy make dense.npy '<f4' 64,72,48
-npy make tall.npy '<f4' 96,72,64
+$npy make frames.npy '<f4' 72,48,64
+$npy make dense.npy '<f4' 64,72,48
+$npy make tall.npy '<f4' 96,72,64
 remedy() {  # remedy FILE [OPTION...]: what is to be done about its light above and below the part
-  # shellcheck disable=SC2086
   vam-convert "$@" --geometry vial --like part.vdb $set -o x.exr 2>err; sed -n 's/.*is left out; //p' err
 }
 is 'an array in the order of frames' "$(remedy frames.npy)" 'check --axes, as its sizes fit the projector in the order azx, and --axis-row'
@@ -426,12 +321,10 @@ middle() { vam-convert frames --geometry parallel --pixel 0.5 "$@" -o m.exr; vam
 is 'a parallel beam: the middle is the axis' "$(middle)" 'sizes: 64 360 48 spacings: 0.5 1 0.5 axis mins: -15.75 0 -11.75 '
 is 'another axis: its middle' "$(middle --axis-column 30.5 --axis-row 21)" 'sizes: 66 360 48 spacings: 0.5 1 0.5 axis mins: -16.25 0 -13 '
 fails 64 '--pixel: 0.1 mm, but projector.pixel_mm is' vam-convert frames --geometry vial --pixel 0.1 -o x.exr
-npy make minus.npy '<f4' 1,2,3
+$npy make minus.npy '<f4' 1,2,3
 python3 -c 'import struct; f = open("minus.npy", "r+b"); f.seek(-4, 2); f.write(struct.pack("<f", -0.5))'
 vam-convert minus.npy --geometry parallel --pixel 1 -o minus.exr 2>err
 is 'light that no projector shows is reported' "$(grep -c 'minus.npy: has values down to -0.5' err)" 1
-fails 64 '--axis-column: 1e12 is out of range' vam-convert a.npy --geometry parallel --axis-column 1e12 -o x.exr
-fails 64 '--axis-row: 1e300 is out of range' vam-convert a.npy --geometry parallel --axis-row 1e300 -o x.exr
 fails 64 '--view-step: 7 degrees make 51.4286 projections a turn' vam-convert frames --geometry parallel --view-step 7 -o x.exr
 fails 65 'has 360 projections, 720 make a turn' vam-convert frames --geometry parallel --view-step 0.5 -o x.exr
 fails 65 'has light on column .* check --axis-column' vam-convert frames --geometry vial --set projector.columns=60 --set projector.pixel_mm=0.5 --axis-column 50 -o x.exr

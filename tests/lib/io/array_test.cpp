@@ -201,6 +201,17 @@ TEST_CASE("archives: the only array, one of several by name") {
   CHECK(has(array_refusal(one.done().substr(0, one.done().size() - 30)), "truncated or damaged"));
   const std::string whole = one.done();
   for (std::size_t size = 0; size < whole.size(); ++size) CHECK(!array_refusal(whole.substr(0, size)).empty());
+  for (const std::string& junk : {std::string("x"), "PK\5\6" + std::string(5, '\0')}) {
+    CHECK(has(array_refusal(whole + junk), "trailing data after the end of the .npz archive, from byte " +
+                                               std::to_string(whole.size()) + " on; save it again"));
+  }
+  CHECK(has(array_refusal(whole + whole), "archive begins at byte " + std::to_string(whole.size()) + " only"));
+  const std::string comment = "by hand PK\5\6" + std::string(40, '\0');
+  const std::string noted =
+      whole.substr(0, whole.size() - 2) + little(static_cast<std::uint16_t>(comment.size())) + comment;
+  CHECK(read_array(noted).values == std::vector<float>{0, 1});
+  two.add("dose.npy", array_of(dictionary("|u1", "False", "1, 2"), counted(2)));
+  CHECK(has(array_refusal(two.done(), {"plan/e", {0, 1, 2}}), "holds two arrays called 'dose', of which only one"));
   std::string flipped = one.done();
   flipped[flipped.find('\1', 60)] = '\3';
   CHECK(has(array_refusal(flipped), "truncated or damaged"));

@@ -222,6 +222,7 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   CHECK(has(refusal(folder, "solid nothing\nendsolid nothing\n"), "empty"));
   CHECK(has(refusal(folder, ""), "is empty"));
   CHECK(has(refusal(folder, "hello, world\n"), "not a mesh of a known format"));
+  CHECK(has(refusal(folder, "PK\5\6" + std::string(18, '\0')), "is an empty zip archive, not a mesh"));
   CHECK(has(refusal(folder, std::string("\0\nv 0 0 0\n", 10)), "is damaged: byte 0 of its text (OBJ) is 0"));
   CHECK(has(refusal(folder, " BDV" + std::string(200, '\0')), "is a volume (OpenVDB), not a mesh"));
   CHECK(has(refusal(folder, "\x76\x2f\x31\x01" + std::string(200, '\0')), "is a stack (OpenEXR), not a mesh"));
