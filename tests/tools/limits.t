@@ -176,7 +176,7 @@ done
 
 # Bytes after the last image of a stack, of one with seals and of one that is parsed in a child, in a file and a pipe.
 vam-sinogram part.vdb --angles 8 -o sealed.exr
-python3 "$VAM_SOURCE/tests/tools/exr.py" make plain.exr space=virtual width=29 height=8 count=2
+$exr make plain.exr space=virtual width=29 height=8 count=2
 for stack in sealed plain; do
   ok "$stack: as it is" vam-view $stack.exr -o $stack.png
   { cat $stack.exr; echo more; } >long.exr
@@ -188,10 +188,6 @@ for stack in sealed plain; do
 done
 
 # --memory: refused with both numbers, before it is taken.
-fails 64 '^vam-score: --memory: given twice' vam-score --memory 1 part.vdb --memory=2
-fails 64 "^vam-score: --memory: 'much' is not a number" vam-score --memory much part.vdb
-fails 64 '^vam-score: --memory: needs a value' vam-score part.vdb --memory
-fails 64 '^vam-score: --memory: 0 is out of range' vam-score --memory 0 part.vdb
 need='[0-9]+ x [0-9]+ x [0-9]+ voxels: needs [0-9.]+ GiB of memory, but --memory leaves [0-9.]+ GiB; use [^;]*larger [^;]*, or allow more with --memory$'
 box 4 4 0.01 >flat.off
 vam-slice flat.off --voxel 0.002 --stretch-z 1 -o wide.vdb
@@ -238,33 +234,33 @@ fails 64 '-: printer settings are not read from standard input; name a file' vam
 
 # Places and intensities that no stack beside a vial has.
 for wrong in row=1e30:'vam:row_mm' pixel=1e9:'vam:pixel_mm' step=1e6:'vam:angle_step_deg'; do
-  python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=2 ${wrong%%:*}
+  $exr make wrong.exr space=projector width=64 height=8 count=2 ${wrong%%:*}
   fails 65 "wrong.exr: .*${wrong##*:}.* is 1e.*, beyond" vam-dose wrong.exr -o x.vdb
 done
-python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=8 count=22 row=99
+$exr make wrong.exr space=projector width=64 height=8 count=22 row=99
 fails 65 'wrong.exr: vam:z_mm of image 21 is 2079, beyond 2000' vam-dose wrong.exr -o x.vdb
 tiny_print tiny.exr
 for files in 4 5 6; do
   sanitized || fails 71 'Too many open files; raise the limit' sh -c "ulimit -n $files; exec vam-project -q tiny.exr --printer printer.toml -o few"
 done
 fails 66 '/dev/zero: is a device that never ends; name a file' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
-python3 "$VAM_SOURCE/tests/tools/exr.py" make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1
+$exr make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1
 fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam-dose far.exr --printer printer.toml -o x.vdb
-python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 value=1e30
+$exr make wrong.exr space=projector width=64 height=36 count=3 value=1e30
 fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' \
   vam-project wrong.exr --printer printer.toml -o x.mkv
-python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=virtual width=64 height=36 count=3 value=1e30
+$exr make wrong.exr space=virtual width=64 height=36 count=3 value=1e30
 fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' vam-dose wrong.exr -o x.vdb
-python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 value=-2
+$exr make wrong.exr space=projector width=64 height=36 count=3 value=-2
 fails 65 'wrong.exr: has a value of -2 at z = [-0-9.]+ mm, 0 deg, column 0; intensity cannot be negative' \
   vam-project wrong.exr --printer printer.toml -o x.mkv
-python3 "$VAM_SOURCE/tests/tools/exr.py" make wrong.exr space=projector width=64 height=36 count=3 printer=AAAA
+$exr make wrong.exr space=projector width=64 height=36 count=3 printer=AAAA
 python3 -c '
 data = open("wrong.exr", "rb").read()
 at = data.rfind(b"AAAA")
 open("wrong.exr", "wb").write(data[:at] + b"BBBB" + data[at + 4:])'
 fails 65 'wrong.exr: image 2 has another vam:printer than image 0; all of a stack are made by the same commands' vam-check wrong.exr
-python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 value=1 2>/dev/null
+$exr make large.exr space=camera kind=frames width=8192 height=8192 count=1 value=1 2>/dev/null
 sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory in addition to the [0-9.e-]+ GiB in use; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
 
 done_testing
