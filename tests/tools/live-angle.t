@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS long RESOURCE_LOCK camera COST 110
 # A print with the records of its own instrument, judged by the simulators' logs: the stage's speed ripples by 3 % each 30
@@ -26,7 +25,7 @@ near() {  # near SCAN NAME TRUTH: within the bar of both delays, 0.5 ms
 near lag camera_lag $lag
 near latency latency $latency
 
-python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=208 height=36 count=3 pixel=0.1 row=0.1 \
+$exr make part.exr space=projector width=208 height=36 count=3 pixel=0.1 row=0.1 \
   "printer=projector.columns=208 projector.pixel_mm=0.1 projector.axis_column=103.5 projector.telecentric=true vial.radius_mm=9 bath.index=1.53 bath.window_mm=12"
 LD_PRELOAD=$shim vam-print part.exr --display sdl:0 --light sim: --need 'lag latency' --run-up 1 --frames-per-turn 3600 \
   --max-missed 0.2 --max-missed-lit 0.2 --run run 2>errors

@@ -80,7 +80,7 @@ holds 'inhibitor comes in where few rows are lit' "$(json diffusion.json middle)
 camera_up --flips none --glow 0 --columns 64 --rows 40 --specks 8
 capture 1 specks
 camera_down
-holds 'specks differ from an even image' "$(python3 "$VAM_SOURCE/tests/tools/png.py" colours "$(ls specks/*.png)") > 4"
+holds 'specks differ from an even image' "$($png colours "$(ls specks/*.png)") > 4"
 
 echo '{"t_monotonic_s":1.0,"event":"frames","turn":3,"sinogram":"new.exr"}' >>flips
 camera_up --cure --follow angles --flips flips --pattern grey
