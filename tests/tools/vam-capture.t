@@ -1,27 +1,12 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # vam-capture: series, resumed folders, marks of lost frames, and bad input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sim='sim:?pace=virtual&lit=0.1&speed=90&noise=0.004'
-exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 take="vam-capture --device $sim --binning 12 --fps 10"
 
-fails 64 'number of images' $take --log why -o views.exr
 fails 64 'a folder cannot hold a stream' $take --live -o views/
 fails 64 'have no angles' $take --view-step 10 --log why -o views/
-misuse --turns --view-step $take --frames 3 --turns 2 -o views.exr
-misuse --turns --frames $take --view-step 10 --speed 90 --turns 2 --frames 3 -o views.exr
-misuse --speed --follow $take --frames 3 --follow - --speed 90 -o views.exr
-fails 64 'unknown scheme' vam-capture --device usb:1 --frames 1 -o views.exr
-fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
-fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
-for rate in '--fps 1e-300 --frames 2' '--speed 1e-300 --view-step 3'; do
-  fails 64 "^vam-capture: ${rate%% *}: 1e-300 is out of range; give 0.001 to 1000000" vam-capture --device sim:?pace=virtual $rate -o views.exr
-done
-fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr
-fails 66 'cannot open' $take --frames 1 --follow missing -o views.exr
-fails 69 'cannot open' vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr
 fails 64 'neither binning' vam-capture --device v4l2:/dev/null --binning 2 --frames 1 -o views.exr
 vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr --log why 2>said
 is 'the error is logged' "$(json why event) $(json why status)" 'error 69'
@@ -36,7 +21,7 @@ fails 64 "camera.device: 'usb:1': unknown device scheme; use one of aravis:, v4l
 ok 'a simulated capture' vam-capture --set "camera.device=$sim" --binning 30 --frames 2 -o marked/ --log marked.log --report marked.json
 is 'is marked in manifest, log and report' "$(head -n 1 marked/manifest.jsonl | grep -c '"simulated":true') $(grep -c '"event":"begin".*"simulated":true' marked.log) $(json marked.json camera.simulated)" '1 1 true'
 $take --frames 1 --compression none -o marked.exr
-is 'and in a stack' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr marked.exr vam:history | grep -c 'frames of a simulated camera')" 1
+is 'and in a stack' "$($exr attr marked.exr vam:history | grep -c 'frames of a simulated camera')" 1
 
 for name in x.png x.vdb x.mkv; do
   fails 64 "'$name': frames are written to .exr, a folder .* or -, not to .${name#x.}" vam-capture --device 'sim:?pace=virtual' --frames 2 -o $name
@@ -47,15 +32,14 @@ quiet 'a stack of frames' $take --frames 12 -o views.exr
 quiet 'from a recording' vam-capture --device replay:views.exr --frames 12 -o again.exr --compression none
 quiet 'and again' vam-capture --device replay:again.exr --frames 12 -o twice.exr --compression none
 quiet 'a stack on a pipe' sh -c 'vam-capture --device replay:views.exr --frames 12 | cat >piped.exr'
-python3 "$VAM_SOURCE/tests/tools/exr.py" sum again.exr >sum1
-python3 "$VAM_SOURCE/tests/tools/exr.py" sum piped.exr >sum2
+$exr sum again.exr >sum1
+$exr sum piped.exr >sum2
 same 'has the same pixels' sum1 sum2
 is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 
 # A stage at a fixed, known angle.
-misuse --angle --speed $take --angle 90 --speed 3 --frames 1 -o no.exr
 $take --angle 270 --frames 1 --compression none -o fixed.exr
-is 'its angle is recorded' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr fixed.exr vam:angle_deg)" 270
+is 'its angle is recorded' "$($exr attr fixed.exr vam:angle_deg)" 270
 
 # Lost and incomplete frames are reported, counted and marked.
 lossy='sim:?pace=virtual&drop=3,4&incomplete=6'
@@ -76,8 +60,7 @@ PY
 is 'every image has its number, and the incomplete one its mark' "$(tail -n 1 marks)" '0 1 2 5 6! 7 8 9 10 11'
 fails 75 '2 frames dropped and 1 incomplete' vam-capture --device "$lossy" --binning 12 --frames 10 --max-lost 2 -o lost.exr
 
-fails 75 'gap.exr: 1 of 20 frames are missing .*; a folder .* keeps the captured frames' \
-  vam-capture --device 'sim:?pace=virtual&drop=10' --binning 12 --fps 10 --speed 90 --view-step 9 --turns 0.5 -o gap.exr
+fails 75 'gap.exr: 1 of 20 .*; a folder' vam-capture --device 'sim:?pace=virtual&drop=10' --binning 12 --fps 10 --speed 90 --view-step 9 --turns 0.5 -o gap.exr
 
 # A folder keeps the captured frames; repeating the command captures only the missing ones.
 vam-capture --device "$lossy" --binning 12 --frames 10 -o folder/ 2>said
@@ -146,8 +129,7 @@ vam-ost turn -o seen.vdb 2>said
 is 'a capture folder is read by vam-ost with its angles' "$? $(grep -vc '000000.png: dark' said)" '0 0'  # no print yet
 
 # Views of a turn that vam-ost can use, or a refusal with what to do.
-fails 64 '^vam-capture: --view-step: at 90 deg/s and 10 frames/s, views at multiples of 12 deg are up to 18 deg apart, and vam-ost allows 15; give --view-step 9, or --fps 15$' \
-  $take --speed 90 --view-step 12 -o odd/
+fails 64 '^vam-capture: --view-step: .* up to 18 deg apart, .* 15; give --view-step 9, or --fps 15$' $take --speed 90 --view-step 12 -o odd/
 fails 64 'views at multiples of 5 deg are up to 18 deg apart, and vam-ost allows 15; give --fps 36$' $take --speed 180 --view-step 5 -o odd/
 for remedy in '--fps 10 --view-step 9' '--fps 15 --view-step 12'; do
   quiet "views by $remedy" vam-capture --device "sim:?pace=virtual&lit=0&speed=90" --binning 12 --speed 90 $remedy -o odd/
