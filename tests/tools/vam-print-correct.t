@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # vam-print --correct: a print in real time on simulated devices, whose resin absorbs more and whose lamp is weaker than
@@ -17,7 +16,6 @@ echo '{"schema":"vam-working-curve/1","isovalue":0.04,"saturation":0.08,"critica
 print() { vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --view-step 6 --target part.vdb \
     --set stage.device="sim:?acceleration=1000&max_speed=120&log=$PWD/truth.$run" "$@"; }
 run=none
-fails 64 'correct: requires --until' print --correct --run none
 fails 64 'correct: requires --resin' print --correct --until 'missing<=1' --isovalue 0.04 --run none
 fails 64 'axis-sigma: requires --correct' print --axis-sigma 1 --run none
 echo '{"schema":"vam-resin/1","isovalue":0.04}' >resin.json

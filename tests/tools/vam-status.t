@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # The line on a terminal and the page that refreshes itself, in a real browser if there is one.
@@ -10,11 +9,6 @@ printf '[stage]\ndevice = "sim:?acceleration=9000&min_angle=-1e7&max_angle=1e7"\
 printf '[camera]\ndevice = "sim:?lit=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n# end of the settings\n' >>printer.toml
 print() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 "$@"; }
 
-fails 66 'nowhere: not a folder' vam-status nowhere
-fails 66 'frames.exr: not a folder' vam-status frames.exr
-mkdir empty
-fails 65 'empty: has no events.jsonl' vam-status empty
-fails 64 '--wach: unknown option; did you mean --watch' vam-status empty --wach
 fails 64 '^vam-print: --run-page: takes no value' vam-print frames.exr --display null: --run-page=x
 
 # On a terminal: the line, refreshed in place, and the page.
@@ -120,7 +114,7 @@ is 'too few open files are no damage' "$? $(cat said) $(grep -c 'Too many open f
 # Links: that to the sinogram is held to the hash in the events, and no other is of a print.
 is 'the sinogram is a link' "$(readlink run/sinogram.exr)" "$PWD/frames.exr"
 spoil; rm part/sinogram.exr; cp frames.exr part/sinogram.exr; ok 'or its copy' vam-check part
-python3 "$VAM_SOURCE/tests/tools/exr.py" make other.exr space=projector width=64 height=36 count=2
+$exr make other.exr space=projector width=64 height=36 count=2
 cp other.exr part/sinogram.exr; fails 65 'part/sinogram.exr: is not the sinogram of part, whose SHA-256 begins' vam-check part
 ln -sf ../other.exr part/sinogram.exr; fails 65 'part/sinogram.exr: is not the sinogram of part' vam-check part
 ln -sf gone part/sinogram.exr
