@@ -1,4 +1,3 @@
-#!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock COST 200
 # What vam-print checks before any motion or light, and reports after an incomplete print: on a simulated stage and camera,
@@ -228,11 +227,7 @@ changed='; the log was changed; restore it$'
 line=$(grep -n '"frame":[0-9]' again/flips.jsonl | sed -n '100s/:.*//p')  # of the 100th lit image
 refuses ": $cut_short" :
 refuses ": $cut_short" "head -n $line"
-refuses ": $cut_short" 'head -c 20000'
 refuses ":[0-9]+: flips are missing before it .vertical blanks: [0-9]+.$changed" "sed $((line - 20)),${line}d"
-refuses ":$line: frame 99999 is none of the [0-9]+ of the print$changed" "sed '${line}s/\"frame\":[-0-9]*/\"frame\":99999/'"
-refuses ":$line: time 1e.308 s is not between 0 and 1e.09 s since the machine started$changed" "sed '${line}s/\"t_monotonic_s\":[0-9.]*/\"t_monotonic_s\":1e308/'"
-refuses ":$line: angle -1000 deg is not between 0 and 720 deg, where images are shown$changed" "sed '${line}s/\"angle_deg\":[-+0-9.e]*/\"angle_deg\":-1000/'"
 refuses ":[0-9]+: time goes back by [0-9.]+ s from that of the flip before$changed" "sed '$((line - 20))h;${line}G'"
 refuses ': has [0-9]+ bytes whose SHA-256 begins [0-9a-f]{8}, but events.jsonl states [0-9a-f]{8}; it was changed; restore it$' "sed '${line}s/\"utc\":\"2/\"utc\":\"3/'"
 rm -r spoilt; cp -r again spoilt; sed -i '/"event":"armed"/s/"turns":[0-9]*/"turns":30/' spoilt/events.jsonl
@@ -257,17 +252,10 @@ fails 65 '^vam-dose: .*/spoilt/printer.toml: has no seal' vam-dose frames.exr --
 spoilt 'events.jsonl: has no seal of flips.jsonl, which was sealed every second for [0-9.]+ s; it was cut or changed' 'sed -i "/sealed/d" events.jsonl'
 for log in events angles; do
   spoilt "$log.jsonl:2: is no entry of a log .JSON.; the log was changed; restore it\$" "sed -i '2s/^/x/' $log.jsonl"
-  spoilt "$log.jsonl:2: is no entry of a log" "sed -i '2s/.*/7/' $log.jsonl"
 done
-spoilt 'events.jsonl:1: from_deg is 1e.300, not between 0 and' 'sed -i "1s/\"from_deg\":[0-9.]*/\"from_deg\":1e300/" events.jsonl'
-spoilt 'events.jsonl:1: turns is -2, not between 1 and' 'sed -i "1s/\"turns\":/&-/" events.jsonl'
-spoilt 'events.jsonl:[0-9]+: bytes is 1e.308, not between [0-9]+ and' 'sed -i "\$s/\"bytes\":[0-9]*/\"bytes\":1e308/" events.jsonl'
 spoilt 'events.jsonl:[0-9]+: sha256 is not 64' 'sed -i "\$s/\"sha256\":\"[0-9a-f]*/\"sha256\":\"/" events.jsonl'
-spoilt 'angles.jsonl:3: angle_deg is missing, not between' 'sed -i "3s/angle_deg/angel_deg/" angles.jsonl'
-spoilt 'angles.jsonl:3: t_monotonic_s is 1e.300, not between' 'sed -i "3s/\"t_monotonic_s\":[0-9.]*/\"t_monotonic_s\":1e300/" angles.jsonl'
 # The stage is logged before light comes on.
 dark='light in flips.jsonl, which follows the angles; it was cut; restore it$'
-spoilt "angles.jsonl: is gone, but there is $dark" 'rm angles.jsonl'
 spoilt "angles.jsonl: has no angle, but there is $dark" ': >angles.jsonl'
 spoilt "angles.jsonl: ends [0-9.]+ s before $dark" 'sed -i "2,\$d" angles.jsonl'
 seals=$(grep -c '"event":"sealed"' again/events.jsonl)
@@ -276,8 +264,6 @@ spoilt "angles.jsonl: has no angle, but there is $dark" ': >angles.jsonl; sed -i
 holds 'a cut at a seal was one' "$(grep -c '"event":"sealed"' spoilt/events.jsonl) == $seals - 1"
 # What was armed is what the sealed log began.
 spoilt 'events.jsonl: states 13 turns, but flips.jsonl 2; it was changed; restore it$' 'sed -i "1s/\"turns\":2/\"turns\":13/" events.jsonl'
-spoilt 'events.jsonl: states light from 90 deg, but flips.jsonl 0; it was changed; restore it$' 'sed -i "1s/\"from_deg\":0/\"from_deg\":90/" events.jsonl'
-spoilt 'events.jsonl: states a sinogram whose SHA-256 begins 0123abcd, but flips.jsonl' 'sed -i "1s/\"sinogram_sha256\":\"......../\"sinogram_sha256\":\"0123abcd/" events.jsonl'
 rm -r spoilt; cp -r again spoilt; rm spoilt/printer.toml
 for tool in vam-check vam-status 'print --run none --resume'; do
   fails 65 'spoilt/printer.toml: is gone, without which the print can be neither resumed nor its dose computed' $tool spoilt
@@ -362,7 +348,7 @@ holds 'and its dose, everywhere' "($(json both.dose.json dose_shown_max_relative
 fails 65 'rest: complete, all 1 turns; nothing is left to print' print --resume rest --run none
 fails 66 'nowhere: not a folder; give the run folder of vam-print' print --resume nowhere --run none
 fails 64 '.--turns: conflicts with --resume' print --resume again --turns 3 --run none
-python3 "$VAM_SOURCE/tests/tools/exr.py" make other.exr space=projector width=64 height=36 count=2
+$exr make other.exr space=projector width=64 height=36 count=2
 fails 65 'other.exr: is not the sinogram of whole, whose SHA-256 begins' vam-dose other.exr --printer whole/printer.toml --shown whole -o none.vdb
 fails 65 'other.exr: not the sinogram of killed' vam-print other.exr --display null: --resume killed --run none
 fails 65 'none: no light was shown|no light was shown' sh -c ': >empty; vam-dose frames.exr --shown empty -o x.vdb; status=$?; rm -f empty; exit $status'
@@ -380,8 +366,6 @@ on=$(tail -n 2 hang/flips.jsonl | grep -o '"t_monotonic_s":[0-9.]*' | cut -d: -f
 holds 'and logged' "$on > 0.3 && $on < 3"
 is 'as black' "$(tail -n 1 hang/flips.jsonl | grep -o '"frame":-1.*"by":"vam-print"' | wc -l)" 1
 fails 74 'standard output: cannot be written' sh -c 'vam-print frames.exr --display null: --uncalibrated --plan >/dev/full'
-
-misuse --shown --exposure-plan vam-dose frames.exr --shown whole --exposure-plan --like part.vdb --set resin.absorption_per_mm=0.1 --set resin.critical_dose_mj_cm3=5 -o x.vdb
 
 if [ -n "$full" ]; then
   wait $full
