@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "base/memory.hpp"
+#include "base/compute/memory.hpp"
 #include "testing.hpp"
 
 using namespace vam;

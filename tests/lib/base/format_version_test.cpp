@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/format_version.hpp"
 
-#include "base/json.hpp"
-#include "base/json_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 #include "testing.hpp"
 
 using namespace vam;

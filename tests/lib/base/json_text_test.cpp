@@ -3,7 +3,7 @@
 
 #include <ctime>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "testing.hpp"
 
 using namespace vam;

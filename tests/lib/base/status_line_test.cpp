@@ -11,8 +11,8 @@
 #include <chrono>
 #include <thread>
 
-#include "base/log.hpp"
-#include "base/progress.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
 #include "testing.hpp"
 
 using namespace vam;

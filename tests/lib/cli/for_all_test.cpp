@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/log.hpp"
-#include "base/progress.hpp"
+#include "base/log/log.hpp"
+#include "base/log/progress.hpp"
 #include "cli/private/words.hpp"
 #include "lib/cli/demo.hpp"
 #include "testing.hpp"

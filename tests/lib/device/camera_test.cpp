@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/capture.hpp"
 #include "device/camera/private/frame_count.hpp"

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "testing.hpp"

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 #include "testing.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/round_trips.hpp"
 #include "device/stage/spin.hpp"
 #include "lib/device/virtual_stage.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which frame a screen shows: that of the stage's angle while it is on.
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/open/display.hpp"
 #include "device/projector/player.hpp"
 #include "device/stage/private/ripple_filter.hpp"

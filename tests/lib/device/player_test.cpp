@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/open/display.hpp"
 #include "device/projector/light_engine.hpp"
 #include "lib/device/steady_angle.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/projector/relayed_lamp.hpp"
 #include "lib/device/virtual_stage.hpp"
 #include "sim/controllers/relay.hpp"

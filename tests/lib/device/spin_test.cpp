@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/spin.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/angle_fit.hpp"
 #include "lib/device/virtual_stage.hpp"
 #include "testing.hpp"

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <thread>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/event_log.hpp"
 #include "testing.hpp"
 

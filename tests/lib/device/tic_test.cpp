@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/tic_stage.hpp"

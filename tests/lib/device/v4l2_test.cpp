@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "lib/device/fake_v4l2.hpp"
 #include "lib/io/scratch.hpp"

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/zaber_stage.hpp"
 #include "lib/device/virtual_stage.hpp"

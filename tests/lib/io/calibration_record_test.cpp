@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/json.hpp"
-#include "base/utc.hpp"
+#include "base/text/json.hpp"
+#include "base/text/utc.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"

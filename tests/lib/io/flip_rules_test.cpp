@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/flip_rules.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "testing.hpp"
 
 using vam::Fault;

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/pose_file.hpp"
 #include "lib/io/scratch.hpp"

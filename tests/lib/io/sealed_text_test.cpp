@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/settings/sealed_text.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "io/stream/seal.hpp"
 #include "testing.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "light/grids/poses.hpp"
 #include "light/operators/operator.hpp"
 #include "light/simulation/private/simulation_state.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/simulation/simulation.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/simulation/display_range.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lib/light/vial_dose.hpp"
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_dose.hpp"
 #include "testing.hpp"

@@ -91,8 +91,9 @@ TEST_CASE("Vial edges by traced strips: axis within 0.01 px, radius within 1 um,
   }
 }
 
-TEST_CASE("Vial edges by traced strips: other cameras, a glass wall, light that spreads in height") {
-  std::vector<vam::oracle::SheetBench> benches(4, vam::oracle::SheetBench{.absorption_per_mm = 0.05});
+TEST_CASE(
+    "Vial edges by traced strips: other cameras, one that sees through absorbing resin, a wall, rows that spread") {
+  std::vector<vam::oracle::SheetBench> benches(5, vam::oracle::SheetBench{.absorption_per_mm = 0.05});
   benches[0].camera_rad *= -1;
   benches[1].camera_rad *= 5.0 / 6;
   benches[2].wall_mm = 1;

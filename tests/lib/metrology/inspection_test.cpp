@@ -2,7 +2,7 @@
 // Faces, bores and walls whose form is known, and uncertainties against repeated prints.
 #include "metrology/compare/inspection.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "lib/meshes.hpp"
 #include "metrology/compare/datum.hpp"
 #include "metrology/compare/trend.hpp"

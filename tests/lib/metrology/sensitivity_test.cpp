@@ -2,7 +2,7 @@
 // The sensitivity of a print, on densities that follow from a known one.
 #include "metrology/cure/sensitivity.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "testing.hpp"
 
 using namespace vam;

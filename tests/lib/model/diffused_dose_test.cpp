@@ -2,7 +2,7 @@
 // Diffusion during a print, against the mean over the times at which the light arrives.
 #include "oracle/diffused_dose.hpp"
 
-#include "model/dose_spread.hpp"
+#include "model/dose/dose_spread.hpp"
 #include "testing.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 #include "model/dose/dose_metrics.hpp"
 
 #include "model/conditions.hpp"
-#include "model/figures.hpp"
+#include "model/dose/figures.hpp"
 #include "testing.hpp"
 
 using namespace vam::model;

@@ -42,8 +42,8 @@ struct Flashes {
   }
 };
 
-model::Resin resin_of(std::optional<double> lifetime_s) {
-  return {.diffusion_mm2_s = diffusion_mm2_s, .dose_lifetime_s = lifetime_s};
+model::Resin resin_of(std::optional<double> lifetime_s, double dark_s = 0) {
+  return {.diffusion_mm2_s = diffusion_mm2_s, .dose_lifetime_s = lifetime_s, .dark_s = dark_s};
 }
 
 }  // namespace

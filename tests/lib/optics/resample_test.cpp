@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/resample.hpp"
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/writable_radius.hpp"
 #include "testing.hpp"

@@ -2,7 +2,7 @@
 // Bounds on the projected intensity: held in every method, and never worse than clipping.
 #include <cstring>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "lib/optimize/volumes.hpp"
 #include "optimize/methods/metrics.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "lib/optimize/volumes.hpp"
 #include "optimize/methods/metrics.hpp"

@@ -2,7 +2,7 @@
 // The slices that decide the exposure.
 #include "optimize/run/limited_by.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "lib/optimize/volumes.hpp"
 #include "oracle/part_2d.hpp"
 #include "testing.hpp"

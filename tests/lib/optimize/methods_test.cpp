@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/text.hpp"
+#include "base/text/text.hpp"
 #include "lib/optimize/parts.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/private/loss.hpp"

@@ -2,8 +2,8 @@
 // Projections for printers off their settings: scenarios are what those printers do, and the prints hold.
 #include "optimize/methods/private/robust.hpp"
 
-#include "base/json.hpp"
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
+#include "base/text/json.hpp"
 #include "light/operators/make_operator.hpp"
 #include "light/simulation/simulation.hpp"
 #include "model/tolerances.hpp"

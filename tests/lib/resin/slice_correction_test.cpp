@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "resin/curethrough/column_correction.hpp"
 #include "testing.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "score/grey_score.hpp"
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "testing.hpp"
 
 using namespace vam::score;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "sim/bench/scene.hpp"
 #include "sim/bench/world.hpp"
 #include "testing.hpp"

@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 
-#include "base/json.hpp"
+#include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "sim/controllers/dlp.hpp"
 #include "sim/controllers/gcs.hpp"

@@ -2,7 +2,7 @@
 // What the summary of a filled grid counts.
 #include "solid/voxel/part.hpp"
 
-#include "model/dose_metrics.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "testing.hpp"
 
 using namespace vam;

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "solid/shapes/private/cell_fraction.hpp"
 #include "testing.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tomo/filter.hpp"
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "testing.hpp"
 #include "tomo/private/fft.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "base/parallel.hpp"
+#include "base/compute/parallel.hpp"
 #include "oracle/strip_radon.hpp"
 #include "testing.hpp"
 

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <map>
 
-#include "base/printable.hpp"
+#include "base/text/printable.hpp"
 #include "lib/io/exr_stacks.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "testing.hpp"
