@@ -125,7 +125,7 @@ camera_up() {  # camera_up OPTIONS...: vam-sim camera at its address; $camera
 }
 camera_down() {  # at once: its library may wait for its threads for ever
   camera_waited=$(cat /proc/$camera/task/*/schedstat 2>/dev/null |
-    awk -v up=$(($(date +%s) - camera_since)) '{ ns += $2 } END { printf "%.1f", ns / 1e7 / (up + 1) }')  # % of its time
+    awk -v up=$(($(date +%s) - camera_since)) '$2 > ns { ns = $2 } END { printf "%.1f", ns / 1e7 / (up + 1) }')  # %
   kill -KILL $camera 2>/dev/null; wait $camera 2>/dev/null
   exec 9>&-
 }
@@ -134,7 +134,7 @@ fairly() {  # fairly GOOD COMMAND...: the command; while GOOD fails and its came
   for attempt in 1 2 3; do
     "$@"
     if eval "$good"; then return; fi
-    echo "# attempt $attempt: the camera was ready to run and had no processor for $camera_waited % of its time"
+    echo "# attempt $attempt: a thread of the camera was ready to run and had no processor for $camera_waited % of the time"
     awk "BEGIN { exit !($camera_waited > 5) }" || return 1
   done
 }
