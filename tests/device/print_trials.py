@@ -25,6 +25,7 @@ ENGINE = ["umockdev-wrapper", os.path.join(os.environ["VAM_BUILD"], "usb_host"),
           "sh", "-c", 'LD_PRELOAD="$SHIM:$LD_PRELOAD"; echo $$ >pid; exec "$@"', "sh"]
 SINGLE = [["vam-print"], ["vam-stage"], ["vam-project"]]
 SEVERAL = [["guardian of vam-project", "vam-project"], ["guardian of vam-stage", "vam-stage"],
+           ["vam-project", "vam-stage"], ["vam-steward", "vam-print"],
            ["vam-project", "vam-print"], ["vam-stage", "vam-print"],
            ["vam-print", "guardian of vam-project"], ["vam-print", "guardian of vam-stage"],
            ["guardian of vam-project", "vam-project", "vam-print"], ["guardian of vam-stage", "vam-stage", "vam-print"]]
