@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock COST 200
 # trials: 100
-# A print of which a tool and its guardian are killed, or vam-print with one of them [devices §7]: image and LEDs are off, the relay
-# is open and the stage stands within 2 s, and a line says so. A fifth of VAM_TRIALS a cause (5; 100: "long").
+# A print or a calibration of which a tool and its guardian are killed, or vam-print with one of them [devices §7]: image
+# and LEDs are off, the relay is open and the stage stands within 2 s, and a line says so. A fifth of VAM_TRIALS a cause (5; 100: "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
@@ -16,10 +16,11 @@ python3 "$VAM_SOURCE/tests/device/print_trials.py" $((${VAM_TRIALS:-5} / 5)) sev
 screen_down
 cat table
 is 'every trial was dark and still in time' $status 0
-is 'every cause was tried' "$(grep -c trials table)" 40
+is 'every cause was tried' "$(grep -c trials table)" 43
 unguarded=', and no guardian says that all is safe'
 said() { grep -c "^$1 killed$2; vam-devices off: light .* in standby, relay .* open, stage .* stopped$" said; }
 ok 'a line says so, of each tool' test "$(said 'vam-print: project was' "$unguarded")" -ge 1 -a "$(said 'vam-print: stage was' "$unguarded")" -ge 1
 ok 'also when vam-print was killed, too' test "$(said 'vam-print: vam-print and project were' "$unguarded")" -ge 1 -a "$(said 'vam-print: vam-print and stage were' "$unguarded")" -ge 1
+ok 'also of a calibration' test "$(said 'vam-calibrate-all: a tool was' '')" -ge 1
 is 'nothing was left on' "$(grep -c 'MAY BE ON' said)" 0
 done_testing
