@@ -9,10 +9,10 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/system_error.hpp"
@@ -39,30 +39,31 @@ std::string lock_path(const std::string& name) {
   return lock_folder() + "/vam" + (real.front() == '-' ? "" : "-") + real + ".lock";
 }
 
-// A holder writes its pid just after it has the lock: wait a moment for the pid of a living process.
-std::string holder(int fd) {
-  std::string pid = "unknown";
-  for (int attempt = 0; attempt < 20; ++attempt) {
-    std::array<char, 32> text{};
-    if (pread(fd, text.data(), text.size() - 1, 0) > 0) {
-      pid.assign(text.data(), strcspn(text.data(), "\n"));
-      if (kill(std::atoi(pid.c_str()), 0) == 0 || errno == EPERM) break;
-    }
-    usleep(5000);
-  }
-  return pid;
-}
-
-// Whether that process has the file open. A number that is out of date may be another program's by now.
+// Whether that process has the file open, otherwise than here. A number that is out of date may be another program's by
+// now.
 bool has_open(const std::string& pid, int fd) {
   struct stat mine {};
   fstat(fd, &mine);
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/" + pid + "/fd", none)) {
     struct stat its {};
+    if (entry.path() == "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd)) continue;
     if (stat(entry.path().c_str(), &its) == 0 && its.st_ino == mine.st_ino && its.st_dev == mine.st_dev) return true;
   }
   return false;
+}
+
+// Who has the lock; 0: nobody who is seen to, nullopt: this process, from now on. A holder writes its number just after
+// it has the lock, and who only asks whether it is free (locked_names) has it for a moment: so not at once.
+std::optional<int> lock(int fd, std::string& pid) {
+  for (int attempt = 0; flock(fd, LOCK_EX | LOCK_NB) != 0; ++attempt) {
+    std::array<char, 32> text{};
+    if (pread(fd, text.data(), text.size() - 1, 0) > 0) pid.assign(text.data(), strcspn(text.data(), "\n"));
+    if (has_open(pid, fd)) return std::atoi(pid.c_str());
+    if (attempt == 20) return 0;
+    usleep(5000);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -79,13 +80,12 @@ DeviceLock::DeviceLock(const std::string& name) {
     throw system_error(Fault::no_output, path + ": cannot lock the device", errno,
                        "set VAM_LOCK_DIR to a folder writable by all users");
   }
-  if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-    const std::string pid = holder(fd_);
-    const int process = has_open(pid, fd_) ? std::atoi(pid.c_str()) : 0;
+  std::string pid = "unknown";
+  if (const auto holder = lock(fd_, pid)) {
     close(fd_);
-    throw InUse{name + ": in use by process " + pid + "; try again when it has ended", process};
+    throw InUse{name + ": in use by process " + pid + "; try again when it has ended", *holder};
   }
-  const std::string pid = std::to_string(getpid()) + "\n";
+  pid = std::to_string(getpid()) + "\n";
   if (ftruncate(fd_, 0) != 0 || pwrite(fd_, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
     const int reason = errno;
     close(fd_);
@@ -102,11 +102,9 @@ std::vector<std::string> locked_names(const std::string& beginning) {
     const std::string file = entry.path().filename().string();
     if (!file.starts_with("vam-" + beginning) || !file.ends_with(".lock")) continue;
     const std::string name = file.substr(4, file.size() - 9);
-    try {
-      const DeviceLock free(name);
-    } catch (const Error&) {
-      names.push_back(name);
-    }
+    const int fd = open(entry.path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (fd >= 0 && flock(fd, LOCK_SH | LOCK_NB) != 0) names.push_back(name);
+    close(fd);
   }
   return names;
 }

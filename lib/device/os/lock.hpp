@@ -31,7 +31,8 @@ class DeviceLock {
   int fd_ = -1;
 };
 
-/// Names of devices that are locked now and begin so: "drm-" gives "drm-HDMI-A-1".
+/// Names of devices that are locked now and begin so: "drm-" gives "drm-HDMI-A-1". Nothing is written, and a lock that
+/// is taken meanwhile is not refused.
 [[nodiscard]] std::vector<std::string> locked_names(const std::string& beginning);
 
 }  // namespace vam::device

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "device/os/device_listing.hpp"
 #include "testing.hpp"
@@ -62,6 +64,23 @@ TEST_CASE("The second user learns who the first one is; kill -9 frees the device
   kill(first, SIGKILL);
   waitpid(first, nullptr, 0);
   CHECK_FALSE(fault_of([] { DeviceLock("/dev/null"); }).has_value());
+}
+
+TEST_CASE("Who lists what is locked neither marks what is free nor takes it from one who begins") {
+  const LockFolder folder;
+  const DeviceLock used("drm-A");
+  { const DeviceLock free("drm-B"); }
+  const std::string file = folder.path + "/vam-drm-B.lock";
+  std::ofstream(file) << "1\n";
+  CHECK(device::locked_names("drm-") == std::vector<std::string>{"drm-A"});
+  std::string line;
+  std::getline(std::ifstream(file), line);
+  CHECK(line == "1");
+  const pid_t lister = fork();
+  while (lister == 0) (void)device::locked_names("drm-");
+  for (int trial = 0; trial < 300; ++trial) CHECK_FALSE(fault_of([] { DeviceLock("drm-B"); }).has_value());
+  kill(lister, SIGKILL);
+  waitpid(lister, nullptr, 0);
 }
 
 TEST_CASE("Two names of one device node are one device") {
