@@ -20,6 +20,7 @@
 #include "device/os/lock.hpp"
 #include "device/os/realtime.hpp"
 #include "device/port/find_ports.hpp"
+#include "device/projector/display_backends.hpp"
 
 namespace vam::device {
 
@@ -161,7 +162,7 @@ std::vector<Switched> find_lit() {
   for (const DeviceListing& found : find_usb_devices()) {
     if (found.kind == "light") lit.push_back({found.kind, found.device});
   }
-  for (const char* kind : {"drm-", "sdl-"}) {
+  for (const char* kind : {drm_lock, sdl_lock}) {
     for (const std::string& name : locked_names(kind)) lit.push_back({"display", name});
   }
   return lit;

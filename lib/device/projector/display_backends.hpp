@@ -6,6 +6,10 @@
 
 namespace vam::device {
 
+/// How the names begin by which displays are locked.
+inline constexpr const char* drm_lock = "drm-";
+inline constexpr const char* sdl_lock = "sdl-";
+
 [[nodiscard]] std::unique_ptr<Display> open_sdl_display(const Address& address, const DisplayMode& wanted, Clock& clock,
                                                         Guardian* guardian);
 [[nodiscard]] std::unique_ptr<Display> open_drm_display(const Address& address, const DisplayMode& wanted, Clock& clock,

@@ -196,7 +196,7 @@ class DrmDisplay final : public Display {
 
 std::unique_ptr<Display> open_drm_display(const Address& address, const DisplayMode&, Clock& clock,
                                           Guardian* guardian) {
-  auto lock = std::make_unique<DeviceLock>("drm-" + address.place);
+  auto lock = std::make_unique<DeviceLock>(drm_lock + address.place);
   if (guardian != nullptr) guardian->keep(lock->handle());
   auto display = std::make_unique<DrmDisplay>(address.place, address.word("mode", ""), address.integer("bpc", 6, 16),
                                               clock, guardian);

@@ -176,7 +176,7 @@ std::unique_ptr<Display> open_sdl_display(const Address& address, const DisplayM
     throw Error{Fault::usage, "device '" + address.text + "': '" + address.place + "' is not a screen number"};
   }
   const char* desktop = std::getenv("DISPLAY");
-  auto lock = std::make_unique<DeviceLock>(std::string("sdl-") + (desktop != nullptr ? desktop : "") + "-" +
+  auto lock = std::make_unique<DeviceLock>(std::string(sdl_lock) + (desktop != nullptr ? desktop : "") + "-" +
                                            std::to_string(screen));
   if (guardian != nullptr) guardian->keep(lock->handle());
   auto display = std::make_unique<SdlDisplay>(screen, clock, guardian);
