@@ -95,8 +95,8 @@ is 'no command is sent' "$(grep -cv '"bits":0\|asleep' told 2>/dev/null)" 0
 
 # Everything off, whatever state the rest is in.
 off() { LD_PRELOAD=$shim vam-devices off --set "stage.device=$where" --light none "$@"; }
-spin() {  # spin PROTOCOL: a stage that turns for a tool; $user, and its guardian $guardian
-  stage_up --protocol $1; where=$1:$PWD/stage
+spin() {  # spin PROTOCOL OPTIONS...: a stage that turns for a tool; $user, and its guardian $guardian
+  where=$1:$PWD/stage; stage_up --protocol "$@"
   LD_PRELOAD=$shim vam-stage spin --device "$where" --turns 50 --speed 30 --home >/dev/null 2>user.err & user=$!
   await sh -c 'grep -q "angle_deg.*speed" truth'
   guardian=$(pgrep -P $user)
@@ -118,6 +118,21 @@ kill -STOP $user
 ok 'one that does not answer is killed' off
 wait $user 2>/dev/null
 is 'by that' $? 137
+for pause in 0 0.1 0.2 0.3; do
+  spin gcs --reply-delay 60
+  kill -9 $guardian $user; wait $user 2>/dev/null
+  off >first 2>&1 & first=$!
+  sleep $pause
+  second=$(off 2>&1); wait $first
+  is "two at once, $pause s apart" "$? $(cat first), $second $(stood; echo $?)" "0 stage    $where  stopped, stage    $where  stopped 0"
+  stage_down
+done
+spin gcs --reply-delay 60
+kill -9 $guardian $user; wait $user 2>/dev/null
+LD_PRELOAD=$shim vam-devices off --set "stage.device=$where" --light none 2>err & first=$!
+await pgrep -P $first >half; sleep 0.1; kill -9 $(cat half); wait $first
+is 'one that is killed is said to be' "$? $(grep -c "not everything is off: stage $where: .* was killed; try again" err)" '75 1'
+is 'and its half a conversation is no obstacle' "$(off) $(stood; echo $?)" "stage    $where  stopped 0"
 vam-sim stage --protocol relay --link relay --log opened --die-with-parent >/dev/null & relay=$!
 await test -e relay
 is 'an unplugged stage does not keep the relay closed' \

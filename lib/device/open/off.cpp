@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <exception>
 #include <functional>
+#include <memory>
+#include <string>
 
 #include "base/system_error.hpp"
 #include "device/open/light.hpp"
@@ -26,30 +28,47 @@ namespace vam::device {
 
 namespace {
 
-constexpr double patience_s = 2;  // with a tool that was asked to end
-constexpr double guardian_s = 1;  // with one that was killed, and with what holds a lock and cannot be seen
-constexpr double limit_s = 6;     // of a device
+constexpr double patience_s = 2;    // with a tool that was asked to end
+constexpr double hidden_s = 1;      // with what holds a lock and cannot be seen
+constexpr double attempts_s = 3;    // that begin
+constexpr int silence_us = 300000;  // after which no reply to an earlier question comes
+constexpr double stands_s = 2;      // after the order to
+constexpr int limit_s = 6;          // of a device
 constexpr double full_current_percent = 100;
 
 void wait_a_moment() { usleep(10000); }
 
-// A guardian holds the lock until the device is safe: it is not disturbed.
-void with_device(const std::function<void()>& act) {
+// One at a time: a second one would end the first in the middle of a command. One that hangs keeps nobody.
+std::unique_ptr<DeviceLock> take_turn() {
+  for (const double last_s = real_clock().now_s() + limit_s; real_clock().now_s() < last_s; wait_a_moment()) {
+    try {
+      return std::make_unique<DeviceLock>("off");
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  return nullptr;
+}
+
+// Again and again, as who was killed may have left half a conversation, whose end comes in the next one. A guardian
+// holds the lock until the device is safe: it is not disturbed.
+void insist(const std::function<void()>& act) {
   const double begin_s = real_clock().now_s();
-  double last_s = begin_s + guardian_s;
   int asked = 0;
   for (;; wait_a_moment()) {
     try {
       return act();
     } catch (const InUse& used) {
-      const double now_s = real_clock().now_s();
-      if (used.holder != 0 && used.holder != asked) {
+      const double spent_s = real_clock().now_s() - begin_s;
+      if (used.holder != 0) {
+        if (used.holder != asked) kill(used.holder, SIGTERM);
         asked = used.holder;
-        kill(asked, SIGTERM);
-        last_s = begin_s + patience_s + guardian_s;
+        if (spent_s > patience_s) kill(asked, SIGKILL);
       }
-      if (used.holder != 0 && now_s > begin_s + patience_s) kill(used.holder, SIGKILL);
-      if (now_s > last_s) throw;
+      if (spent_s > (asked != 0 ? attempts_s : hidden_s)) throw;
+    } catch (const Error& error) {
+      if (error.fault == Fault::absent || real_clock().now_s() - begin_s > attempts_s) throw;
+      usleep(silence_us);
     }
   }
 }
@@ -58,18 +77,14 @@ void with_device(const std::function<void()>& act) {
 void stop(const std::string& device) {
   auto& clock = real_clock();
   const auto stage = open_stage(device, clock, nullptr);
-  const double last_s = clock.now_s() + guardian_s;
-  bool ordered = false;
-  for (;; wait_a_moment()) {
-    try {
-      if (!stage->moving()) return;
-      if (!ordered) stage->stop(Stop::abrupt);
-      ordered = true;
-    } catch (const Error& error) {
-      if (error.fault == Fault::absent || clock.now_s() > last_s) throw;
-      stage->stop(Stop::abrupt);  // it answers nobody, as one that searches its reference
-    }
-    if (ordered && clock.now_s() > last_s + guardian_s) throw Error{Fault::busy, device + ": does not stop"};
+  try {
+    if (!stage->moving()) return;
+  } catch (const Error& error) {  // it answers nobody, as one that searches its reference
+    if (error.fault == Fault::absent) throw;
+  }
+  stage->stop(Stop::abrupt);
+  for (const double last_s = clock.now_s() + stands_s; stage->moving(); wait_a_moment()) {
+    if (clock.now_s() > last_s) throw Error{Fault::busy, device + ": does not stop"};
   }
 }
 
@@ -97,9 +112,10 @@ std::string act_on(const Switched& one) {
 // In the child. Its one word: the fault, or 0 and the state.
 [[noreturn]] void tell(int pipe, const Switched& one) {
   std::string word;
+  alarm(limit_s);
   hurry(Urgency::driver);
   try {
-    with_device([&] { word = '\0' + act_on(one); });
+    insist([&] { word = '\0' + act_on(one); });
   } catch (const Error& error) {
     word = static_cast<char>(error.fault) + std::string(error.what());
   } catch (const std::exception& error) {
@@ -144,7 +160,8 @@ void end(Switched& one, const Child& child, double deadline_s) {
   kill(child.pid, SIGKILL);
   waitpid(child.pid, nullptr, WNOHANG);
   if (word.empty()) {
-    one.problem = one.device + ": no end of it within 6 s";
+    const bool late = real_clock().now_s() >= deadline_s;
+    one.problem = one.device + (late ? ": no end of it within 6 s" : ": what switches it off was killed; try again");
   } else if (word.front() == '\0') {
     one.state = word.substr(1);
   } else {
@@ -169,6 +186,7 @@ std::vector<Switched> find_lit() {
 }
 
 void switch_off(std::vector<Switched>& devices) {
+  const auto turn = take_turn();
   const double deadline_s = real_clock().now_s() + limit_s;
   std::vector<Child> children;
   for (Switched& one : devices) {
