@@ -3,13 +3,15 @@
 
 of_file(path) gives a list of (what, record). A record has some of
     is       facts: whole names are compared as they are, numbers to 1e-4 of their value
-    values   least, greatest and mean, and sums of up to 64 blocks in the order of the file, in which one of two
-             neighbours is added and the other one subtracted by chance, each to 1e-5 of the largest (the mean to 1e-6):
-             a change of a single value by as much moves the sum of its block; rounding, some 1e-7 in each value, less by
-             an order of magnitude
+    values   least and greatest; the mean, the means of up to 64 blocks in the order of the file; sums of these blocks in
+             which each value is added or subtracted by chance; to 1e-5 of the largest, means to 1e-6 (of a line with a
+             tolerance to that over the root of the block's size, if more). What a whole block has in common moves its
+             mean, a single value or what differs from row to row its sum: selftest.py
+    block    the values of a block
     text     the numbers of a table as printed: to 1e-4, and to a unit of the last place
     picture  means of 12 x 12 blocks, in grey levels of 255: to 2
-Histories, seals, times and hashes are left out.
+    levels   of each frame of a folder the sum of its grey levels, plain and with signs by chance, whole numbers: exact
+Histories, seals, times and hashes are left out, and the bytes of files that are neither text nor known here.
 """
 import array
 import base64
@@ -25,9 +27,10 @@ import zipfile
 import zlib
 
 LEFT_OUT = re.compile(r"(^|[._:])(history|seals?|facts_seal|version|utc|sha256.*|hash|hashes|commands?|t_monotonic_s|"
-                      r"time_s|wall_s|process(es)?|pid|uuid|host|started|computed_s|seconds|memory_.*|"
-                      r"limited_by[.]\d+[.]z_mm)$")  # the last: of slices alike, any
-SIGNS = [sign for bit in map(random.Random(49).getrandbits, [1] * 2048) for sign in ((1.0, -1.0) if bit else (-1.0, 1.0))]
+                      r"time_s|device_s|wall_s|camera[.]firmware|process(es)?|pid|uuid|host|started|computed_s|seconds|memory_.*|"
+                      r"limited_by[.]\d+[.]z_mm|\d+[.](time_sigma_s|levels))$")  # of slices alike, any; of a capture
+SIGNS = [1.0 if bit == "1" else -1.0 for bit in format(random.Random(49).getrandbits(32749), "032749b")]  # a prime: no row
+# and no slice has this length, so that what alternates between them meets other signs
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?!\w|\.\d)")  # neither versions nor seals
 
 
@@ -37,8 +40,12 @@ def rounded(value, digits=7):
     return float("%.*g" % (digits, value)) if math.isfinite(value) else str(value)
 
 
+def signed_sum(numbers):
+    return sum(sum(map(operator.mul, SIGNS, numbers[at:at + len(SIGNS)])) for at in range(0, len(numbers), len(SIGNS)))
+
+
 def values_of(numbers):
-    """Block sums of floats; their places are to 1e-7 of the largest."""
+    """Figures of floats; their places are to 1e-7 of the largest, those of means to 1e-8."""
     count = len(numbers)
     broken = sum(1 for v in numbers if not math.isfinite(v))
     if broken or count == 0:
@@ -46,13 +53,13 @@ def values_of(numbers):
     low, high = min(numbers), max(numbers)
     largest = max(abs(low), abs(high))
     places = 7 - math.floor(math.log10(largest)) if largest > 0 else 7
-    size = max(64, -(-count // 128) * 2)  # even: pairs stay together
-    sums = []
-    for start in range(0, count, size):
-        block = numbers[start:start + size]
-        sums.append(sum(sum(map(operator.mul, SIGNS, block[at:at + 4096])) for at in range(0, len(block), 4096)))
-    tidy = [round(v, places) + 0.0 for v in (low, high, math.fsum(numbers) / count, *sums)]
-    return {"values": tidy}
+    size = max(64, -(-count // 64))
+    blocks = [numbers[start:start + size] for start in range(0, count, size)]
+    means = [math.fsum(numbers) / count, *(math.fsum(block) / len(block) for block in blocks)]
+
+    def tidy(numbers, more=0):
+        return [round(v, places + more) + 0.0 for v in numbers]
+    return {"block": size, "values": tidy((low, high)) + tidy(means, 1) + tidy(map(signed_sum, blocks))}
 
 
 def flat(value, path=""):
@@ -238,7 +245,7 @@ def numpy_of(data):
 
 
 def rows_of_png(data):
-    """Width, height, channels, samples a channel (levels of 255), row by row."""
+    """Width, height, channels, the largest level, samples of all channels row by row."""
     at, head, packed, palette = 8, None, b"", b""
     while at < len(data):
         size, kind = struct.unpack_from(">I4s", data, at)
@@ -267,33 +274,45 @@ def rows_of_png(data):
                 row[i] = (row[i] + (0, left, up, (left + up) // 2, near)[kind]) & 255
         above = row
         if depth == 16:
-            rows.append(row[::2])
+            rows.append(struct.unpack(">%dH" % (len(row) // 2), row))
         elif depth == 8:
             rows.append(row if not palette else bytes(v for i in row for v in palette[3 * i:3 * i + 3]))
         else:
             per, top = 8 // depth, (1 << depth) - 1
-            rows.append(bytes(((row[x // per] >> (8 - depth * (x % per + 1))) & top) * 255 // top for x in range(width)))
-    return width, height, 3 if palette else channels, rows
+            rows.append(bytes((row[x // per] >> (8 - depth * (x % per + 1))) & top for x in range(width)))
+    return width, height, 3 if palette else channels, 255 if palette else (1 << depth) - 1, rows
 
 
-def picture_of(data, blocks=12):
-    width, height, channels, rows = rows_of_png(data)
+def blocks_of(width, height, channels, top, rows, blocks=12):
     across, down = min(blocks, width), min(blocks, height)
     means = []
     for j in range(down):
         band = rows[j * height // down:(j + 1) * height // down]
         for i in range(across):
             left, right = i * width // across * channels, (i + 1) * width // across * channels
-            means.append(round(sum(sum(row[left:right]) for row in band) / (len(band) * (right - left)), 1))
+            total = sum(sum(row[left:right]) for row in band)
+            means.append(round(total * 255 / top / (len(band) * (right - left)), 1))
     return {"is": {"columns": width, "rows": height, "channels": channels}, "picture": means}
 
 
+def picture_of(data, blocks=12):
+    return blocks_of(*rows_of_png(data), blocks)
+
+
 def frames_of(folder, names):
-    """A folder of images: their number, and the first, the middle and the last of them."""
-    picked = [names[0], names[len(names) // 2], names[-1]]
-    pictures = [picture_of(open(os.path.join(folder, name), "rb").read(), 8) for name in picked]
-    return {"is": {"images": len(names), "first": names[0], "last": names[-1], **pictures[0]["is"]},
-            "picture": [v for picture in pictures for v in picture["picture"]]}
+    """A folder of images: their number, the levels of all, the blocks of the first, the middle and the last of them."""
+    picked, record, levels = {0, len(names) // 2, len(names) - 1}, None, []
+    for at, name in enumerate(names):
+        with open(os.path.join(folder, name), "rb") as file:
+            image = rows_of_png(file.read())
+        flat_levels = [level for row in image[4] for level in row]
+        levels += [sum(flat_levels), int(signed_sum(flat_levels))]
+        if at in picked:
+            shown = blocks_of(*image, 8)
+            record = record or {"is": {"images": len(names), "first": name, "last": names[-1], "top": image[3],
+                                       **shown["is"]}, "picture": []}
+            record["picture"] += shown["picture"]
+    return {**record, "levels": levels}
 
 
 def video_of(path):
@@ -387,21 +406,36 @@ def mesh_of(path):
     return {"is": {key: rounded(value, 6) for key, value in facts.items()}}
 
 
-def of_file(path):
+def arrays_of(path):
+    """Those of an archive of NumPy, an MRC file of floats, a TIFF of our own (make.py): (name, record)."""
     ending = os.path.splitext(path)[1]
-    if ending == ".vdb":
-        return list(volumes_of(path))
-    if ending == ".exr":
-        return [("", stack_of(path))]
-    if ending in (".mkv", ".mp4"):
-        return [("", video_of(path))]
-    if ending in (".ply", ".stl", ".3mf", ".obj"):
-        return [("", mesh_of(path))]
+    if ending == ".npz":
+        with zipfile.ZipFile(path) as archive:
+            return [(name, numpy_of(archive.read(name))) for name in sorted(archive.namelist())]
     with open(path, "rb") as file:
         data = file.read()
-    by_bytes = {".png": picture_of, ".pdf": pdf_of, ".npy": numpy_of, ".nrrd": nrrd_of}
-    if ending in by_bytes:
-        return [("", by_bytes[ending](data))]
-    text = data.decode("utf-8", "replace")
-    by_text = {".json": json_of, ".jsonl": json_lines_of, ".toml": settings_of, ".svg": svg_of, ".html": page_of}
-    return [("", by_text.get(ending, text_of)(text))]
+    if ending == ".mrc":
+        return [("", {"is": {"sizes": list(struct.unpack_from("<3i", data))}, **values_of(array.array("f", data[1024:]))})]
+    return [("", {"is": {"bytes": len(data)}, **values_of(array.array("B", data))})]
+
+
+BINARY = {".vdb": volumes_of, ".npz": arrays_of, ".mrc": arrays_of, ".tif": arrays_of,
+          **dict.fromkeys((".mkv", ".mp4"), lambda path: [("", video_of(path))]),
+          **dict.fromkeys((".ply", ".stl", ".3mf", ".obj"), lambda path: [("", mesh_of(path))]),
+          ".exr": lambda path: [("", stack_of(path))]}
+BY_BYTES = {".png": picture_of, ".pdf": pdf_of, ".npy": numpy_of, ".nrrd": nrrd_of}
+BY_TEXT = {".json": json_of, ".jsonl": json_lines_of, ".toml": settings_of, ".svg": svg_of, ".html": page_of}
+
+
+def of_file(path):
+    """[(part, record), ...]"""
+    ending = os.path.splitext(path)[1]
+    if ending in BINARY:
+        return list(BINARY[ending](path))
+    with open(path, "rb") as file:
+        data = file.read()
+    if ending in BY_BYTES:
+        return [("", BY_BYTES[ending](data))]
+    if b"\0" in data:
+        return [("", {"is": {"binary": True}})]
+    return [("", BY_TEXT.get(ending, text_of)(data.decode("utf-8", "replace")))]
