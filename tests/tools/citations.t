@@ -18,7 +18,7 @@ all_found() {
     {"projector", "colour", at<&Printer::projector>},
     schema = "vam-dose/3";
 TEXT
-  sed -i 's|^    {"volume", 1},|&\n    {"vam-paint", 1},|' tree/lib/base/format_version.hpp
+  sed -i 's|^    {"volume", 1},|&\n    {"vam-paint", 1},|' tree/lib/base/text/format_version.hpp
   check tree >faults && report 1 'the check finds faults'
   for n in $(seq $number_of_text); do
     file=tree/lib/base/cited_$n.hpp

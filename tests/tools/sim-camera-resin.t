@@ -72,7 +72,7 @@ near 'a lamp that fades by 100 % in 20 s gives half the light' lamp middle "($(d
 state delay --pattern grey --cure-delay 10000
 holds 'radicals that live for hours have hardly begun' "$(json delay.json middle) < 0.05 * $(json usual.json middle)"
 state lifetime --pattern grey --set resin.dose_lifetime_s=10000
-near 'also by the lifetime of the printer file' lifetime middle "$(json delay.json middle)"
+holds 'also by the lifetime of the printer file' "$(json lifetime.json middle) < 0.05 * $(json usual.json middle)"
 state row --pattern row --width 2
 state diffusion --pattern row --width 2 --inhibitor-diffusion 0.1
 holds 'inhibitor comes in where few rows are lit' "$(json diffusion.json middle) < 0.85 * $(json row.json middle)"

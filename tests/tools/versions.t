@@ -152,5 +152,5 @@ PY
 is 'vam.py reads versions up to its own' "$(PYTHONDONTWRITEBYTECODE=1 python3 read.py | tail -n 1)" 'part.vdb: is of version 1 of NRRD, this vam.py reads up to 0; get a newer one'
 fails 65 "is of version 2 of its format .volume.*$end" vam-check two.vdb
 fails 65 "is of version 2 of its format .stack.*$end" vam-check two.exr
-is 'and is of the version of these tools' "$(sed -n 's/^VERSION = "\(.*\)".*/\1/p' "$VAM_SOURCE/scripts/vam.py")" "$(sed -n 's/.*{"volume", \(.*\)},/\1/p' "$VAM_SOURCE/lib/base/format_version.hpp")"
+is 'and is of the version of these tools' "$(sed -n 's/^VERSION = "\(.*\)".*/\1/p' "$VAM_SOURCE/scripts/vam.py")" "$(sed -n 's/.*{"volume", \(.*\)},/\1/p' "$VAM_SOURCE/lib/base/text/format_version.hpp")"
 done_testing
