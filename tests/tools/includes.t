@@ -17,7 +17,7 @@ missing lib/base/text/json_text.cpp '<vector>' 'std::vector needs <vector>'
 missing lib/optics/slice_place.cpp '"base/error.hpp"' 'Error needs lib/base/error.hpp'
 missing tools/vam-ost/live.cpp '"base/text/text.hpp"' 'format_number needs lib/base/text/text.hpp'
 missing lib/io/settings/printer_text.cpp '<toml++/toml.h>' 'toml needs <toml++/...>'
-missing tests/lib/optics/chief_ray_test.cpp '<random>' 'std::mt19937 needs <random>'
+missing tests/lib/device/lock_test.cpp '<fstream>' 'std::ofstream needs <fstream>'
 check tree 2>faults && report 1 'the check finds faults'
 grep -vxF -f faults wanted >unseen
 is "what is missing and not found" "$(cat unseen)" ""
