@@ -158,4 +158,9 @@ double resin_radius_mm(const View& view) { return view.shells.back().radius_mm; 
 
 double impact_mm(const View& view, double x_p_mm) { return approach(view, x_p_mm).impact_mm; }
 
+double displacement_rate(const View& view, double x_p_mm) {
+  const Approach ray = approach(view, x_p_mm);  // of a vial at x: b - x cos phi stays
+  return ray.impact_rate / std::cos(ray.phi_rad);
+}
+
 }  // namespace vam::optics

@@ -74,4 +74,7 @@ struct ColumnRay {
 /// vial of radius R gives R: in air R = R_e / sqrt(1 + (R_e / D_p)^2); [RAY21 eq 9] has the sign of the square wrong.
 [[nodiscard]] double impact_mm(const View& view, double x_p_mm);
 
+/// How far a vial is displaced along the columns for every mm that the column x_p_mm, its edge for one, moves with it.
+[[nodiscard]] double displacement_rate(const View& view, double x_p_mm);
+
 }  // namespace vam::optics

@@ -13,6 +13,7 @@
 #include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/vial_place.hpp"
 #include "metrology/calibrate/wobble.hpp"
+#include "optics/chief_ray.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -106,7 +107,7 @@ metrology::SweepScan to_scan(const ScanOptions& options, const Sweeps& sweeps, c
 
 // Of all angles: the rotation axis where the vial's middle was, what does not depend on the angle by its mean.
 metrology::VialEdges combine(const std::vector<double>& angles, const std::vector<metrology::VialEdges>& all,
-                             Finding& finding, double pixel_mm) {
+                             Finding& finding, const model::Printer& printer) {
   if (all.size() == 1) {
     finding.warn_because(
         "swept at one stage angle: the centre of the vial is recorded as the rotation axis, which ignores its wobble; "
@@ -125,9 +126,11 @@ metrology::VialEdges combine(const std::vector<double>& angles, const std::vecto
   const auto circle = metrology::find_wobble(angles, column, "edges");
   finding.value("wobble", circle.radius, "px", method);
   finding.value("wobble_phase", circle.phase_deg, "deg", method);
-  finding.value("wobble_mm", {circle.radius.value * pixel_mm, circle.radius.sigma * pixel_mm, circle.radius.n}, "mm",
-                method);
   metrology::VialEdges out = all.front();
+  out.edge_px = stats::weighted_mean(edge);
+  const double pixel_mm = printer.projector.pixel_mm;
+  const double mm = pixel_mm * optics::displacement_rate(optics::projector_view(printer), out.edge_px.value * pixel_mm);
+  finding.value("wobble_mm", {circle.radius.value * mm, circle.radius.sigma * mm, circle.radius.n}, "mm", method);
   out.axis_column = circle.mean;
   if (tilt.size() == all.size()) {
     const auto cone = metrology::find_wobble(angles, tilt, "edges");
@@ -135,7 +138,6 @@ metrology::VialEdges combine(const std::vector<double>& angles, const std::vecto
     finding.value("wobble_tilt", cone.radius, "deg", "first harmonic of the tilt");
     finding.value("wobble_tilt_phase", cone.phase_deg, "deg", "first harmonic of the tilt");
   }
-  out.edge_px = stats::weighted_mean(edge);
   out.radius_mm = stats::weighted_mean(radius);
   out.blur_px = stats::weighted_mean(blur);
   return out;
@@ -174,7 +176,7 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   if (all.empty())
     throw Error{Fault::data, options.from + ": no frame shows a single line of the sweep; check --flips"};
   Finding finding;
-  auto found = combine(angles, all, finding, printer.projector.pixel_mm);
+  auto found = combine(angles, all, finding, printer);
   stats::Measured& radius = found.radius_mm;
   radius.sigma = std::hypot(std::hypot(radius.sigma, unsure_of_absorption * absorbed_mm),
                             unsure_of_cut_off * cut_off_mm, unsure_of_beam * radius.value);

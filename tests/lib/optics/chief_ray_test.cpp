@@ -3,6 +3,7 @@
 
 #include "base/constants.hpp"
 #include "lib/optics/view_bench.hpp"
+#include "optics/skew_ray.hpp"
 #include "optics/writable_radius.hpp"
 #include "oracle/ray_tracer.hpp"
 #include "testing.hpp"
@@ -174,6 +175,18 @@ TEST_CASE("impossible geometries are refused") {
   printer.projector.telecentric = false;
   printer.projector.telecentric_columns = true;  // its rows diverge in front of the window
   CHECK_THROWS_AS(static_cast<void>(projector_view(printer)), Error);
+}
+
+TEST_CASE("a vial that is displaced by the rate takes its ray to another column") {
+  std::mt19937 random(5);
+  for (int run = 0; run < 200; ++run) {
+    const View view = random_view(random);
+    const double moved_mm = 1e-4 * view.shells.front().radius_mm;
+    const double x_p_mm = std::uniform_real_distribution<double>(-0.9, 0.9)(random) * edge_column(view).x_p_mm;
+    const Displacement vial{.x_mm = moved_mm * displacement_rate(view, x_p_mm)};
+    const double offset_mm = skew_ray(view, x_p_mm + moved_mm, 0, vial).offset_mm;
+    CHECK(std::abs(offset_mm - chief_ray(view, x_p_mm).x_v_mm) < 1e-3 * moved_mm);
+  }
 }
 
 TEST_CASE("the window of a bath is between the vial and the lens") {
