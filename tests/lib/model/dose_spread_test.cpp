@@ -36,10 +36,6 @@ struct Flashes {
     }
     return sum / flashes;
   }
-  /// In the middle of a slit's light of 1.
-  [[nodiscard]] double slit_peak(double slit_mm) const {
-    return mean([&](double sigma_mm) { return std::erf(0.5 * slit_mm / sigma_mm / std::sqrt(2.0)); });
-  }
 };
 
 model::Resin resin_of(std::optional<double> lifetime_s, double dark_s = 0) {
@@ -60,16 +56,6 @@ TEST_CASE("The dose's spread is that of flashes throughout the print and the dar
     }
   }
   CHECK(model::diffused_mm2(resin_of(std::nullopt), print_s) == doctest::Approx(diffusion_mm2_s * print_s));
-}
-
-// One Gaussian stands for a sum of many.
-TEST_CASE("A slit that diffuses keeps as much as the flashes leave it, to one and a half hundredths") {
-  for (const double lifetime_s : {3.0, 60.0, 1e12}) {
-    CAPTURE(lifetime_s);
-    const double sigma_mm = model::spread_mm(resin_of(lifetime_s), print_s);
-    const double peak = std::erf(0.25 / sigma_mm / std::sqrt(2.0));
-    CHECK(std::abs(peak - Flashes{1 / lifetime_s}.slit_peak(0.5)) < 0.015);
-  }
 }
 
 TEST_CASE("A lifetime far beyond the print counts like none, without a step") {
