@@ -43,7 +43,7 @@ solid::Part wrapped_part(model::TriangleSoup mesh, const solid::Affine& map, con
                          const std::string& subject) {
   transform(mesh, map);
   const solid::WrapSize size{options.wrap_mm[0], options.wrap_mm[1]};
-  solid::Wrap wrap = solid::wrapped(std::move(mesh), size, subject);
+  solid::Wrap wrap = solid::wrapped(mesh, size, subject);
   note(subject + ": wrapped: " + std::to_string(wrap.open_edges) + " open edges are closed, openings narrower than " +
        format_number(2 * size.alpha_mm, 3) + " mm and cavities filled, and the part is larger by up to " +
        format_number(size.offset_mm, 3) + " mm on all sides");

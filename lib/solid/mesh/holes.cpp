@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/mesh/holes.hpp"
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -17,12 +18,13 @@ namespace {
 struct Lid {
   Vector3 sum{};  // of the middles of its border's edges
   double edges = 0;
+  double reach_mm = 0;
   int middle = 0;  // index of a point
 };
 
 }  // namespace
 
-long close_holes(model::TriangleSoup& mesh) {
+long close_holes(model::TriangleSoup& mesh, double widest_mm) {
   weld_equal_points(mesh);
   drop_degenerate(mesh);
   std::vector<std::array<int, 2>> open;
@@ -43,7 +45,14 @@ long close_holes(model::TriangleSoup& mesh) {
     lid.middle = count_of(mesh.points);
     mesh.points.push_back((1 / lid.edges) * lid.sum);
   }
-  for (const auto& [from, to] : open) mesh.triangles.push_back({from, to, lids[borders.of(from)].middle});
+  for (const auto& [from, to] : open) {
+    Lid& lid = lids[borders.of(from)];
+    lid.reach_mm = std::max(lid.reach_mm, length(mesh.points[from] - mesh.points[lid.middle]));
+  }
+  for (const auto& [from, to] : open) {
+    const Lid& lid = lids[borders.of(from)];
+    if (2 * lid.reach_mm <= widest_mm) mesh.triangles.push_back({from, to, lid.middle});
+  }
   return static_cast<long>(open.size());
 }
 

@@ -57,17 +57,27 @@ model::TriangleSoup soup_of(const Surface& surface) {
   return soup;
 }
 
-}  // namespace
-
-Wrap wrapped(model::TriangleSoup mesh, const WrapSize& size, const std::string& subject) {
-  Wrap made;
-  made.open_edges = close_holes(mesh);
-  require_size(mesh, size.alpha_mm, subject);
+model::TriangleSoup wrap_of(const model::TriangleSoup& mesh, const WrapSize& size) {
   std::vector<Point3> points;
   for (const auto& [x, y, z] : mesh.points) points.emplace_back(x, y, z);
   Surface surface;
   CGAL::alpha_wrap_3(points, mesh.triangles, size.alpha_mm, size.offset_mm, surface);
-  made.mesh = soup_of(surface);
+  return soup_of(surface);
+}
+
+}  // namespace
+
+Wrap wrapped(const model::TriangleSoup& mesh, const WrapSize& size, const std::string& subject) {
+  constexpr double both_sides = 1.2;  // times the area: the wrap lies on the inside of a body, too
+  model::TriangleSoup lidded = mesh;
+  Wrap made;
+  made.open_edges = close_holes(lidded, 2 * size.alpha_mm);
+  require_size(lidded, size.alpha_mm, subject);
+  made.mesh = wrap_of(lidded, size);
+  if (area_mm2(made.mesh) > both_sides * area_mm2(lidded)) {
+    close_holes(lidded);
+    made.mesh = wrap_of(lidded, size);
+  }
   return made;
 }
 

@@ -18,9 +18,11 @@ struct Wrap {
   long open_edges = 0;       // that the mesh had
 };
 
-/// CGAL's 3D alpha wrap [PRH22] of the mesh with lids on its holes (close_holes): holes, cracks, crossings, doubled and
-/// inner surfaces do not matter; cavities are filled. Takes 0.1 to 0.2 ms and up to 2 kB a triangle, of which there are
-/// some 2.1 area / alpha^2. Throws Fault::data beyond two million of these, Fault::memory for a lack of memory.
-[[nodiscard]] Wrap wrapped(model::TriangleSoup mesh, const WrapSize& size, const std::string& subject);
+/// CGAL's 3D alpha wrap [PRH22] of the mesh with lids on its holes narrower than 2 alpha (close_holes): cracks,
+/// crossings, doubled and inner surfaces do not matter; cavities are filled. Where it gets in by a wider hole, so that
+/// it has 1.2 times the mesh's area, all holes get lids: one between two borders may lie across a hole of the part.
+/// Takes 0.1 to 0.2 ms and up to 2 kB a triangle, of which there are some 2.1 area / alpha^2. Throws Fault::data beyond
+/// two million of these, Fault::memory for a lack of memory.
+[[nodiscard]] Wrap wrapped(const model::TriangleSoup& mesh, const WrapSize& size, const std::string& subject);
 
 }  // namespace vam::solid
