@@ -69,7 +69,7 @@ void add_missing(const Window& window, int k, const std::array<const std::uint8_
   for (const std::size_t at : window.lost(k)) {
     if (!window.cures(k, at)) shares[at] = coverage[at];
   }
-  for (const std::size_t at : verdict::torn_voxels(verdict::Torn::part, grid.nx, grid.ny, bits.data()))
+  for (const std::size_t at : verdict::defect_voxels(verdict::Defect::broken, grid.nx, grid.ny, bits.data()))
     shares[at] = coverage[at];
 }
 

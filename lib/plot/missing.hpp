@@ -21,7 +21,7 @@ struct MissingPart {
 
 /// Counted as missing are, where they are below the threshold, voxels wholly inside the part and those of walls that no
 /// voxel nearby is half covered by [verdict::lost_walls], and those at which a wall is cut or missing
-/// [verdict::torn_voxels]. Both volumes have the same grid.
+/// [verdict::defect_voxels]. Both volumes have the same grid.
 [[nodiscard]] MissingPart missing_part(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold);
 
 /// 1 in voxels of walls that no voxel nearby is half covered by, with a dose only in those below the threshold.

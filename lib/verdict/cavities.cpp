@@ -17,13 +17,12 @@ namespace {
 
 constexpr std::int64_t least_voxels = 8;
 
-/// Of a slice with its margin.
+/// Runs of void in a slice with its margin.
 std::vector<VoxelRun> free_runs(const model::Grid& grid, const float* slice) {
   return BitSlice(grid.nx, grid.ny, false, [&](std::size_t pixel) { return model::half_covered(slice[pixel]); })
       .runs(false, true);
 }
 
-/// Of the margin below and above the volume.
 std::vector<VoxelRun> margin_runs(const model::Grid& grid) { return BitSlice(grid.nx, grid.ny).runs(false, true); }
 
 }  // namespace

@@ -23,13 +23,14 @@ inline constexpr std::uint8_t trace = 8;  // at least 1/32 covered, as by a thin
                                    (coverage >= 1 / 32.0F ? printed::trace : 0) | (cured ? printed::cured : 0));
 }
 
-/// Of the part what does not cure is lost, and what cures is left; of gaps, void that is less than a quarter covered
-/// and cures, and void that stays liquid.
-enum class Torn { part, gap };
+/// broken: voxels of the part are missing if they do not cure, else kept. shut: void that is less than a quarter
+/// covered is missing if it cures; void that stays liquid is kept.
+enum class Defect { broken, shut };
 
-/// The torn voxels of a slice, by their numbers: lost, and what is left among their 26 neighbours is nothing, as in a
-/// hole of a wall, or falls apart without them, as at the foot of a wall that hangs on by its ends.
-[[nodiscard]] std::vector<std::size_t> torn_voxels(Torn what, int width, int height, const std::uint8_t* const* slices);
+/// The torn voxels of a slice, by their numbers: missing ones whose 26 neighbours have none that is kept, as in a hole
+/// of a wall, or whose kept neighbours are not connected, as at the foot of a wall that hangs on by its ends.
+[[nodiscard]] std::vector<std::size_t> defect_voxels(Defect what, int width, int height,
+                                                     const std::uint8_t* const* slices);
 
 /// Which voxels of the middle one of three slices of coverage are of lost walls, by their numbers; nullptr beyond the
 /// volume.

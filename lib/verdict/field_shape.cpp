@@ -16,7 +16,7 @@ namespace {
 
 /// Values at the corners of a cell between eight voxels, x fastest, above the level.
 using Corners = std::array<float, 8>;
-/// Of each corner the least one that it hangs together with in the cell; both are solid, or neither.
+/// For each corner, the least one that it is connected with in the cell; both are solid, or neither.
 using Parts = std::array<int, 8>;
 
 constexpr bool is_solid(float value) { return value >= 0; }
@@ -26,7 +26,6 @@ constexpr void connect_parts(int a, int b, Parts& parts) {
   std::replace(parts.begin(), parts.end(), from, std::min(parts[a], parts[b]));
 }
 
-/// By the edges of the cell.
 constexpr Parts along_edges(const Corners& corners) {
   Parts parts{};
   std::iota(parts.begin(), parts.end(), 0);
@@ -70,7 +69,7 @@ void join_across(const Face& face, const Corners& corners, Parts& parts) {
   first ? connect_parts(face.a, face.d, parts) : connect_parts(face.b, face.c, parts);
 }
 
-/// Of the solid in a face: its pieces, as none has a hole.
+/// Pieces of the solid in a face; none has a hole.
 constexpr int pieces_of(const Face& face, const Corners& corners) {
   if (is_ambiguous(face, corners) && !is_solid_at_saddle(face, corners)) return 2;
   return is_solid(corners[face.a]) || is_solid(corners[face.b]) || is_solid(corners[face.c]) ||
@@ -106,8 +105,8 @@ void join_inside(const Corners& corners, Parts& parts) {
   }
 }
 
-/// What a cell adds to the Euler characteristic with the faces, edges and corner at its low sides, if its solid is in
-/// so many pieces less tunnels.
+/// Contribution of a cell to the Euler characteristic, with the faces, edges and corner at its low sides. of_cell:
+/// pieces of its solid, less tunnels.
 constexpr int euler_of(int of_cell, const Corners& corners) {
   int euler = of_cell - (is_solid(corners[0]) ? 1 : 0);
   for (const Face& face : low_faces) euler -= pieces_of(face, corners);
@@ -115,13 +114,13 @@ constexpr int euler_of(int of_cell, const Corners& corners) {
   return euler;
 }
 
-/// Of a cell that is cut by one surface, which meets no face twice, only which corners are solid tells.
+/// A plain cell is cut by one surface, which meets no face twice: its solid corners determine its contribution.
 struct Cut {
   bool is_plain = false;
   int euler = 0;
 };
 
-/// By the solid corners, as bits.
+/// Index: the solid corners, as bits.
 constexpr std::array<Cut, 256> cuts = [] {
   std::array<Cut, 256> all{};
   for (unsigned solid = 0; solid < all.size(); ++solid) {
@@ -155,7 +154,7 @@ void for_cut_cells(const BitSlice& low, const BitSlice& high, int y, const Visit
   }
 }
 
-/// Of the runs that of this voxel. There is one.
+/// The run that holds this voxel. There is one.
 std::size_t run_of(const std::vector<VoxelRun>& runs, int x, int y) {
   const auto after =
       std::upper_bound(runs.begin(), runs.end(), std::pair{y, x}, [](const auto& at, const VoxelRun& run) {

@@ -10,10 +10,10 @@
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
 #include "verdict/private/bit_slice.hpp"
+#include "verdict/private/break_finder.hpp"
 #include "verdict/private/field_shape.hpp"
 #include "verdict/private/pieces.hpp"
 #include "verdict/private/smooth_print.hpp"
-#include "verdict/private/torn.hpp"
 
 namespace vam::verdict {
 
@@ -21,16 +21,16 @@ namespace {
 
 constexpr std::array other_factors{0.98, 0.99, 1.01, 1.02};
 
-/// Of the middle one of three slices of bits; nullptr beyond the volume.
-struct TornOfBoth {
-  TornSlice part, gap;
+struct BothDefects {
+  DefectSlice broken, shut;
 };
 
-TornOfBoth torn(int width, int height, const std::vector<std::uint8_t>* below, const std::vector<std::uint8_t>& slice,
-                const std::vector<std::uint8_t>* above) {
+BothDefects defects_of(int width, int height, const std::vector<std::uint8_t>* below,
+                       const std::vector<std::uint8_t>& slice, const std::vector<std::uint8_t>* above) {
   const auto bits = [](const std::vector<std::uint8_t>* of) { return of == nullptr ? nullptr : of->data(); };
   const std::array<const std::uint8_t*, 3> slices{bits(below), slice.data(), bits(above)};
-  return {torn_slice(Torn::part, width, height, slices.data()), torn_slice(Torn::gap, width, height, slices.data())};
+  return {defect_slice(Defect::broken, width, height, slices.data()),
+          defect_slice(Defect::shut, width, height, slices.data())};
 }
 
 }  // namespace
@@ -55,8 +55,8 @@ class PrintPieceCounter::State {
   FieldCounter of_part_, of_print_, of_smooth_, of_firm_;
   std::vector<FieldCounter> of_others_;  // of other doses
   SmoothPrint smooth_;
-  std::vector<Slice> last_;                        // up to two
-  TornSets broken_{Torn::part}, shut_{Torn::gap};  // in all but the last slice
+  std::vector<Slice> last_;                                  // up to two
+  BreakFinder broken_{Defect::broken}, shut_{Defect::shut};  // in all but the last slice
 };
 
 PrintPieceCounter::State::State(int width, int height, double threshold, const std::optional<model::Circle>& circle)
@@ -106,16 +106,16 @@ void PrintPieceCounter::State::add_judged(const float* dose, const float* covera
   std::vector<const Slice*> all;
   for (const Slice& slice : last_) all.push_back(&slice);
   for (const Slice& slice : slices) all.push_back(&slice);
-  // Of the last two, one has been counted already, and the last of all waits for the one above it.
+  // The last slice is kept until its upper neighbour arrives; the one below it has been counted.
   const int first = last_.empty() ? 0 : count_of(last_) - 1;
-  std::vector<TornOfBoth> found(std::max(count_of(all) - 1 - first, 0));
+  std::vector<BothDefects> found(std::max(count_of(all) - 1 - first, 0));
   parallel_for(count_of(found), [&](int n) {
     const int k = first + n;
-    found[n] = torn(width_, height_, k > 0 ? all[k - 1] : nullptr, *all[k], all[k + 1]);
+    found[n] = defects_of(width_, height_, k > 0 ? all[k - 1] : nullptr, *all[k], all[k + 1]);
   });
-  for (const TornOfBoth& slice : found) {
-    broken_.add(slice.part);
-    shut_.add(slice.gap);
+  for (const BothDefects& slice : found) {
+    broken_.add(slice.broken);
+    shut_.add(slice.shut);
   }
   of_part_.add(count, coverage);
   const std::vector<float> smoothed = smooth_.add(count, coverage, dose);
@@ -145,12 +145,12 @@ void PrintPieceCounter::State::add_judged(const float* dose, const float* covera
 }
 
 PrintPieces PrintPieceCounter::State::found() const {
-  TornSets broken = broken_;
-  TornSets shut = shut_;
+  BreakFinder broken = broken_;
+  BreakFinder shut = shut_;
   if (!last_.empty()) {
-    const auto top = torn(width_, height_, last_.size() > 1 ? &last_.front() : nullptr, last_.back(), nullptr);
-    broken.add(top.part);
-    shut.add(top.gap);
+    const auto top = defects_of(width_, height_, last_.size() > 1 ? &last_.front() : nullptr, last_.back(), nullptr);
+    broken.add(top.broken);
+    shut.add(top.shut);
   }
   FieldCounter of_smooth = of_smooth_;
   const std::vector<float> rest = smooth_.rest();

@@ -42,7 +42,7 @@ struct PrintPieces {
   std::int64_t firm_holes = 0;  // of these, on which 2 % of the dose do not decide [firm_dose]
   int solids = 0;               // of the part's own surface; 0: not known
   int specks = 0;               // of these, so small that they may not count
-  /// Where most hang together of what is broken and shut, in mm of the print; not known before set_places().
+  /// A voxel of the largest break and of the largest shut gap, in mm of the print; set by set_places().
   std::optional<std::array<double, 3>> broken_at_mm = std::nullopt, shut_at_mm = std::nullopt;
 
   /// Both were counted on these voxels.

@@ -70,7 +70,6 @@ bool has_solid_within(int reach, const float* const* slices, int width, int heig
   return false;
 }
 
-/// What a slice holds is added to the sums; their size is its own.
 template <class Sums>
 void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
   if (slice.voxels == 0) return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a part its voxels are too coarse for. No voxel shows whether it prints where none nearby is wholly part, or
-// wholly void. Of that, walls that have no voxel that is half covered are surely not printed, and gaps that have none
-// that is more than three quarters free are surely printed shut.
+// Features of a part that are too fine for its voxels: no voxel nearby is wholly part, or wholly void, and none shows
+// whether they print. Walls without a half covered voxel are surely missing in the print; gaps without a voxel that is
+// more than three quarters free are surely shut.
 #pragma once
 
 #include <algorithm>

@@ -21,7 +21,7 @@ bool holds_threshold(const Verdict& verdict) {
   return !t || (verdict.whole.max_void < *t && *t <= verdict.whole.min_part);
 }
 
-/// Of a threshold that is given, in the process window.
+/// Position of a given threshold in the process window.
 struct ThresholdMargin {
   double below_part = 0, above_void = 0;  // relative to the part's least dose and to the void's largest
 };
@@ -124,7 +124,7 @@ std::string words(const PrintPieces& pieces) {
     all.push_back(std::string("walls ") + (pieces.has_holes() ? "are" : "may be") +
                   " pierced or gaps bridged: the print has " + std::to_string(pieces.holes) +
                   (pieces.holes == 1 ? " hole" : " holes") + " that the part has not" +
-                  (pieces.has_holes() ? "" : ", on which 2 % of the dose decide"));
+                  (pieces.has_holes() ? "" : ", which 2 % less or more dose would close or open"));
   }
   return join(all, "; ");
 }

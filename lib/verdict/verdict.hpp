@@ -36,7 +36,7 @@ enum class Answer {
 /// The pieces of part and print, of which the part's own surface may tell the number.
 void set_pieces(Verdict& verdict, const std::optional<PrintPieces>& pieces);
 
-/// What the print has otherwise than the part: pieces, walls, gaps and holes. Empty: nothing, nor may it have.
+/// Differences of print and part: pieces, walls, gaps and holes. Empty if none is certain or possible.
 [[nodiscard]] std::string words(const PrintPieces& pieces);
 
 /// The numbers of both.

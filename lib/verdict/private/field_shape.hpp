@@ -17,11 +17,11 @@ struct FieldShape {
   std::int64_t tunnels = 0;
 };
 
-/// Of where a field, linear in x, y and z between the centres of voxels, reaches a level > 0; slice by slice, from the
-/// lowest up. Its tunnels are pieces + cavities - Euler characteristic, cavities being the pieces of the rest that are
-/// closed in. What hangs together across a face between four voxels its saddle tells [NIE91], and inside a cell between
-/// eight that of a section [CHE95]. Beyond the volume the field is 0. Memory: three slices, and of those that are not
-/// yet connected a bit a voxel.
+/// Counts pieces and tunnels of the solid in which a field, linear in x, y and z between the centres of voxels, reaches
+/// a level > 0; slice by slice, from the lowest up. Its tunnels are pieces + cavities - Euler characteristic, cavities
+/// being the pieces of the rest that are closed in. What hangs together across a face between four voxels its saddle
+/// tells [NIE91], and inside a cell between eight that of a section [CHE95]. Beyond the volume the field is 0. Memory:
+/// three slices, and of those that are not yet connected a bit a voxel.
 class FieldCounter {
  public:
   FieldCounter(int width, int height, double level, std::int64_t least_voxels = PrintPieces::least_voxels)

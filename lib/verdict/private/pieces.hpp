@@ -16,7 +16,7 @@ struct VoxelRun {
   int row, begin, end;
 };
 
-/// What makes two voxels of one set: a face that they share, or a corner at least.
+/// Two voxels are of one set if they share a face, or at least a corner.
 enum class Touching { faces, corners };
 
 /// pair(i, j) of all runs of two lists that have columns in common or next to each other, the other `rows_apart` rows
@@ -33,21 +33,21 @@ class RunSets {
   [[nodiscard]] const std::vector<VoxelRun>& last() const { return last_; }
   [[nodiscard]] std::size_t first_of_last() const { return parent_.size() - last_.size(); }
   [[nodiscard]] std::size_t runs() const { return parent_.size(); }
-  /// The number of the run that stands for the set.
+  /// The representative of the run's set.
   [[nodiscard]] std::size_t set_of(std::size_t run) const;
-  /// Of the set that this run stands for.
+  /// Voxels of the set that this run represents.
   [[nodiscard]] std::int64_t voxels(std::size_t set) const { return voxels_[set]; }
   /// The middle of one of its runs.
   [[nodiscard]] const VoxelPlace& place(std::size_t set) const { return places_[set]; }
   /// Forgets all runs but those of the last slice, which are then numbered from 0 on; before that, complete(set) of the
-  /// sets that do not reach it. Of each earlier run the number of the run that stands for its set, or `gone`.
+  /// sets that do not reach it. Returns the representative of each earlier run's set, or `gone`.
   static constexpr std::size_t gone = ~std::size_t{0};
   std::vector<std::size_t> forget(const std::function<void(std::size_t set)>& complete);
   /// Two runs are of one set.
   void join(std::size_t a, std::size_t b);
 
  private:
-  /// Of the last slice and of itself, or the one before.
+  /// Runs of the last slice, and those of itself or of the one before.
   struct Lists {
     const std::vector<VoxelRun>&of, &others;
     std::size_t first, second;
@@ -55,7 +55,7 @@ class RunSets {
   void join_near(const Lists& lists, int rows_apart, Touching touching);
 
   mutable std::vector<std::size_t> parent_;  // of each run; paths are shortened when they are followed
-  std::vector<std::int64_t> voxels_;         // of the set, at the run that stands for it
+  std::vector<std::int64_t> voxels_;         // of the set, at its representative
   std::vector<VoxelPlace> places_;           // of each run
   std::vector<VoxelRun> last_;
   int slices_ = 0;  // so far

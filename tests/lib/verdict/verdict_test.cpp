@@ -147,8 +147,8 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   cut.pieces->firm_holes = 0;
   CHECK(answer(cut) == Answer::unsure);
   CHECK(
-      words(cut).ends_with("; walls may be pierced or gaps bridged: the print has 5 holes that the part has not, on "
-                           "which 2 % of the dose decide"));
+      words(cut).ends_with("; walls may be pierced or gaps bridged: the print has 5 holes that the part has not, "
+                           "which 2 % less or more dose would close or open"));
   cut.pieces->holes = 1;
   cut.pieces->firm_holes = 1;
   CHECK(words(cut).ends_with("the print has 1 hole that the part has not"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Torn sets, against their definition on the whole volume.
-#include "verdict/private/torn.hpp"
+#include "verdict/private/break_finder.hpp"
 
 #include "lib/verdict/printed_volume.hpp"
 #include "testing.hpp"
