@@ -22,11 +22,11 @@
 #include "session/job_volumes.hpp"
 #include "session/printer.hpp"
 #include "session/scene.hpp"
-#include "vam-optimize/beginning.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/options.hpp"
 #include "vam-optimize/publish.hpp"
 #include "vam-optimize/sink.hpp"
+#include "vam-optimize/starting_point.hpp"
 #include "vam-optimize/task.hpp"
 
 namespace {
@@ -60,11 +60,11 @@ void require_memory_for(const session::Scene& scene, const optimize::VolumeTask&
 void run(const cli::App& app, Options& options) {
   model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, options.output)) return;
-  settle(app, printer, options);
+  resolve(app, printer, options);
   printer.projector.axis_column += options.column_offset_px;
-  settle_recorded(printer, options);
-  settle_response(app, options);
-  settle_angles(app, options);
+  resolve_recorded(printer, options);
+  resolve_response(app, options);
+  resolve_angles(app, options);
 
   const session::JobVolumes in = session::read(options);
   const session::Scene scene = session::make_scene(in.target.front(), printer, options);
@@ -77,7 +77,7 @@ void run(const cli::App& app, Options& options) {
   task.count_pieces = !options.bits;  // else those of the frames
   const auto light = session::make_light(scene, options);
   optimize_tool::require_independent(task, *light);
-  optimize_tool::Beginning beginning(app, printer, whole, options);
+  optimize_tool::StartingPoint beginning(app, printer, whole, options);
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int k, const Image& image) {
     if (k < whole.count) sink.add(image);  // there may be more slices than rows

@@ -51,7 +51,7 @@ SolvedLevel solve_level(const session::JobVolumes& in, const session::Scene& sce
     task.raising.next = next_iterations;
     task.limits.iterations = task.raising.first + (options.shortest ? shortest_raises : raises) * next_iterations;
   }
-  task.interruption.pause = device::interrupted;
+  task.checkpoint.pause = device::interrupted;
   return solved(task, scene, options);
 }
 

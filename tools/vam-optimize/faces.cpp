@@ -31,11 +31,11 @@ std::vector<light::FlatFace> faces_of(const io::SparseVolume& target) {
 }
 
 /// The part's middle and how far it may be lifted from where it is.
-struct Room {
+struct LiftLimits {
   double middle_mm, least_mm, most_mm;
 };
 
-Room room_of(const io::SparseVolume& target, const model::Projector& projector) {
+LiftLimits lift_limits(const io::SparseVolume& target, const model::Projector& projector) {
   const model::VoxelBox box = io::covered_box(target, model::coverage_rounding);
   const double low_mm = target.grid().z_mm(box.low[2] - 0.5);
   const double high_mm = target.grid().z_mm(box.high[2] + 0.5);
@@ -71,8 +71,8 @@ void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, con
   const std::vector<light::FlatFace> faces = faces_of(target);
   const auto hard = light::blurred_faces(scene.printer, scene.grid, outcome.wrong, faces);
   if (hard.empty()) return;
-  const Room room = room_of(target, scene.printer.projector);
-  const auto remedy = light::face_remedy(scene.printer, faces, hard, voxel_mm, room.least_mm, room.most_mm);
+  const LiftLimits limits = lift_limits(target, scene.printer.projector);
+  const auto remedy = light::face_remedy(scene.printer, faces, hard, voxel_mm, limits.least_mm, limits.most_mm);
   for (const light::BlurredFace& one : hard) {
     report["blurred_faces"].push_back({{"z_mm", scale * one.face.z_mm},
                                        {"faces", one.face.up ? "up" : "down"},
@@ -81,7 +81,7 @@ void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, con
                                        {"blur_voxels", one.blur_voxels},
                                        {"wrong_voxels", one.wrong_voxels}});
   }
-  const double place_mm = scale * (room.middle_mm + remedy.lift_mm);
+  const double place_mm = scale * (limits.middle_mm + remedy.lift_mm);
   report["blurred_faces_remedy"] = {
       {"place_mm", place_mm}, {"blur_voxels", remedy.blur_voxels}, {"tilt_deg", remedy.tilt_deg}};
   warn_of(hard, remedy, place_mm, scale, io::input_name(options.input));

@@ -44,17 +44,17 @@ struct Options : session::JobOptions {
 };
 
 /// As many angles as the projections have from which it starts, unless --angles says otherwise. Throws as StackReader.
-void settle_angles(const cli::App& app, Options& options);
+void resolve_angles(const cli::App& app, Options& options);
 
 void declare(cli::App& app, Options& options);
 /// Fills in what follows from the printer file's settings and from other options, no other file opened. Throws
 /// Fault::usage for values that cannot be.
-void settle(const cli::App& app, const model::Printer& printer, Options& options);
+void resolve(const cli::App& app, const model::Printer& printer, Options& options);
 /// The tolerances of calibration records where --robust asks for them and names no others; one line on a terminal says
 /// which. Throws as io::recorded_tolerances does.
-void settle_recorded(const model::Printer& printer, Options& options);
+void resolve_recorded(const model::Printer& printer, Options& options);
 /// The response curve of --resin-response, and the window that a table of it gives. Throws Error when it cannot be
 /// read.
-void settle_response(const cli::App& app, Options& options);
+void resolve_response(const cli::App& app, Options& options);
 
 }  // namespace vam::optimize_tool

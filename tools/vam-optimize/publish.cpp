@@ -45,7 +45,7 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
 }
 
-/// Of a grey target.
+/// The verdict on a grey target.
 std::string grey_verdict(const model::DoseMetrics& m) {
   return (m.ver == 0 ? std::string("met: no") : "not met: " + format_number(100 * m.ver, 2) + " % of the") +
          " prescribed voxels are outside the band of the target; vam-score --grey-target judges the dose";
@@ -142,7 +142,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
     report["limited_by"] = optimize::limited_by(
-        outcome.asked, [&](int k) { return model::vertical_magnification(printer) * scene.grid.z_mm(k); });
+        outcome.demands, [&](int k) { return model::vertical_magnification(printer) * scene.grid.z_mm(k); });
     add_blurred_faces(report, outcome, scene, target, options);
   }
   if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);

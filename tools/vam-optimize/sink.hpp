@@ -13,7 +13,7 @@
 
 namespace vam::optimize_tool {
 
-/// Of the projector, through its response. Throws Error when the response cannot be read.
+/// The projector's grey levels, through its response. Throws Error when the response cannot be read.
 [[nodiscard]] resin::GreyLevels grey_levels(const model::Printer& printer, int bits);
 
 /// Into the stack, quantised to the grey levels of the projector on request. With --robust and --bits all is kept to be

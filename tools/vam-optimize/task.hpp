@@ -13,7 +13,7 @@
 
 namespace vam::optimize_tool {
 
-/// Of the projections that come out.
+/// Of the optimised projections.
 [[nodiscard]] model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume& target,
                                           const cli::App& app, const Options& options);
 
@@ -21,8 +21,7 @@ namespace vam::optimize_tool {
 /// too few.
 [[nodiscard]] std::optional<model::ImageRange> slices_of(const model::StackInfo& whole, const Options& options);
 
-/// Of these slices. The history is that of the whole written to standard output without report, trace and checkpoint,
-/// so that joined pieces are its stack.
+/// Of these slices. Drops output options from the history, so that joined pieces are byte-identical to the whole.
 [[nodiscard]] model::StackInfo written_info(const model::StackInfo& whole,
                                             const std::optional<model::ImageRange>& slices, const cli::App& app,
                                             const Options& options);

@@ -153,7 +153,7 @@ class Apg final : public Method {
     surface_->add_slopes(misses, before_.dose);
   }
 
-  /// A slice whose loss went up goes on with a shorter step, without momentum.
+  /// A slice whose loss went up continues with a shorter step, without momentum.
   void safeguard(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     const PerSlice back = go_back(iterate, before_, loss_, losses(problem, light, iterate));
     for_slices(back, [&](std::size_t s, std::size_t lane) {
@@ -164,7 +164,7 @@ class Apg final : public Method {
     widen(problem, light, iterate);
   }
 
-  /// Of the voxels.
+  /// The losses of the voxels.
   [[nodiscard]] PerSlice voxel_losses(const Problem& problem, const light::Operator& light,
                                       const Iterate& iterate) const {
     return pooled(summed(iterate.dose,

@@ -20,16 +20,16 @@ namespace vam::optimize {
 /// noticed.
 class Archive {
  public:
-  enum class Way { out, in };
+  enum class Direction { out, in };
   using Move = std::function<void(void* bytes, std::size_t size)>;  // takes bytes away, or fills them
 
   using AtEnd = std::function<bool()>;
 
   /// `name` is what errors call it; at_end tells a reader whether all has been taken.
-  Archive(Way way, std::string name, Move move, AtEnd at_end = {})
+  Archive(Direction way, std::string name, Move move, AtEnd at_end = {})
       : way_(way), name_(std::move(name)), move_(std::move(move)), at_end_(std::move(at_end)) {}
 
-  [[nodiscard]] bool reading() const { return way_ == Way::in; }
+  [[nodiscard]] bool reading() const { return way_ == Direction::in; }
   [[nodiscard]] const std::string& name() const { return name_; }
 
   void operator()(float& value) { numbers(&value, 1); }
@@ -44,7 +44,7 @@ class Archive {
   void operator()(std::string& text);
   /// A checksum of everything up to here, written or compared.
   void seal();
-  /// Throws Fault::data where a reader has not come to the end.
+  /// Throws Fault::data if a reader has not reached the end.
   void end() const;
 
   template <class T, std::size_t N>
@@ -80,7 +80,7 @@ class Archive {
   void move(void* bytes, std::size_t size);
   std::size_t count(std::size_t size);
   void numbers(float* values, std::size_t size);
-  Way way_;
+  Direction way_;
   std::string name_;
   Move move_;
   AtEnd at_end_;

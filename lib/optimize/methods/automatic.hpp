@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What --method auto stands for: the method with the best results in tests/bench/printability, run until the part
+// The method of --method auto: the one with the best results in tests/bench/printability, run until the part
 // prints with a margin, and for a minimum number of iterations, so that easy parts also obtain a wide process window.
 #pragma once
 

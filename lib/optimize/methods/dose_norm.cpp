@@ -20,11 +20,11 @@ class DoseNorm final : public Method {
 
   /// I_0 = max(f, B) inside the writable circle; S_0 = filter(A I_0), floored; D_0 = A* S_0.
   void start(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
-    asked_ = problem.target;
-    for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) asked_[s].values[i] = goal(problem, s, i);
+    object_ = problem.target;
+    for_values(object_, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) object_[s].values[i] = goal(problem, s, i);
     });
-    goal_sums_ = pooled(sums(asked_, problem), light);
+    goal_sums_ = pooled(sums(object_, problem), light);
     project(problem, light, iterate);
   }
 
@@ -39,20 +39,20 @@ class DoseNorm final : public Method {
   /// the correction accumulates, so that it settles where D is proportional to I_0.
   void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
     const PerSlice dose_sums = pooled(sums(iterate.dose, problem), light);
-    for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for_values(object_, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const float sum = dose_sums[s][i % lanes];
         const float wanted = goal(problem, s, i);
         if (sum <= 0 || wanted <= 0) continue;
         const float ratio = iterate.dose[s].values[i] * (goal_sums_[s][i % lanes] / sum) / wanted;
-        asked_[s].values[i] /= std::max(ratio, least_ratio);
+        object_[s].values[i] /= std::max(ratio, least_ratio);
       }
     });
     project(problem, light, iterate);
   }
 
   void exchange(Archive& archive) override {
-    archive(asked_);
+    archive(object_);
     archive(goal_sums_);
   }
 
@@ -64,12 +64,12 @@ class DoseNorm final : public Method {
   }
 
   void project(const Problem& problem, const light::Operator& light, Iterate& iterate) {
-    filtered_projections(light, asked_, iterate.g);
+    filtered_projections(light, object_, iterate.g);
     clip_below(iterate.g, static_cast<float>(options_.min_intensity * light.row_angle_rad()));
     find_dose(problem, light, iterate);
   }
 
-  std::vector<Slab> asked_;  // I_k
+  std::vector<Slab> object_;  // I_k
   PerSlice goal_sums_;
 };
 

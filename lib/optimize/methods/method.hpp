@@ -58,12 +58,12 @@ class Method {
   void allow(double max_intensity) { options_.max_intensity = max_intensity; }
   /// Printers in whose light the loss counts, too; they must outlive the method's last step. Only of methods that read
   /// --robust.
-  void face(const Scenarios& scenarios) { scenarios_ = &scenarios; }
+  void set_scenarios(const Scenarios& scenarios) { scenarios_ = &scenarios; }
   /// Writes or reads what the next step needs beside the iterate, so that a run can be interrupted and resume.
   virtual void exchange(Archive& archive) = 0;
   /// Doses have their true scale, as slices that share dose need; else each slice is scaled to a largest dose of 1.
   [[nodiscard]] virtual bool keeps_scale() const { return false; }
-  /// Of a method that asks for the surface; of others nothing.
+  /// Errors of the dose at the surface, of a method that optimises them; else nothing.
   [[nodiscard]] virtual std::optional<SurfaceMiss> surface_miss(std::span<const Slab> /*dose*/) const {
     return std::nullopt;
   }

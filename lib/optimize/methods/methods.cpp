@@ -55,9 +55,9 @@ std::vector<std::string> method_names(const std::function<bool(const MethodEntry
 
 namespace {
 
-/// Of light for the whole dose, the share that is left, 1 - <D, A* g> / <A* g, A* g> over the part; of light for the
-/// rest of one, the factor by which it leads to the least dose of the part, <T - D, A* g> / <A* g, A* g>: the larger of
-/// them.
+/// Scales light by the larger of two factors: the share of the dose that is left, 1 - <D, A* g> / <A* g, A* g> over the
+/// part, for light of the whole dose; and <T - D, A* g> / <A* g, A* g>, by which light of the rest reaches the least
+/// dose of the part.
 void leave_rest(const Problem& problem, const light::Operator& light, Iterate& iterate) {
   iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
   light.adjoint(iterate.g, iterate.dose);

@@ -101,7 +101,7 @@ std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const 
 
 namespace {
 
-/// Whether nothing but settle() made this voxel part.
+/// Whether only resolve_thin_slices() made this voxel part.
 bool is_thin_part(const Problem& problem, std::size_t s, std::size_t i) {
   return problem.labels[s][i] == Label::part && problem.is_thin(s, i) && asks_surface(problem.demands);
 }

@@ -18,8 +18,8 @@ namespace vam::optimize {
 [[nodiscard]] std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const Problem& problem);
 /// The same of a result, as vam-score counts: what is part of a thin slice is cut by the surface.
 [[nodiscard]] std::vector<model::DoseStatistics> whole_statistics(std::span<const Slab> dose, const Problem& problem);
-/// Of the voxels that the surface cuts: part from half coverage on, else void. Not of those that are constrained as
-/// such (Demands::surface).
+/// Statistics of the voxels that the surface cuts, as part from half coverage on, else void; without those that are
+/// constrained (Demands::surface).
 [[nodiscard]] std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem);
 
 /// Figures of each slice in use. Of a grey target: ver = share of the voxels whose response is outside its tolerance,

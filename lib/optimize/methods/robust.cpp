@@ -113,7 +113,7 @@ class Robust final : public Method {
     return y;
   }
 
-  /// Of the mean loss at y; the dose before is used up.
+  /// Gradient of the mean loss at y; overwrites the dose before.
   std::vector<Slab> gradient(const Problem& problem, const light::Operator& light, const Iterate& iterate, float beta,
                              std::span<const Slab> y) {
     std::vector<Slab>& slopes = before_.dose;

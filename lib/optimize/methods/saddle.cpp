@@ -13,7 +13,7 @@ namespace vam::optimize {
 
 namespace {
 
-// Of the step: such a fall of the change moves the anchor, at once or where it rises again; and so many steps do.
+// The anchor moves when the change of a step falls to enough_fall, to some_fall and rises again, or after long_steps.
 constexpr double enough_fall = 0.2, some_fall = 0.8, long_share = 0.36;
 constexpr int long_steps = 50;
 
@@ -179,7 +179,7 @@ double Saddle::largest_margin(const Aim& aim) const {
                  : std::numeric_limits<double>::max();
 }
 
-/// Of the last step, in its own metric: P^-1 of the light's step is what was preconditioned.
+/// Change by the last step, in its own metric: P^-1 of the light's step is the gradient before preconditioning.
 Saddle::Change Saddle::change(const SaddleState& state) const {
   const SaddlePoint& now = state.now;
   const auto step = [](std::span<const Slab> from, std::span<const Slab> to) {
@@ -213,7 +213,7 @@ void Saddle::draw_to_anchor(SaddleState& state) const {
   }
 }
 
-/// To the last step; and steps of light and weights are made to go equally far.
+/// Moves the anchor to the last step, and balances the step lengths of light and weights.
 void Saddle::move_anchor(SaddleState& state, const Change& change) const {
   constexpr double most = 2;
   if (change.light > 0 && change.weights > 0) {

@@ -21,7 +21,7 @@ struct SaddlePoint {
   std::vector<Slab> slack;    // u; in the end -A (y - z): above 0 where g is 0, below where it is the largest
 };
 
-/// Where the iteration stands.
+/// State of the iteration.
 struct SaddleState {
   SaddlePoint now, anchor;
   double weight_step = 0;
@@ -47,7 +47,7 @@ class Saddle {
   /// Begins with this light.
   [[nodiscard]] SaddleState begin(std::vector<Slab> g) const;
   void step(SaddleState& state, const Aim& aim);
-  /// Of the last step.
+  /// The point of the last step.
   [[nodiscard]] const SaddlePoint& point() const { return next_; }
   /// No light within the peak has a larger h, by the weights of the last step: with <a>_+ the sum of what is above 0,
   /// h <= t (sum z - sum y) + peak <A (y - z)>_+.

@@ -33,7 +33,7 @@ std::vector<Slab> at_one(const Problem& problem, const light::Operator& light, s
 }
 
 /// Weight in the void beside z: so much of z, and so much on each voxel.
-struct More {
+struct ExtraWeight {
   double like_z, even;
 };
 
@@ -82,7 +82,7 @@ class Prover {
     const double part = sum_of(weights_, -1);
     Certificate proof;
     for (const double share : even_shares) {
-      const More more = missing(share, beside);
+      const ExtraWeight more = missing(share, beside);
       const double all = beside * (1 + more.like_z) + more.even * void_voxels_;
       if (all > 0 && part / all > proof.least) proof = scaled(part / all, more, all);
     }
@@ -111,7 +111,7 @@ class Prover {
     }
   }
 
-  /// Of the values of that sign.
+  /// Sum of the values of that sign.
   [[nodiscard]] static double sum_of(std::span<const Slab> images, float sign) {
     return total(images, [&](std::size_t s, std::size_t i) { return std::max(sign * images[s].values[i], 0.0F); });
   }
@@ -142,8 +142,8 @@ class Prover {
     fill(short_, [&](std::size_t s, std::size_t i) { return short_[s].values[i] - factor * rays_[s].values[i]; });
   }
 
-  /// What is added to z, of which a share is even, so that A z >= A y on every ray.
-  [[nodiscard]] More missing(double share, double beside) const {
+  /// Weight to add to z, a share of it evenly, so that A z >= A y on every ray.
+  [[nodiscard]] ExtraWeight missing(double share, double beside) const {
     constexpr float impossible = 1e30F;  // a ray through the part that meets no void
     constexpr float rounding = 1e-5F;    // of A z
     const auto like_z = static_cast<float>(beside > 0 ? (1 - share) / beside : 0);
@@ -160,7 +160,7 @@ class Prover {
     return {sum * static_cast<double>(like_z), sum * static_cast<double>(even)};
   }
 
-  [[nodiscard]] Certificate scaled(double least, const More& more, double all) {
+  [[nodiscard]] Certificate scaled(double least, const ExtraWeight& more, double all) {
     Certificate proof{least, 0, weights_};
     weigh(proof.weights, [&](Label label, std::size_t s, std::size_t i) {
       double weight = static_cast<double>(weights_[s].values[i]);

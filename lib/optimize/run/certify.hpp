@@ -23,8 +23,8 @@ inline constexpr int certify_iterations = 1200;  // of A and A*, as those of apg
 inline constexpr double proof_gap = 0.03;        // of the smallest ratio reached: nearer, the bound is not improved
 
 /// Tries to prove that the projections g, brought to the threshold, are nearly the best. All slices of the problem
-/// share the threshold. Ends when the bound is close enough to what was reached, or after so many iterations, of a
-/// single slice in parallel light twice as many. Not of grey targets.
+/// share the threshold. Ends when the bound is close enough to what was reached, or after this number of iterations, of
+/// a single slice in parallel light twice as many. Not of grey targets.
 [[nodiscard]] Certificate certify(const Problem& problem, const light::Operator& light, std::vector<Slab> g,
                                   int iterations = certify_iterations);
 

@@ -25,7 +25,7 @@ void exchange(Archive& archive, std::vector<FrontPoint>& front) {
 
 FrontPoint front_point(const Problem& problem, const light::Operator& light, double max_intensity, Iterate state,
                        const Scenarios* scenarios, const Show& show) {
-  bring_to_threshold(problem, light, Together::pass, max_intensity, scenarios, state);
+  bring_to_threshold(problem, light, ExposureGroup::pass, max_intensity, scenarios, state);
   const Pass all{0, problem.slices, 0, problem.slices};
   const std::vector<Image> shown = show(expand_images(all, state.g, light));
   state.g = collapse_images(

@@ -25,14 +25,14 @@ bool takes_whole(const VolumeTask& task, const light::Operator& light) {
   return light.couples_slices() || far || task.scenarios || task.front || task.certify > 0;
 }
 
-Jobs make_jobs(Schedule schedule, const model::ImageRange& asked, const Division& division) {
-  Jobs jobs{std::move(schedule), asked, {}, division, {}};
-  jobs.times.assign(jobs.schedule.slice_of_job.size(), 0);
-  for (int k = asked.from; k < asked.to; ++k) ++jobs.times[jobs.schedule.job_of_slice[k]];
+Jobs make_jobs(Schedule schedule, const model::ImageRange& selection, const Division& division) {
+  Jobs jobs{std::move(schedule), selection, {}, division, {}};
+  jobs.multiplicity.assign(jobs.schedule.slice_of_job.size(), 0);
+  for (int k = selection.from; k < selection.to; ++k) ++jobs.multiplicity[jobs.schedule.job_of_slice[k]];
   for (int first = 0; first < jobs.count();) {
     const Pass pass = division.from(first, jobs.count());
-    const auto begin = jobs.times.begin() + pass.first;
-    if (std::any_of(begin, begin + pass.jobs(), [](int times) { return times > 0; })) jobs.passes.push_back(pass);
+    const auto begin = jobs.multiplicity.begin() + pass.first;
+    if (std::any_of(begin, begin + pass.jobs(), [](int slices) { return slices > 0; })) jobs.passes.push_back(pass);
     first = pass.last;
   }
   return jobs;
@@ -40,9 +40,9 @@ Jobs make_jobs(Schedule schedule, const model::ImageRange& asked, const Division
 
 Jobs jobs_of(const VolumeTask& task, const light::Operator& light, std::span<const SliceDigest> digests) {
   const Division division = division_of(task, light);
-  const model::ImageRange asked = task.slices.value_or(model::ImageRange{0, task.source.slices});
-  if (asked.from < 0 || asked.count() < 1 || asked.to > task.source.slices || (task.slices && division.whole)) {
-    throw Error{Fault::usage, "slices: " + model::range_text(asked) + " of " + std::to_string(task.source.slices) +
+  const model::ImageRange slices = task.slices.value_or(model::ImageRange{0, task.source.slices});
+  if (slices.from < 0 || slices.count() < 1 || slices.to > task.source.slices || (task.slices && division.whole)) {
+    throw Error{Fault::usage, "slices: " + model::range_text(slices) + " of " + std::to_string(task.source.slices) +
                                   " cannot be computed apart from the others"};
   }
   const light::Shape image = light.image();
@@ -50,7 +50,7 @@ Jobs jobs_of(const VolumeTask& task, const light::Operator& light, std::span<con
   const int kept = static_cast<int>(std::max<std::size_t>(1, task.keep_bytes / bytes));
   // Slices that share light or dose with their neighbours are not alike because they look alike.
   const bool alone = division.halo == 0 && !division.whole;
-  return make_jobs(make_schedule(digests, alone ? kept : -1), asked, division);
+  return make_jobs(make_schedule(digests, alone ? kept : -1), slices, division);
 }
 
 Jobs every_slice(int slices, const Division& division) {

@@ -28,20 +28,20 @@ constexpr Limitation kinds[] = {
 
 }  // namespace
 
-Json limited_by(std::span<const SliceDemand> asked, const std::function<double(int k)>& height_mm) {
+Json limited_by(std::span<const SliceDemand> demands, const std::function<double(int k)>& height_mm) {
   Json list = Json::array();
   for (const Limitation& kind : kinds) {
     std::vector<double> values;
     int at = -1;
-    for (int k = 0; k < count_of(asked); ++k) {
-      const double value = asked[k].*kind.value;
+    for (int k = 0; k < count_of(demands); ++k) {
+      const double value = demands[k].*kind.value;
       if (value < 0 || (kind.value == &SliceDemand::peak && value == 0)) continue;
       values.push_back(value);
-      const double now = at < 0 ? value : asked[at].*kind.value;
+      const double now = at < 0 ? value : demands[at].*kind.value;
       if (at < 0 || (kind.least ? value < now : value > now)) at = k;
     }
     if (at < 0) continue;
-    const double value = asked[at].*kind.value;
+    const double value = demands[at].*kind.value;
     const double middle = stats::median(values);
     list.push_back({{"what", kind.what},
                     {"z_mm", height_mm(at)},

@@ -14,6 +14,6 @@ namespace vam::optimize {
 /// the least part dose, below which the threshold must lie; the one with the largest void dose, above which it must. Of
 /// equal slices the lowest. Each {what, z_mm, value, median, why}: `value` beside the median of the slices that have
 /// one. height_mm(k): of slice k in the print.
-[[nodiscard]] Json limited_by(std::span<const SliceDemand> asked, const std::function<double(int k)>& height_mm);
+[[nodiscard]] Json limited_by(std::span<const SliceDemand> demands, const std::function<double(int k)>& height_mm);
 
 }  // namespace vam::optimize

@@ -16,15 +16,15 @@ void OutputQueue::take(std::vector<Image> images) {
                                  " and those optimised with it are not finite; check the values of target and weights"};
   }
   for (Image& image : images) {
-    if (jobs_.times[next_] > 0) held_.emplace(next_, std::move(image));
+    if (jobs_.multiplicity[next_] > 0) held_.emplace(next_, std::move(image));
     if (++next_ == open()->last && ++pass_ < jobs_.passes.size()) next_ = open()->first;
   }
   write_ready();
 }
 
 void OutputQueue::write_ready() {
-  for (; slices_ < jobs_.asked.to; ++slices_) {
-    if (!jobs_.asked.holds(slices_)) continue;
+  for (; slices_ < jobs_.selection.to; ++slices_) {
+    if (!jobs_.selection.holds(slices_)) continue;
     const int job = jobs_.schedule.job_of_slice[slices_];
     const auto found = held_.find(job);
     if (found == held_.end()) return;

@@ -31,7 +31,7 @@ PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, 
     input.inserts.emplace_back(object.width, object.height);
     pack(all.insert.data(), used, input.inserts.back());
   }
-  if (stacked) settle(input.problem);
+  if (stacked) resolve_thin_slices(input.problem);
   return input;
 }
 

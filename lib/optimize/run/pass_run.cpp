@@ -41,7 +41,7 @@ Limits limits_of(const RunState& run, const Pass& pass) {
 
 void begin(RunState& run, const Pass& pass, const PassSetup& setup, PassState& work) {
   for (int job = pass.first; job < pass.last && !setup.dark.empty(); ++job)
-    run.totals.add_dark(setup.dark[job - pass.low] * run.jobs.times[job]);
+    run.totals.add_dark(setup.dark[job - pass.low] * run.jobs.multiplicity[job]);
   work.search.max_intensity = run.first_limit;
   work.method = run.task.make(run.first_limit);
   if (!run.task.initial) return;
@@ -49,36 +49,36 @@ void begin(RunState& run, const Pass& pass, const PassSetup& setup, PassState& w
       pass, [&](int job) { return run.task.initial(run.jobs.slice(job)); }, setup.light.sharp());
 }
 
-bool iterate(RunState& run, const Pass& pass, const Faced& faced, PassState& work, Progress& progress) {
+bool iterate(RunState& run, const Pass& pass, const PassPrinters& printers, PassState& work, Progress& progress) {
   const VolumeTask& task = run.task;
-  const Problem& problem = faced.setup.problem;
-  const light::Operator& light = faced.setup.light.blurred();
+  const Problem& problem = printers.setup.problem;
+  const light::Operator& light = printers.setup.light.blurred();
   const Watch watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) {
     SliceFigures figures;
-    for (int job = pass.first; job < pass.last; ++job) figures.add(slices[job - pass.low], run.jobs.times[job]);
+    for (int job = pass.first; job < pass.last; ++job) figures.add(slices[job - pass.low], run.jobs.multiplicity[job]);
     show(run, pass, iteration, figures.mean(), progress);
     if (task.watch) run.totals.note(iteration, figures);
   };
   AtLimit at_limit;
   if (task.front) {
     at_limit = [&](double most) {
-      run.outcome.front.push_back(front_point(problem, light, most, work.state, faced.all(), task.front));
+      run.outcome.front.push_back(front_point(problem, light, most, work.state, printers.all(), task.front));
     };
   }
   Search& search = work.search;
   const Outcome outcome = run_shortest(*work.method, problem, light, limits_of(run, pass), task.raising, work.state,
-                                       search, watch, task.interruption.pause, at_limit);
+                                       search, watch, task.checkpoint.pause, at_limit);
   if (outcome.stop == StopReason::interrupted) return false;
-  const bool returned = outcome.stop != StopReason::goal && return_to_best(problem, light, search.standing, work.state);
+  const bool returned = outcome.stop != StopReason::goal && return_to_best(problem, light, search.run, work.state);
   if (returned) search.max_intensity = search.best_max_intensity;
-  search.standing.best_light = {};
+  search.run.best_light = {};
   run.totals.end(outcome);
   return true;
 }
 
-void finish(RunState& run, const Pass& pass, const Faced& faced, PassState& work) {
+void finish(RunState& run, const Pass& pass, const PassPrinters& printers, PassState& work) {
   const VolumeTask& task = run.task;
-  const Problem& problem = faced.setup.problem;
+  const Problem& problem = printers.setup.problem;
   const bool whole = run.jobs.division.whole;
   const double most = work.search.max_intensity;
   VolumeOutcome& outcome = run.outcome;
@@ -86,11 +86,11 @@ void finish(RunState& run, const Pass& pass, const Faced& faced, PassState& work
   outcome.least_ratio = std::max(outcome.least_ratio, work.method->provable_ratio());
   outcome.max_intensity = std::max(outcome.max_intensity, most);  // the brightest pass sets the duration
   Iterate& state = work.state;
-  if (task.certify > 0) outcome.certificate = certify(problem, faced.setup.light.blurred(), state.g, task.certify);
+  if (task.certify > 0) outcome.certificate = certify(problem, printers.setup.light.blurred(), state.g, task.certify);
   // Slices that share dose with other passes are to scale already, as is what is missing of a dose.
   if (run.jobs.division.halo == 0 && problem.delivered.empty()) {
-    bring_to_threshold(problem, faced.setup.light.sharp(), whole ? Together::pass : Together::slice, most, faced.all(),
-                       state);
+    bring_to_threshold(problem, printers.setup.light.sharp(), whole ? ExposureGroup::pass : ExposureGroup::slice, most,
+                       printers.all(), state);
   }
   if (whole) outcome.surface = work.method->surface_miss(state.dose);
   run.totals.add(state.dose, problem, pass, run.jobs, task.part);
@@ -106,7 +106,7 @@ void hand_out(const RunState& run, const Pass& pass, const light::Operator& ligh
     std::vector<Image> images = expand_slab(pass, s, work.state.g[s], light);
     work.state.g[s] = {};
     if (images.empty()) continue;
-    if (run.task.interruption.to != nullptr) keep_finished(*run.task.interruption.to, images);
+    if (run.task.checkpoint.to != nullptr) keep_finished(*run.task.checkpoint.to, images);
     outputs.take(std::move(images));
   }
 }

@@ -12,8 +12,8 @@
 
 namespace vam::optimize {
 
-/// What the dose of a preview may be off that of more iterations on voxels as large: as much as the judge of a print
-/// allows for [verdict::firm_dose].
+/// Relative error of a preview's dose against more iterations on voxels as large: the margin of the verdict
+/// [verdict::firm_dose].
 inline constexpr double unsure_dose = 0.02;
 
 struct PreviewTask {
@@ -33,7 +33,7 @@ struct Preview {
   Trials trials;
 };
 
-/// By --method auto, without the levels of coarser voxels before it. Throws as optimise() and run_trials() do.
+/// Optimises by --method auto, without the coarser levels before it. Throws as optimise() and run_trials() do.
 [[nodiscard]] Preview preview(const PreviewTask& task);
 
 }  // namespace vam::optimize

@@ -30,13 +30,13 @@ class Prolongation {
   [[nodiscard]] Image operator()(int k) const;
 
  private:
-  struct Between {  // coarse samples, and the second one's weight
+  struct SampleWeights {  // coarse samples, and the second one's weight
     int first = 0, second = 0;
     float weight = 0;
   };
-  static std::vector<Between> between(const Samples& from, const Samples& to, bool periodic);
+  static std::vector<SampleWeights> sample_weights(const Samples& from, const Samples& to, bool periodic);
   std::vector<Image> coarse_;
-  std::vector<Between> columns_, angles_, slices_;
+  std::vector<SampleWeights> columns_, angles_, slices_;
 };
 
 }  // namespace vam::optimize

@@ -35,13 +35,13 @@ bool reached(const std::vector<model::Condition>& until, const std::vector<model
 }
 
 /// Nothing has improved for `patience` iterations.
-bool lost_patience(Standing& standing, const Limits& limits, double merit_now, const std::vector<Slab>* kept) {
-  if (merit_now > standing.best + limits.least_gain) {
-    standing.best = merit_now;
-    standing.best_at = standing.iteration;
-    if (kept != nullptr) standing.best_light = *kept;
+bool lost_patience(IterationState& run, const Limits& limits, double merit_now, const std::vector<Slab>* kept) {
+  if (merit_now > run.best + limits.least_gain) {
+    run.best = merit_now;
+    run.best_at = run.iteration;
+    if (kept != nullptr) run.best_light = *kept;
   }
-  return limits.patience > 0 && standing.iteration - standing.best_at >= limits.patience;
+  return limits.patience > 0 && run.iteration - run.best_at >= limits.patience;
 }
 
 // Deviations of a true surface, in voxels: vam-sdf finds up to 0.06 more than the dose at the surface tells.
@@ -58,27 +58,27 @@ bool enough(const Method& method, const Limits& limits, const Iterate& state, in
 }
 
 /// Whether another iteration as long as the mean of those before it, and the rest, fit in.
-bool in_time(const std::optional<Deadline>& deadline, const Standing& standing) {
+bool in_time(const std::optional<Deadline>& deadline, const IterationState& run) {
   if (!deadline) return true;
   const double now_s = deadline->now_s();
-  const double each_s = (now_s - standing.began_s) / std::max(1, standing.iteration);
+  const double each_s = (now_s - run.began_s) / std::max(1, run.iteration);
   return now_s + (1 + deadline->rest_iterations) * each_s <= deadline->end_s;
 }
 
 /// Whether to stop at this iterate, and why.
 std::optional<StopReason> look(const Method& method, const Problem& problem, const light::Operator& light,
-                               const Limits& limits, const Iterate& state, Standing& standing, bool keeps,
+                               const Limits& limits, const Iterate& state, IterationState& run, bool keeps,
                                const Watch& watch) {
-  const bool last = standing.iteration == limits.iterations;
+  const bool last = run.iteration == limits.iterations;
   if (limits.watch_last || !last || keeps) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
-    if (watch) watch(standing.iteration, slices);
+    if (watch) watch(run.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
-    if (reached(limits.until, slices) && enough(method, limits, state, standing.iteration)) return StopReason::goal;
-    const bool lost = lost_patience(standing, limits, mean_merit(slices), keeps ? &state.g : nullptr);
+    if (reached(limits.until, slices) && enough(method, limits, state, run.iteration)) return StopReason::goal;
+    const bool lost = lost_patience(run, limits, mean_merit(slices), keeps ? &state.g : nullptr);
     if (!last && lost) return StopReason::no_progress;
   }
-  if (!last && !in_time(limits.deadline, standing)) return StopReason::time;
+  if (!last && !in_time(limits.deadline, run)) return StopReason::time;
   return last ? std::optional(StopReason::iterations) : std::nullopt;
 }
 
@@ -108,38 +108,38 @@ std::string reason_name(StopReason stop) {
 }
 
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                   Iterate& state, Standing& standing, const Watch& watch, const Pause& pause) {
-  bool looked = standing.iteration >= 0;
+                   Iterate& state, IterationState& run, const Watch& watch, const Pause& pause) {
+  bool looked = run.iteration >= 0;
   if (!looked) {
-    if (limits.deadline) standing.began_s = limits.deadline->now_s();
+    if (limits.deadline) run.began_s = limits.deadline->now_s();
     if (state.g.empty()) {
       method.start(problem, light, state);
     } else {
       method.resume(problem, light, state);
     }
-    standing.iteration = 0;
+    run.iteration = 0;
   }
   const bool keeps = limits.patience > 0 && limits.iterations > 1 && !method.asks_more(problem);
-  for (;; ++standing.iteration) {
-    const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, standing, keeps, watch);
-    if (stop) return {standing.iteration, *stop};
-    if (pause && pause()) return {standing.iteration, StopReason::interrupted};
+  for (;; ++run.iteration) {
+    const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, run, keeps, watch);
+    if (stop) return {run.iteration, *stop};
+    if (pause && pause()) return {run.iteration, StopReason::interrupted};
     method.step(problem, light, state);
     looked = false;
   }
 }
 
-bool return_to_best(const Problem& problem, const light::Operator& light, Standing& standing, Iterate& state) {
-  if (standing.best_light.empty() || standing.best_at == standing.iteration) return false;
-  state.g = std::move(standing.best_light);
+bool return_to_best(const Problem& problem, const light::Operator& light, IterationState& run, Iterate& state) {
+  if (run.best_light.empty() || run.best_at == run.iteration) return false;
+  state.g = std::move(run.best_light);
   find_dose(problem, light, state);
   return true;
 }
 
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& state) {
-  Standing standing;
-  return run_method(method, problem, light, limits, state, standing);
+  IterationState run;
+  return run_method(method, problem, light, limits, state, run);
 }
 
 }  // namespace vam::optimize

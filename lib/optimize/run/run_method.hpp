@@ -17,9 +17,9 @@ namespace vam::optimize {
 struct Deadline {
   std::function<double()> now_s;
   double end_s = 0;
-  double rest_iterations = 3;  // as long as so many takes what follows the last one
+  double rest_iterations = 3;  // duration of what follows the last one, in iterations
 
-  /// Of so much of the time that is left.
+  /// The deadline of a stage that may take this fraction of the time that is left.
   [[nodiscard]] Deadline share(double of) const;
 };
 
@@ -51,8 +51,8 @@ using Watch = std::function<void(int iteration, const std::vector<model::DoseMet
 /// Asked after every complete iterate whether to break off there.
 using Pause = std::function<bool()>;
 
-/// Where a run stands: after `iteration` complete steps, the best merit so far, when it was reached and by which light.
-struct Standing {
+/// State of a run after `iteration` complete steps: the best merit so far, its iteration and its light.
+struct IterationState {
   int iteration = -1;  // not begun
   double best = std::numeric_limits<double>::lowest();
   int best_at = 0;
@@ -64,10 +64,10 @@ struct Standing {
 /// more than the merit shows. When iterate.g is not empty it is where the method starts from; a run
 /// that has begun resumes from where it was interrupted (method and iterate as they were), as if it had not been.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                   Iterate& iterate, Standing& standing, const Watch& watch = {}, const Pause& pause = {});
+                   Iterate& iterate, IterationState& run, const Watch& watch = {}, const Pause& pause = {});
 /// The light of the best iterate and its dose take the place of the last one's; false where that is the best, or none
 /// was kept.
-bool return_to_best(const Problem& problem, const light::Operator& light, Standing& standing, Iterate& iterate);
+bool return_to_best(const Problem& problem, const light::Operator& light, IterationState& run, Iterate& iterate);
 /// From the start to the end.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate);

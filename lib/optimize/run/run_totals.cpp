@@ -36,7 +36,7 @@ void RunTotals::add(std::span<const Slab> dose, const Problem& problem, const Pa
   max_void_.resize(pass.last, -1);
   for (int job = pass.first; job < pass.last; ++job) {
     const int i = job - pass.low;
-    const int times = jobs.times[job];
+    const int times = jobs.multiplicity[job];
     if (times == 0) continue;
     const model::DoseMetrics figures = grey ? of_grey[i] : whole[i].metrics();
     total_.merge(whole[i], times);
@@ -52,7 +52,7 @@ void RunTotals::add(std::span<const Slab> dose, const Problem& problem, const Pa
 void RunTotals::add_outside(std::span<const Slab> dose, const Problem& problem, const Pass& pass, const Jobs& jobs,
                             const model::VoxelBox& part) {
   const OutsideSlices found = outside_part(dose, problem, part);
-  for (int k = jobs.asked.from; k < jobs.asked.to; ++k) {
+  for (int k = jobs.selection.from; k < jobs.selection.to; ++k) {
     const int job = jobs.schedule.job_of_slice[k];
     if (job < pass.first || job >= pass.last) continue;
     const bool beside = k >= part.low[2] && k <= part.high[2];
@@ -97,7 +97,7 @@ void RunTotals::complete(VolumeOutcome& outcome, bool grey, std::span<const int>
   if (!grey) outcome.outside = outside_;
   const auto of = [](const std::vector<double>& doses, int job) { return job < count_of(doses) ? doses[job] : -1; };
   for (const int job : job_of_slice) {
-    if (!grey) outcome.asked.push_back({.min_part = of(min_part_, job), .max_void = of(max_void_, job)});
+    if (!grey) outcome.demands.push_back({.min_part = of(min_part_, job), .max_void = of(max_void_, job)});
   }
   outcome.iterations = iterations_;
   outcome.stop = stop_;

@@ -6,10 +6,10 @@
 namespace vam::optimize {
 
 void Search::exchange(Archive& archive) {
-  archive(standing.iteration);
-  archive(standing.best);
-  archive(standing.best_at);
-  archive(standing.best_light);
+  archive(run.iteration);
+  archive(run.best);
+  archive(run.best_at);
+  archive(run.best_light);
   archive(max_intensity);
   archive(best_max_intensity);
   archive(until);
@@ -20,22 +20,22 @@ Outcome run_shortest(Method& method, const Problem& problem, const light::Operat
                      const AtLimit& at_limit) {
   if (raising.factor <= 0 || search.max_intensity <= 0) {
     search.best_max_intensity = search.max_intensity;
-    return run_method(method, problem, light, limits, state, search.standing, watch, pause);
+    return run_method(method, problem, light, limits, state, search.run, watch, pause);
   }
   if (search.until == 0) search.until = raising.first;
   for (;;) {
     Limits now = limits;
     now.iterations = std::min(limits.iterations, search.until);
-    const double best_before = search.standing.best;
-    Outcome outcome = run_method(method, problem, light, now, state, search.standing, watch, pause);
-    if (search.standing.best > best_before) search.best_max_intensity = search.max_intensity;
+    const double best_before = search.run.best;
+    Outcome outcome = run_method(method, problem, light, now, state, search.run, watch, pause);
+    if (search.run.best > best_before) search.best_max_intensity = search.max_intensity;
     const bool ended =
         outcome.stop == StopReason::goal || outcome.stop == StopReason::interrupted || outcome.stop == StopReason::time;
     if (at_limit && outcome.stop != StopReason::interrupted) at_limit(search.max_intensity);
     if (ended || outcome.iterations >= limits.iterations) return outcome;
     search.max_intensity *= raising.factor;
     search.until = outcome.iterations + raising.next;
-    search.standing.best_at = outcome.iterations;
+    search.run.best_at = outcome.iterations;
     method.allow(search.max_intensity);
   }
 }

@@ -30,11 +30,11 @@ inline constexpr int front_points = 8;
 /// Iterations that reach the last of them.
 inline constexpr int front_iterations = front_raising.first + (front_points - 1) * front_raising.next;
 
-/// Where a search stands.
+/// State of a search.
 struct Search {
-  Standing standing;
+  IterationState run;
   double max_intensity = 0;       // in force; 0: none
-  double best_max_intensity = 0;  // that was in force for standing.best_light
+  double best_max_intensity = 0;  // that was in force for run.best_light
   int until = 0;                  // the iteration up to which it is
   void exchange(Archive& archive);
 };

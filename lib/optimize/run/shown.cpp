@@ -17,7 +17,7 @@ namespace vam::optimize {
 
 namespace {
 
-/// Of slices: from 0 on, one image each; dark ones beyond.
+/// An image for each slice, from 0 on; dark ones beyond the last.
 class Frames {
  public:
   Frames(std::span<const Image> images, light::Shape shape) : images_(images), dark_(shape.width, shape.height) {}
@@ -28,7 +28,7 @@ class Frames {
   Image dark_;
 };
 
-/// What prints if the resin sets at that dose: figures, and voxels on the wrong side of it slice by slice.
+/// The print of a resin that sets at that dose: figures, and wrong voxels slice by slice.
 VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, const Frames& frames, double threshold) {
   const SliceReader reader(task.source, light.object());
   const Jobs jobs = every_slice(task.source.slices, division_of(task, light));
@@ -71,13 +71,13 @@ void judge_shown(const VolumeTask& task, const light::Operator& light, std::span
   outcome.outside = judged.outside;
   outcome.wrong = std::move(judged.wrong);
   outcome.pieces = judged.pieces;
-  outcome.asked = std::move(judged.asked);
+  outcome.demands = std::move(judged.demands);
   outcome.surface.reset();
   model::LightEfficiency seen;
   for (int k = 0; k < task.source.slices; ++k) {
     const std::vector<float>& values = shown[k].values;
     seen.add(values);
-    if (k < count_of(outcome.asked)) outcome.asked[k].peak = *std::max_element(values.begin(), values.end());
+    if (k < count_of(outcome.demands)) outcome.demands[k].peak = *std::max_element(values.begin(), values.end());
   }
   outcome.efficiency = seen.value();
   outcome.peak_intensity = seen.max;

@@ -43,9 +43,9 @@ float true_to_surface(const model::DoseMetrics& m, double threshold) {
   return static_cast<float>(std::clamp(1.0, lowest, highest));
 }
 
-PerSlice true_to_surface(const Problem& problem, Together together, const Iterate& state, PerSlice otherwise) {
+PerSlice true_to_surface(const Problem& problem, ExposureGroup group, const Iterate& state, PerSlice otherwise) {
   const double threshold = problem.demands.window.threshold();
-  const auto slices = together == Together::slice ? metrics(state.dose, problem) : std::vector<model::DoseMetrics>{};
+  const auto slices = group == ExposureGroup::slice ? metrics(state.dose, problem) : std::vector<model::DoseMetrics>{};
   const float shared = slices.empty() ? true_to_surface(body_metrics(state.dose, problem), threshold) : 0;
   for (int k = 0; k < problem.slices; ++k) {
     const float factor = slices.empty() ? shared : true_to_surface(slices[k], threshold);
@@ -54,10 +54,10 @@ PerSlice true_to_surface(const Problem& problem, Together together, const Iterat
   return otherwise;
 }
 
-void keep_below(double max_intensity, const light::Operator& light, Together together, const Iterate& state,
+void keep_below(double max_intensity, const light::Operator& light, ExposureGroup group, const Iterate& state,
                 PerSlice& factor) {
   PerSlice brightest = largest(state.g);
-  if (together == Together::pass) brightest = largest_of_all(brightest);
+  if (group == ExposureGroup::pass) brightest = largest_of_all(brightest);
   const auto most = static_cast<float>(max_intensity * light.row_angle_rad());
   for_slices(factor, [&](std::size_t s, std::size_t lane) {
     if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
@@ -66,15 +66,15 @@ void keep_below(double max_intensity, const light::Operator& light, Together tog
 
 }  // namespace
 
-void bring_to_threshold(const Problem& problem, const light::Operator& light, Together together, double max_intensity,
+void bring_to_threshold(const Problem& problem, const light::Operator& light, ExposureGroup group, double max_intensity,
                         const Scenarios* scenarios, Iterate& state) {
-  PerSlice factor = scenarios != nullptr         ? to_threshold_of_all(*scenarios, problem, state)
-                    : together == Together::pass ? to_shared_threshold(state.dose, problem)
-                                                 : to_common_threshold(metrics(state.dose, problem), problem);
+  PerSlice factor = scenarios != nullptr           ? to_threshold_of_all(*scenarios, problem, state)
+                    : group == ExposureGroup::pass ? to_shared_threshold(state.dose, problem)
+                                                   : to_common_threshold(metrics(state.dose, problem), problem);
   if (scenarios == nullptr && asks_surface(problem.demands)) {
-    factor = true_to_surface(problem, together, state, std::move(factor));
+    factor = true_to_surface(problem, group, state, std::move(factor));
   }
-  if (max_intensity > 0) keep_below(max_intensity, light, together, state, factor);
+  if (max_intensity > 0) keep_below(max_intensity, light, group, state, factor);
   scale(state.g, factor);
   scale(state.dose, factor);
 }

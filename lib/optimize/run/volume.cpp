@@ -58,7 +58,7 @@ void exchange_open(Archive& archive, RunState& run, PassState& work) {
 
 /// Without a result; the state is kept where it is wanted.
 VolumeOutcome interrupted(RunState& run, PassState& work) {
-  if (Archive* to = run.task.interruption.to) {
+  if (Archive* to = run.task.checkpoint.to) {
     begin_open(*to);
     exchange_open(*to, run, work);
   }
@@ -68,7 +68,7 @@ VolumeOutcome interrupted(RunState& run, PassState& work) {
 }
 
 RunMark mark_of(const VolumeTask& task, std::span<const SliceDigest> digests) {
-  RunMark mark{task.interruption.job, {}, task.watch};
+  RunMark mark{task.checkpoint.job, {}, task.watch};
   for (const SliceDigest& slice : digests) {
     mark.target = {mark.target[0] * 31 + slice[0], mark.target[1] * 31 + slice[1]};
   }
@@ -78,8 +78,8 @@ RunMark mark_of(const VolumeTask& task, std::span<const SliceDigest> digests) {
 /// From the start, or from the state of an interrupted run: finished passes are handed on as if they had just been
 /// computed, the open one is taken up.
 void start(RunState& run, const RunMark& mark, OutputQueue& outputs, PassState& work) {
-  Archive* to = run.task.interruption.to;
-  Archive* from = run.task.interruption.from;
+  Archive* to = run.task.checkpoint.to;
+  Archive* from = run.task.checkpoint.from;
   if (to != nullptr) exchange(*to, mark);
   if (from == nullptr) return limit_intensity(run);
   exchange(*from, mark);
@@ -94,10 +94,10 @@ void start(RunState& run, const RunMark& mark, OutputQueue& outputs, PassState& 
 VolumeOutcome complete(RunState& run, const OutputQueue& outputs) {
   VolumeOutcome& outcome = run.outcome;
   run.totals.complete(outcome, run.task.demands.grey, run.jobs.schedule.job_of_slice);
-  for (std::size_t k = 0; k < outcome.asked.size(); ++k) {
-    outcome.asked[k].peak = static_cast<double>(outputs.peaks()[k]);
+  for (std::size_t k = 0; k < outcome.demands.size(); ++k) {
+    outcome.demands[k].peak = static_cast<double>(outputs.peaks()[k]);
   }
-  const std::vector<int>& times = run.jobs.times;
+  const std::vector<int>& times = run.jobs.multiplicity;
   outcome.jobs = static_cast<int>(std::count_if(times.begin(), times.end(), [](int n) { return n > 0; }));
   outcome.efficiency = outputs.efficiency();
   outcome.peak_intensity = outputs.peak();
@@ -133,13 +133,13 @@ VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
   Progress progress(task.title, 0);
   while (const Pass* open = outputs.open()) {
     const Pass pass = *open;
-    Faced faced{set_up(task, light, reader, pass, [&](int job) { return jobs.slice(job); })};
-    const PassSetup& setup = faced.setup;
-    if (task.scenarios) faced.scenarios.emplace(setup.light.sharp(), task.scenarios(setup.inserts), pass.slices());
+    PassPrinters printers{set_up(task, light, reader, pass, [&](int job) { return jobs.slice(job); })};
+    const PassSetup& setup = printers.setup;
+    if (task.scenarios) printers.scenarios.emplace(setup.light.sharp(), task.scenarios(setup.inserts), pass.slices());
     if (!work.method) begin(run, pass, setup, work);
-    if (faced.scenarios) work.method->face(*faced.scenarios);
-    if (!iterate(run, pass, faced, work, progress)) return interrupted(run, work);
-    finish(run, pass, faced, work);
+    if (printers.scenarios) work.method->set_scenarios(*printers.scenarios);
+    if (!iterate(run, pass, printers, work, progress)) return interrupted(run, work);
+    finish(run, pass, printers, work);
     hand_out(run, pass, setup.light.sharp(), std::exchange(work, {}), outputs);
   }
   if (pieces) run.outcome.pieces = pieces->found();

@@ -14,9 +14,9 @@
 #include "model/dose/outside.hpp"
 #include "model/piece.hpp"
 #include "optimize/run/certify.hpp"
+#include "optimize/run/checkpoint_state.hpp"
 #include "optimize/run/even_dose.hpp"
 #include "optimize/run/front.hpp"
-#include "optimize/run/interruption.hpp"
 #include "optimize/run/shortest.hpp"
 #include "optimize/target/slice_reader.hpp"
 #include "verdict/print_pieces.hpp"
@@ -56,7 +56,7 @@ struct VolumeTask {
   std::function<void(int k, const Image& image)> write;  // takes the slices in order: columns x angles, fluence
   int certify = 0;  // iterations that prove how good any light could be, after the work; 0: no proof
   Show front;       // fills the outcome's front while the limit is raised; empty: none
-  Interruption interruption;
+  CheckpointState checkpoint;
 
   [[nodiscard]] bool counts_pieces() const { return count_pieces && !demands.grey && !slices; }
 };
@@ -79,7 +79,7 @@ struct VolumeOutcome {
   std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
   std::optional<verdict::PrintPieces> pieces;  // when asked for; none of a grey target, nor of a part of the slices
-  std::vector<SliceDemand> asked;              // by each slice; empty of a grey target
+  std::vector<SliceDemand> demands;            // by each slice; empty of a grey target
   std::optional<SurfaceMiss> surface;          // where slices share light
   double eigenvalue = 0;                       // Method::eigenvalue() of the last pass
   double least_ratio = 0;                      // Method::provable_ratio(), the largest of all passes

@@ -20,7 +20,7 @@ bool has_part(const std::vector<Label>& labels, std::size_t lane) {
   return false;
 }
 
-void settle_thin(Problem& problem, int slice) {
+void resolve_thin_slice(Problem& problem, int slice) {
   constexpr float half = 0.5F;
   const auto s = static_cast<std::size_t>(slice / lanes);
   const auto lane = static_cast<std::size_t>(slice % lanes);
@@ -76,7 +76,7 @@ void free_weightless(Slab& weight, std::vector<Label>& labels) {
 }
 
 /// From slice `first` on.
-void settle(Problem& problem, int first) {
+void resolve_thin_slices(Problem& problem, int first) {
   if (problem.demands.grey) return;
   std::vector<char> whole(static_cast<std::size_t>(problem.slices) + 1, 0);
   parallel_for(problem.slices - first, [&](int n) {
@@ -88,13 +88,13 @@ void settle(Problem& problem, int first) {
     const int k = first + n;
     const bool is_end = ends_are_known && (whole[k + 1] != 0 || (k > 0 && whole[k - 1] != 0));
     if (whole[k] != 0 || is_end) return;
-    settle_thin(problem, k);
+    resolve_thin_slice(problem, k);
   });
 }
 
 }  // namespace
 
-void settle(Problem& problem) { settle(problem, 0); }
+void resolve_thin_slices(Problem& problem) { resolve_thin_slices(problem, 0); }
 
 void add_delivered(const Problem& problem, std::span<Slab> dose) {
   if (problem.delivered.empty()) return;
@@ -120,7 +120,7 @@ void append(Problem& problem, const Slices& slices, int count, int width, int he
   problem.gain.resize(problem.slices, 1.0F);
   problem.target.push_back(packed(slices.target));
   problem.labels.push_back(labelled(problem.target.back(), count, circle, problem.demands));
-  if (!problem.stacked) settle(problem, problem.slices - count);
+  if (!problem.stacked) resolve_thin_slices(problem, problem.slices - count);
   if (slices.weight != nullptr) {
     problem.weight.push_back(packed(slices.weight));
     free_weightless(problem.weight.back(), problem.labels.back());

@@ -59,12 +59,12 @@ struct Problem {
   std::vector<Slab> weight;      // what an error of this voxel costs, the largest of a slice 1; empty: all 1
   std::vector<Slab> tolerance;   // epsilon of this voxel; empty: demands.band
   std::vector<Slab> delivered;   // dose that this voxel has received already; empty: none
-  std::vector<float> gain = {};  // of each slice's target, by settle(): not 1 of a thin slice; empty: none is thin
+  std::vector<float> gain = {};  // of each slice's target: not 1 of a thin slice [resolve_thin_slices]; empty: none is
 
   [[nodiscard]] float weight_at(std::size_t s, std::size_t i) const {
     return weight.empty() ? 1.0F : weight[s].values[i];
   }
-  /// Of a slice that was scaled because no voxel of it is wholly inside the part.
+  /// Whether the voxel's slice was scaled because no voxel of it is wholly inside the part.
   [[nodiscard]] bool is_thin(std::size_t s, std::size_t i) const {
     return !gain.empty() && gain[s * lanes + i % lanes] != 1.0F;
   }
@@ -82,14 +82,14 @@ struct Slices {
 };
 
 /// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out. Slices that are not
-/// stacked are settled.
+/// stacked are resolved.
 void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle);
 
 /// A slice without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the part: if its
 /// largest coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at least half of it
 /// for part; otherwise it stays dark. Where slices are stacked and the dose at the surface is prescribed, the slice
 /// beside one with such voxels is left as it is: its surface says where the part ends.
-void settle(Problem& problem);
+void resolve_thin_slices(Problem& problem);
 
 /// Adds what was delivered already to the dose of light.
 void add_delivered(const Problem& problem, std::span<Slab> dose);

@@ -15,7 +15,7 @@ namespace {
 
 using model::Circle;
 
-/// What the checks want to know of one slice.
+/// Findings of the checks in one slice.
 struct Findings {
   SliceDigest digest{};
   double reach = -1;  // of the part from the axis, voxels

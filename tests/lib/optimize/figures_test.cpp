@@ -70,9 +70,9 @@ TEST_CASE("passes without a slice that is asked for are left out") {
   REQUIRE(jobs.passes.size() == 2);
   check_pass(jobs.passes[0], 64, 128, 64, 128);
   check_pass(jobs.passes[1], 128, 192, 128, 192);
-  CHECK(std::count(jobs.times.begin(), jobs.times.end(), 1) == 60);
-  CHECK(jobs.times[69] == 0);
-  CHECK(jobs.times[129] == 1);
+  CHECK(std::count(jobs.multiplicity.begin(), jobs.multiplicity.end(), 1) == 60);
+  CHECK(jobs.multiplicity[69] == 0);
+  CHECK(jobs.multiplicity[129] == 1);
 }
 
 TEST_CASE("a slice like one not long ago shares its job") {

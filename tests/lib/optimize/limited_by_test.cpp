@@ -40,7 +40,7 @@ TEST_CASE("a slice that needs more light than the others is found, whichever sli
   const auto easy = vam::oracle::wheel(size);
   const auto hard = vam::oracle::resolution_target(size);
   const auto result = run({easy, easy, hard, easy});
-  const auto& asked = result.outcome.asked;
+  const auto& asked = result.outcome.demands;
   REQUIRE(asked.size() == 4);
   for (std::size_t k = 0; k < asked.size(); ++k) {
     const auto& values = result.images[k].values;

@@ -56,7 +56,7 @@ inline vam::optimize::Problem make_problem(const float* slices, int count, int w
     append(problem, {from(slices, first), from(weight, first), from(tolerance, first)},
            std::min(vam::lanes, count - first), width, height, circle);
   }
-  if (stacked) settle(problem);
+  if (stacked) resolve_thin_slices(problem);
   return problem;
 }
 

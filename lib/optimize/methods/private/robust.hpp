@@ -9,8 +9,8 @@
 namespace vam::optimize {
 
 /// apg on the mean loss of the printer as set and of scenarios [physics §6]: first steps in the nominal light alone,
-/// then steps on the nominal's and a pair's exact gradients, another pair each time. Needs face() before the first
-/// step.
+/// then steps on the nominal's and a pair's exact gradients, another pair each time. Needs set_scenarios() before the
+/// first step.
 [[nodiscard]] std::unique_ptr<Method> make_robust(const MethodOptions& options);
 
 }  // namespace vam::optimize

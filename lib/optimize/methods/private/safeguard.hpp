@@ -12,7 +12,7 @@ namespace vam::optimize {
 /// those that went back, 0 for the others.
 PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerSlice& loss_now);
 
-/// Where light couples slices: the sum of all, for each; else unchanged.
+/// For each slice the sum over all, if light couples slices; else unchanged.
 [[nodiscard]] PerSlice pooled(PerSlice values, const light::Operator& light);
 /// The same with the largest.
 [[nodiscard]] PerSlice largest_pooled(PerSlice values, const light::Operator& light);

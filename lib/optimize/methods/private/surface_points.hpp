@@ -47,7 +47,7 @@ class SurfacePoints {
   [[nodiscard]] PerSlice losses(std::span<const float> misses, std::size_t slabs) const;
   /// Adds `share` of the derivatives of these losses by the doses: the transpose of misses().
   void add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share = 1) const;
-  /// By the doses of the two voxels, linear between them; points count by the area that they stand for.
+  /// Errors of the dose, linear between the two voxels; points are weighted by the area that they represent.
   [[nodiscard]] SurfaceMiss miss(std::span<const Slab> dose) const;
   [[nodiscard]] const std::vector<SurfacePoint>& points() const { return points_; }
 

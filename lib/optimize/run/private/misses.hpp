@@ -13,7 +13,7 @@
 
 namespace vam::optimize {
 
-/// Of each slice in use: its void voxels if it lies above or below the box, and those beside the box if it does not.
+/// For each slice in use: all its void voxels, if it lies above or below the box; else those beside the box.
 struct OutsideSlices {
   std::vector<model::Outside> whole, beside;
 };
@@ -26,7 +26,7 @@ struct OutsideSlices {
 /// `count` slices of a slab of doses from lane `first` on, row-major, 0 outside the circle and where inserts are.
 [[nodiscard]] std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int first, int count);
 
-/// Of a whole part: its pieces and those of its print at the threshold. Not of a grey target.
+/// Pieces of a whole part, and of its print at the threshold. Not for a grey target.
 [[nodiscard]] verdict::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem,
                                                 const VolumeSource& source);
 

@@ -13,7 +13,7 @@
 
 namespace vam::optimize {
 
-/// Keeps the projections of a job until the last slice that it stands for has been written.
+/// Keeps the projections of a job until its last slice has been written.
 class OutputQueue {
  public:
   using Write = std::function<void(int k, const Image& image)>;  // takes the slices asked for, in order
@@ -32,10 +32,10 @@ class OutputQueue {
   /// The projections of its next jobs; every slice whose turn has come is written. Throws Fault::data for values that
   /// are not finite.
   void take(std::vector<Image> images);
-  /// Of all that has been written.
+  /// Efficiency and peak of all that has been written.
   [[nodiscard]] double efficiency() const { return efficiency_.value(); }
   [[nodiscard]] double peak() const { return efficiency_.max; }
-  /// Of each slice; 0 of those not asked for.
+  /// Peak of each slice; 0 of those that are not selected.
   [[nodiscard]] const std::vector<float>& peaks() const { return peaks_; }
 
  private:

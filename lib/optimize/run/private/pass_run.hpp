@@ -14,7 +14,7 @@
 
 namespace vam::optimize {
 
-/// What passes leave behind, beside their projections.
+/// State that passes hand on, beside their projections.
 struct RunState {
   const VolumeTask& task;
   const light::Operator& light;
@@ -31,8 +31,8 @@ struct PassState {
   std::unique_ptr<Method> method;  // null: it has not begun
 };
 
-/// What a pass is optimised for: the printer as set, and those off their settings, if any.
-struct Faced {
+/// The printers that a pass is optimised for: the nominal one, and those that deviate from it, if any.
+struct PassPrinters {
   PassSetup setup;
   std::optional<Scenarios> scenarios = {};
 
@@ -42,10 +42,11 @@ struct Faced {
 /// The method and the light that the pass starts from. Its part in the shadow of inserts is counted.
 void begin(RunState& run, const Pass& pass, const PassSetup& setup, PassState& work);
 /// The iterations of a pass, up to its best light; false when it was interrupted.
-[[nodiscard]] bool iterate(RunState& run, const Pass& pass, const Faced& faced, PassState& work, Progress& progress);
-/// What the finished pass adds to the outcome. Its light is brought to the threshold.
-void finish(RunState& run, const Pass& pass, const Faced& faced, PassState& work);
-/// Slab by slab: images are several times as large as the light in them, and take the memory of dose and method.
+[[nodiscard]] bool iterate(RunState& run, const Pass& pass, const PassPrinters& printers, PassState& work,
+                           Progress& progress);
+/// Adds the finished pass to the outcome. Its light is scaled to the threshold.
+void finish(RunState& run, const Pass& pass, const PassPrinters& printers, PassState& work);
+/// Writes slab by slab: images are several times as large as the light in them, and take the memory of dose and method.
 void hand_out(const RunState& run, const Pass& pass, const light::Operator& light, PassState work,
               OutputQueue& outputs);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a pass is optimised and judged with: its problem, and its light, one operator around the other.
+// Problem and light of a pass, one operator around the other.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class PassLight {
 
   /// Its rows are the iterate's: fewer than the image's where half a turn is enough.
   [[nodiscard]] const light::Operator& sharp() const { return sharp_; }
-  /// What the dose is optimised with.
+  /// The operator of the optimisation.
   [[nodiscard]] const light::Operator& blurred() const { return blurred_ ? *blurred_ : sharp_; }
 
  private:

@@ -14,7 +14,7 @@ namespace vam::optimize {
 
 class RunTotals {
  public:
-  /// Figures of one pass after so many iterations.
+  /// Figures of one pass after this number of iterations.
   void note(int iteration, const SliceFigures& figures);
   /// A pass has ended with the figures it noted last.
   void end(const Outcome& outcome);

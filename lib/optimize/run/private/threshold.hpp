@@ -7,14 +7,14 @@
 
 namespace vam::optimize {
 
-/// Who must print at one exposure.
-enum class Together { slice, pass };
+/// Slices that print at one exposure: each by itself, or all of a pass.
+enum class ExposureGroup { slice, pass };
 
 /// Scales a pass, slice by slice or as one, so that the threshold lies in the middle of its process window, or, where
 /// it is asked for on the surface, no more than puts it in the middle half; with scenarios, in the middle between the
 /// largest void and the least part dose of any of them or of the nominal light. No light exceeds max_intensity (0: no
 /// limit).
-void bring_to_threshold(const Problem& problem, const light::Operator& light, Together together, double max_intensity,
+void bring_to_threshold(const Problem& problem, const light::Operator& light, ExposureGroup group, double max_intensity,
                         const Scenarios* scenarios, Iterate& state);
 
 /// Doses of the nominal light, state.dose, and of every scenario's.

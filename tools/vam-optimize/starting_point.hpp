@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the iteration begins: at a checkpoint, at projections that are given, or at those of coarser voxels.
+// The starting point of the iteration: a checkpoint, given projections, or those of coarser voxels.
 #pragma once
 
 #include <map>
@@ -43,7 +43,7 @@ class Checkpoint {
   Checkpoint& operator=(const Checkpoint&) = delete;
 
   /// For the task, as long as this lives; the signals must be noted (device::interruptible).
-  [[nodiscard]] optimize::Interruption interruption(const std::string& job);
+  [[nodiscard]] optimize::CheckpointState state(const std::string& job);
   /// The state appears under its name.
   void keep() { out_.commit(); }
   /// The run is complete; the state it resumed from is removed.
@@ -58,10 +58,11 @@ class Checkpoint {
   optimize::Archive to_;
 };
 
-class Beginning {
+class StartingPoint {
  public:
   /// Opens --checkpoint and --init. Throws Error: no_input, no_output, data.
-  Beginning(const cli::App& app, const model::Printer& printer, const model::StackInfo& info, const Options& options);
+  StartingPoint(const cli::App& app, const model::Printer& printer, const model::StackInfo& info,
+                const Options& options);
   /// The task starts there and refers to this. Without --init the coarser levels are solved, which takes time: call it
   /// after all that may refuse the task, and ask device::interrupted() then. A checkpoint has the iterate of the pass
   /// that was interrupted; where passes may follow, these start from the coarser levels, too.
@@ -78,7 +79,7 @@ class Beginning {
   int count_, width_, height_;  // of the projections
   std::optional<Initial> initial_;
   std::optional<Checkpoint> checkpoint_;
-  optimize::Interruption interruption_;
+  optimize::CheckpointState state_;
 };
 
 }  // namespace vam::optimize_tool

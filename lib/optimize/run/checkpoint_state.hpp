@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a run is interrupted and resumes: the projections of finished passes, one record each, then the open pass.
+// The saved state of a run: the projections of finished passes, one record each, then the open pass.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@
 
 namespace vam::optimize {
 
-/// State to save and to resume from; useless after a run that finished.
-struct Interruption {
+/// Where a run saves its state, and resumes from; of no use after a run that finished.
+struct CheckpointState {
   Pause pause;              // may be empty
   Archive* to = nullptr;    // where the state goes; none: nothing is kept
   Archive* from = nullptr;  // the state to go on from; none: from the start

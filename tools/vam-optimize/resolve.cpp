@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What follows from the options of vam-optimize.
+// Resolves the options of vam-optimize: defaults, and values that follow from others.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -25,7 +25,7 @@ namespace {
 
 /// auto is the best method, stopped when the part prints with a margin unless the user sets a stopping criterion; the
 /// shortest print is always one that meets a goal.
-void settle_auto(const cli::App& app, Options& options) {
+void resolve_auto(const cli::App& app, Options& options) {
   if (options.method != "auto") return;
   options.method = optimize::automatic_method;
   const bool still = options.poses.empty() && !options.helix_mm && options.wobble_record.empty();
@@ -37,7 +37,7 @@ void settle_auto(const cli::App& app, Options& options) {
   options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
 }
 
-/// Takes the clause that stands for the records out of --robust.
+/// Parses --robust; its clause `calibration` means the records.
 model::Tolerances named_tolerances(Options& options) {
   std::vector<std::string> clauses;
   for (const std::string& clause : split(options.robust, ',')) {
@@ -52,7 +52,7 @@ model::Tolerances named_tolerances(Options& options) {
 }
 
 /// Tolerances are met by iterations that nothing but --until and --patience stops, if given.
-void settle_tolerances(const cli::App& app, Options& options) {
+void resolve_tolerances(const cli::App& app, Options& options) {
   if (options.robust.empty()) return;
   try {
     options.printer_tolerances = named_tolerances(options);
@@ -63,7 +63,7 @@ void settle_tolerances(const cli::App& app, Options& options) {
 }
 
 /// The front is that of rising limits, whatever the print is at each.
-void settle_tradeoff(Options& options) {
+void resolve_tradeoff(Options& options) {
   if (plot::is_figure(options.tradeoff)) plot::require_figures();
   options.until.clear();
   options.raising = optimize::front_raising;
@@ -72,8 +72,8 @@ void settle_tradeoff(Options& options) {
   options.limits.patience = 0;
 }
 
-/// Where the user gives no limit, there is a low one, which is raised while the part does not print.
-void settle_raising(const cli::App& app, Options& options) {
+/// Without a limit of the user's a low one is raised until the part prints.
+void resolve_raising(const cli::App& app, Options& options) {
   if (options.shortest && options.until.empty()) options.until = optimize::automatic_until;
   if (options.limit.of_even <= 0 || options.until.empty()) return;
   options.raising = options.shortest ? optimize::shortest_raising : optimize::usual_raising;
@@ -82,8 +82,8 @@ void settle_raising(const cli::App& app, Options& options) {
   if (!app.given("--iterations")) options.limits.iterations = 4 * options.limits.iterations;
 }
 
-/// What follows the last iteration, in iterations: scaling, counting and writing; judging the frames as they are shown
-/// and on other printers; the proof.
+/// Duration of what follows the last iteration, in iterations: scaling, counting and writing; judging the frames as
+/// they are shown and on other printers; the proof.
 double rest_iterations(const Options& options) {
   double rest = 3;
   if (options.bits) rest += 3;
@@ -99,7 +99,7 @@ optimize::Deadline deadline_of(const Options& options) {
   return {now_s, *options.budget_s, rest_iterations(options)};
 }
 
-void settle_limit(Options& options, const optimize::MethodEntry& method) {
+void resolve_limit(Options& options, const optimize::MethodEntry& method) {
   const bool reads = optimize::reads(method, "--max-intensity");
   if (options.turns) return;  // with the printer
   if (options.max_intensity) {
@@ -111,15 +111,15 @@ void settle_limit(Options& options, const optimize::MethodEntry& method) {
 
 }  // namespace
 
-void settle(const cli::App& app, const model::Printer& printer, Options& options) {
+void resolve(const cli::App& app, const model::Printer& printer, Options& options) {
   static_cast<model::OptimizeSettings&>(options) = printer.optimize;
   if (options.in_vial() || !options.certify.empty()) options.line_integrals = "footprints";  // which prove bounds, too
   if (options.in_vial() && options.absorption_model == "disc") options.absorption_model = "exact";
-  settle_auto(app, options);
+  resolve_auto(app, options);
   const optimize::MethodEntry& method = optimize::method_entry(options.method);
   optimize::check(options.demands);
   if (!options.slices.empty()) (void)session::slices_named(options.slices);
-  settle_tolerances(app, options);
+  resolve_tolerances(app, options);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.demands.void_below = options.void_rule == "below";
   options.demands.surface = options.surface == "voxels";
@@ -128,16 +128,16 @@ void settle(const cli::App& app, const model::Printer& printer, Options& options
   options.how.void_dose = options.void_dose;
   options.how.min_intensity = options.min_intensity;
   options.how.power = options.power;
-  settle_limit(options, method);
+  resolve_limit(options, method);
   options.limits.iterations = options.iterations.value_or(method.iterations);
   if (options.budget_s) options.limits.deadline = deadline_of(options);
-  options.tradeoff.empty() ? settle_raising(app, options) : settle_tradeoff(options);
+  options.tradeoff.empty() ? resolve_raising(app, options) : resolve_tradeoff(options);
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
   }
 }
 
-void settle_recorded(const model::Printer& printer, Options& options) {
+void resolve_recorded(const model::Printer& printer, Options& options) {
   if (!options.recorded_tolerances) return;
   model::Tolerances& all = *options.printer_tolerances;
   try {
@@ -167,7 +167,7 @@ optimize::CureCurve read_curve(const std::string& path) {
 }
 
 /// LOW and HIGH are the doses whose responses differ from liquid and cured by the band.
-void settle_window(const cli::App& app, const std::string& path, optimize::Demands& demands) {
+void resolve_window(const cli::App& app, const std::string& path, optimize::Demands& demands) {
   const auto band = static_cast<float>(demands.band);
   const double low = static_cast<double>(demands.curve.doses(0, band).high);
   const double high = static_cast<double>(demands.curve.doses(1, band).low);
@@ -182,13 +182,13 @@ void settle_window(const cli::App& app, const std::string& path, optimize::Deman
 
 }  // namespace
 
-void settle_angles(const cli::App& app, Options& options) {
+void resolve_angles(const cli::App& app, Options& options) {
   if (app.given("--angles") || options.init.empty() || options.init == "-") return;
   const double step_deg = std::abs(io::StackReader(options.init).info().angle_step_deg);
   if (step_deg > 0) options.angles = round_int(360 / step_deg);
 }
 
-void settle_response(const cli::App& app, Options& options) {
+void resolve_response(const cli::App& app, Options& options) {
   optimize::Demands& demands = options.demands;
   const optimize::DoseWindow& window = demands.window;
   if (options.response == "linear") {
@@ -205,7 +205,7 @@ void settle_response(const cli::App& app, Options& options) {
                                        " and no file" + did_you_mean(options.response, names)};
     }
     demands.curve = read_curve(options.response);
-    if (!demands.grey) settle_window(app, options.response, demands);
+    if (!demands.grey) resolve_window(app, options.response, demands);
   }
 }
 

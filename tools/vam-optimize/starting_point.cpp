@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-optimize/beginning.hpp"
+#include "vam-optimize/starting_point.hpp"
 
 #include <filesystem>
 #include <utility>
@@ -61,11 +61,11 @@ Image Initial::operator()(int k) {
 Checkpoint::Checkpoint(const std::string& path)
     : path_(regular(path)),
       out_(path),
-      to_(optimize::Archive::Way::out, path, [this](void* bytes, std::size_t size) { out_.write(bytes, size); }) {
+      to_(optimize::Archive::Direction::out, path, [this](void* bytes, std::size_t size) { out_.write(bytes, size); }) {
   if (!std::filesystem::exists(path)) return;
   in_.emplace(path);
   from_.emplace(
-      optimize::Archive::Way::in, path, [this](void* bytes, std::size_t size) { take(bytes, size); },
+      optimize::Archive::Direction::in, path, [this](void* bytes, std::size_t size) { take(bytes, size); },
       [this] { return in_->at_end(); });
 }
 
@@ -76,7 +76,7 @@ void Checkpoint::take(void* bytes, std::size_t size) {
                                " bytes, which is incomplete; remove it and start again"};
 }
 
-optimize::Interruption Checkpoint::interruption(const std::string& job) {
+optimize::CheckpointState Checkpoint::state(const std::string& job) {
   return {device::interrupted, &to_, from_ ? &*from_ : nullptr, job};
 }
 
@@ -84,20 +84,20 @@ void Checkpoint::remove() const {
   if (in_) std::filesystem::remove(path_);
 }
 
-Beginning::Beginning(const cli::App& app, const model::Printer& printer, const model::StackInfo& info,
-                     const Options& options)
+StartingPoint::StartingPoint(const cli::App& app, const model::Printer& printer, const model::StackInfo& info,
+                             const Options& options)
     : count_(info.count), width_(info.width), height_(info.height) {
   if (!options.init.empty()) initial_.emplace(options.init, info);
   if (options.checkpoint.empty()) return;
   checkpoint_.emplace(options.checkpoint);
-  interruption_ = checkpoint_->interruption(job_of(app, printer, options));
+  state_ = checkpoint_->state(job_of(app, printer, options));
 }
 
-void Beginning::begin(optimize::VolumeTask& task, const session::JobVolumes& in, const session::Scene& scene,
-                      const light::Operator& light, Options& options) {
+void StartingPoint::begin(optimize::VolumeTask& task, const session::JobVolumes& in, const session::Scene& scene,
+                          const light::Operator& light, Options& options) {
   if (initial_) task.initial = [this](int k) { return k < count_ ? (*initial_)(k) : Image(width_, height_); };
-  task.interruption = interruption_;
-  if (interruption_.from != nullptr && light.couples_slices()) return;  // there is one pass
+  task.checkpoint = state_;
+  if (state_.from != nullptr && light.couples_slices()) return;  // there is one pass
   if (auto start = coarse_start(in, scene, options)) continue_from(std::move(*start), task, options);
 }
 

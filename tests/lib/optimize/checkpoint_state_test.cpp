@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optimize/run/interruption.hpp"
+#include "optimize/run/checkpoint_state.hpp"
 
 #include <cstring>
 
@@ -30,16 +30,16 @@ Broken run_in_pieces(const std::vector<std::vector<float>>& slices, const Volume
   for (;;) {
     std::string next;
     std::size_t read = 0;
-    Archive to(Archive::Way::out, "state",
+    Archive to(Archive::Direction::out, "state",
                [&](void* bytes, std::size_t n) { next.append(static_cast<const char*>(bytes), n); });
-    Archive from(Archive::Way::in, "state", [&](void* bytes, std::size_t n) {
+    Archive from(Archive::Direction::in, "state", [&](void* bytes, std::size_t n) {
       REQUIRE(read + n <= broken.state.size());
       std::copy_n(broken.state.data() + read, n, static_cast<char*>(bytes));
       read += n;
     });
     int left = steps;
     VolumeTask piece = task;
-    piece.interruption = {[&] { return left-- == 0; }, &to, broken.times > 0 ? &from : nullptr, "job"};
+    piece.checkpoint = {[&] { return left-- == 0; }, &to, broken.times > 0 ? &from : nullptr, "job"};
     broken.result = run(slices, piece);
     if (broken.result.outcome.stop != StopReason::interrupted) return broken;
     broken.state = next;
@@ -220,19 +220,19 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
   task.limits.iterations = 5;
   task.make = [](double) { return make_method("apg", {}); };
   std::string state;
-  Archive to(Archive::Way::out, "state",
+  Archive to(Archive::Direction::out, "state",
              [&](void* bytes, std::size_t n) { state.append(static_cast<const char*>(bytes), n); });
-  task.interruption = {[] { return true; }, &to, nullptr, "job"};
+  task.checkpoint = {[] { return true; }, &to, nullptr, "job"};
   REQUIRE(run(slices, task).outcome.stop == StopReason::interrupted);
   const auto resume = [&](const std::string& bytes, const std::string& job) {
     std::size_t read = 0;
-    Archive from(Archive::Way::in, "x.state", [&](void* to_, std::size_t n) {
+    Archive from(Archive::Direction::in, "x.state", [&](void* to_, std::size_t n) {
       if (read + n > bytes.size()) throw vam::Error{vam::Fault::data, "x.state: ends early"};
       std::copy_n(bytes.data() + read, n, static_cast<char*>(to_));
       read += n;
     });
     VolumeTask again = task;
-    again.interruption = {{}, nullptr, &from, job};
+    again.checkpoint = {{}, nullptr, &from, job};
     return run(slices, again);
   };
   CHECK(resume(state, "job").outcome.stop != StopReason::interrupted);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optimize/run/interruption.hpp"
+#include "optimize/run/checkpoint_state.hpp"
 
 #include "base/error.hpp"
 #include "base/index.hpp"
