@@ -177,7 +177,7 @@ App& App::default_is(const std::string& text) {
 }
 
 App& App::when_left_out(const std::string& number) {
-  state_->current_group().options.back().left_out = number;
+  state_->current_group().options.back().implicit = number;
   return *this;
 }
 

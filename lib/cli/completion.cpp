@@ -3,8 +3,8 @@
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"
+#include "cli/private/command_line.hpp"
 #include "cli/private/declaration.hpp"
-#include "cli/private/words.hpp"
 
 namespace vam::cli {
 
@@ -23,7 +23,7 @@ std::vector<const Option*> own_options(const Declaration& tool) {
 
 std::vector<const Option*> completed_options(const Declaration& tool) {
   std::vector<const Option*> options = own_options(tool);
-  for (const Option& option : options_of_all()) options.push_back(&option);
+  for (const Option& option : common_options()) options.push_back(&option);
   return options;
 }
 
@@ -63,7 +63,7 @@ std::string zsh(const Declaration& tool) {
     if (!option->choices.empty())
       spec += ":" + option->value_name + ":(" + join(option->choices, " ") + ")";
     else if (!option->value_name.empty())
-      spec += (option->left_out.empty() ? ":" : "::") + option->value_name + ":_files";
+      spec += (option->implicit.empty() ? ":" : "::") + option->value_name + ":_files";
     out += "  " + literal(spec) + " \\\n";
   }
   for (const auto& name : about_flags()) out += "  " + literal(name) + " \\\n";
@@ -77,7 +77,7 @@ std::string fish(const Declaration& tool) {
   std::string out;
   for (const Option* option : completed_options(tool)) {
     out += begin + " -l " + long_flag(*option).substr(2) +
-           (option->value_name.empty() || !option->left_out.empty() ? "" : " -r");
+           (option->value_name.empty() || !option->implicit.empty() ? "" : " -r");
     if (!option->choices.empty()) out += " -f -a " + literal(join(option->choices, " "));
     out += " -d " + literal(option->help) + "\n";
   }

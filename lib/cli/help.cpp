@@ -78,7 +78,7 @@ std::string brief_entry(const std::string& words, const std::string& text) {
 
 std::string names_of_all() {
   std::vector<std::string> names;
-  for (const Option& option : options_of_all()) names.push_back(words_of(option));
+  for (const Option& option : common_options()) names.push_back(words_of(option));
   return join(names, "; ");
 }
 
@@ -142,7 +142,7 @@ std::vector<std::string> details(const Option& option) {
   if (!option.choices.empty()) texts.push_back("One of " + join(option.choices, ", ") + ".");
   if (!option.range_text.empty()) texts.push_back("Range: " + option.range_text + ".");
   if (!option.default_text.empty()) texts.push_back("Default: " + option.default_text + ".");
-  if (!option.left_out.empty()) texts.push_back("Without a number: " + option.left_out + ".");
+  if (!option.implicit.empty()) texts.push_back("Without a number: " + option.implicit + ".");
   if (option.repeatable) texts.emplace_back("May be repeated.");
   if (option.required) texts.push_back(option.unless.empty() ? "Required." : "Required without " + option.unless + ".");
   for (const auto& text : rule_texts(option)) texts.push_back(text);
@@ -165,7 +165,7 @@ std::string long_flag(const Option& option) {
 }
 
 std::string value_words(const Option& option) {
-  return option.left_out.empty() ? option.value_name : "[" + option.value_name + "]";
+  return option.implicit.empty() ? option.value_name : "[" + option.value_name + "]";
 }
 
 std::vector<ExitStatus> exit_statuses(const Declaration& tool) {
@@ -201,7 +201,7 @@ std::string help_text(const Declaration& tool, bool all) {
             " --help\n" + "Common options: " + names_of_all() + ";\n";
   } else if (whole) {
     for (const Group& group : tool.groups) text += help_text(group) + "\n";
-    text += help_text(Group{"Common options", options_of_all()});
+    text += help_text(Group{"Common options", common_options()});
   } else {
     text += usual_text(tool);
   }

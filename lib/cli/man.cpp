@@ -90,7 +90,7 @@ std::string flag_words(const Option& option) {
     if (!out.empty()) out += " , ";
     out += "Fl " + name.substr(1);
   }
-  if (!option.value_name.empty()) out += (option.left_out.empty() ? " Ar " : " Op Ar ") + argument(option.value_name);
+  if (!option.value_name.empty()) out += (option.implicit.empty() ? " Ar " : " Op Ar ") + argument(option.value_name);
   return out;
 }
 
@@ -149,7 +149,7 @@ std::vector<Option> grouped_options(const Declaration& form) {
 }
 
 // Options that several commands declare alike and the plain form does not: printed once, before the commands.
-Group common_options(const Declaration& tool) {
+Group shared_options(const Declaration& tool) {
   std::map<std::string, int> uses;
   for (const auto& nested : tool.subcommands) {
     for (const auto& option : grouped_options(nested)) ++uses[printed(option)];
@@ -196,7 +196,7 @@ std::string sentence(std::string text) {
 std::string commands(const Declaration& tool) {
   std::string out;
   Declaration shared;
-  shared.groups = {common_options(tool)};
+  shared.groups = {shared_options(tool)};
   std::set<std::string> above;
   for (const auto& option : grouped_options(tool)) above.insert(printed(option));
   for (const auto& option : grouped_options(shared)) above.insert(printed(option));
@@ -238,7 +238,7 @@ std::string head(const Manual& manual) {
 }
 
 std::string every_tool(const Declaration& tool) {
-  return ".Ss Common options\n.Bl -tag -width Ds\n" + option_items(options_of_all()) +
+  return ".Ss Common options\n.Bl -tag -width Ds\n" + option_items(common_options()) +
          ".It Fl h , Fl -help\nPrint a summary of the " +
          (has_usual(tool) ? "usual options;\n.Fl -help Ns = Ns Cm all ,\nof all.\n" : "options.\n") +
          ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"

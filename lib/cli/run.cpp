@@ -25,8 +25,8 @@
 #include "base/text/text.hpp"
 #include "cli/app.hpp"
 #include "cli/private/app_state.hpp"
+#include "cli/private/command_line.hpp"
 #include "cli/private/values.hpp"
-#include "cli/private/words.hpp"
 
 namespace vam::cli {
 
@@ -162,10 +162,10 @@ void bound(const std::optional<std::string>& gib) {
 void App::parse(int argc, char** argv) {
   const Declaration tool = whole();
   std::vector<std::string> words(argv + 1, argv + argc);
-  const ForAll given = take_for_all(words);
-  set_talk(given.talk);
+  const CommonOptions given = take_common_options(words);
+  set_talk(given.log);
   bound(given.memory_gib);
-  fill_left_out(tool, words);
+  add_implicit_values(tool, words);
   state_->words = words;
   require_command(tool, words);
   put_command_first(tool, words);

@@ -25,8 +25,8 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
-  std::string left_out = {};     // the number that stands for none behind the option; empty: there must be a value
-  std::vector<Rule> rules = {};  // where this one is given
+  std::string implicit = {};                // of the option without a number; empty: it must have a value
+  std::vector<Rule> rules = {};             // where this one is given
   std::vector<std::string> not_for = {};    // kinds of input
   std::function<std::string()> value = {};  // in force
   bool required = false;                    // in its form of the tool,
@@ -63,7 +63,7 @@ struct Declaration {
 };
 
 /// The options that every tool has, beside those that print something and end.
-[[nodiscard]] const std::vector<Option>& options_of_all();
+[[nodiscard]] const std::vector<Option>& common_options();
 
 /// "--voxel" of "-v,--voxel".
 [[nodiscard]] std::string long_flag(const Option& option);

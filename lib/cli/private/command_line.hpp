@@ -30,19 +30,19 @@ void require_command(const Declaration& tool, const std::vector<std::string>& wo
 /// Options before the command go behind it, so that both orders mean the same.
 void put_command_first(const Declaration& tool, std::vector<std::string>& words);
 
-/// Puts the numbers behind options from which they are left out.
-void fill_left_out(const Declaration& tool, std::vector<std::string>& words);
+/// Puts the implicit values behind options that are given without one.
+void add_implicit_values(const Declaration& tool, std::vector<std::string>& words);
 
-/// The values of options_of_all().
-struct ForAll {
+/// The values of common_options().
+struct CommonOptions {
   std::optional<std::string> memory_gib;  // as given
-  LogOptions talk;
+  LogOptions log;
 };
 inline constexpr const char* memory_flag = "--memory";
 
 /// Takes the options that every tool has out of the words, so that they are not part of its history. Throws
 /// Fault::usage where one is given twice, has no value or one that is not allowed.
-[[nodiscard]] ForAll take_for_all(std::vector<std::string>& words);
+[[nodiscard]] CommonOptions take_common_options(std::vector<std::string>& words);
 
 /// The words but for these options of the tool, by their long flags, and their values.
 [[nodiscard]] std::vector<std::string> words_without(const Declaration& tool, const std::vector<std::string>& words,

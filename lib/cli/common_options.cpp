@@ -4,8 +4,8 @@
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"
+#include "cli/private/command_line.hpp"
 #include "cli/private/values.hpp"
-#include "cli/private/words.hpp"
 
 namespace vam::cli {
 
@@ -39,7 +39,7 @@ std::optional<std::string> take(const Option& option, std::vector<std::string>& 
 
 }  // namespace
 
-const std::vector<Option>& options_of_all() {
+const std::vector<Option>& common_options() {
   static const std::vector<Option> all{
       {memory_flag,
        "GIB",
@@ -65,21 +65,21 @@ const std::vector<Option>& options_of_all() {
   return all;
 }
 
-ForAll take_for_all(std::vector<std::string>& words) {
-  ForAll values;
-  for (const Option& option : options_of_all()) {
+CommonOptions take_common_options(std::vector<std::string>& words) {
+  CommonOptions values;
+  for (const Option& option : common_options()) {
     const auto value = take(option, words);
     if (!value) continue;
     const std::string name = long_flag(option);
     if (name == memory_flag) values.memory_gib = value;
-    if (name == quiet_flag) values.talk.quiet = true;
-    if (name == verbose_flag) values.talk.verbose = true;
+    if (name == quiet_flag) values.log.quiet = true;
+    if (name == verbose_flag) values.log.verbose = true;
     if (name != progress_flag) continue;
     const auto style = std::find(styles.begin(), styles.end(), *value);
     if (style == styles.end()) throw not_one_of(name, *value, styles);
-    values.talk.progress = static_cast<ProgressStyle>(style - styles.begin());
+    values.log.progress = static_cast<ProgressStyle>(style - styles.begin());
   }
-  if (values.talk.quiet && values.talk.verbose) {
+  if (values.log.quiet && values.log.verbose) {
     throw Error{Fault::usage, std::string(quiet_flag) + ": contradicts " + verbose_flag};
   }
   return values;

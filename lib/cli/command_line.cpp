@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/private/words.hpp"
+#include "cli/private/command_line.hpp"
 
 #include <algorithm>
 
@@ -35,7 +35,7 @@ const Declaration& form_of(const Declaration& tool, const std::vector<std::strin
 
 std::vector<std::string> flags_of(const Declaration& form) {
   std::vector<std::string> flags = about_flags();
-  for (const Option& option : options_of_all()) flags.push_back(long_flag(option));
+  for (const Option& option : common_options()) flags.push_back(long_flag(option));
   for (const auto& group : form.groups) {
     for (const auto& option : group.options) flags.push_back(long_flag(option));
   }
@@ -56,9 +56,9 @@ bool is_about(const std::string& flag) {
   return flag == "-h" || std::find(about_flags().begin(), about_flags().end(), flag) != about_flags().end();
 }
 
-// Of the tool, its commands, or every tool.
+// An option of the tool, its commands, or every tool.
 const Option* find_of_any(const Declaration& tool, const std::string& flag) {
-  const auto& of_all = options_of_all();
+  const auto& of_all = common_options();
   const auto common =
       std::find_if(of_all.begin(), of_all.end(), [&](const auto& option) { return has_name(option, flag); });
   return common != of_all.end() ? &*common : find_option(tool, flag);
@@ -126,15 +126,15 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
   if (place > 0) std::rotate(words.begin(), words.begin() + place, words.begin() + place + 1);
 }
 
-void fill_left_out(const Declaration& tool, std::vector<std::string>& words) {
+void add_implicit_values(const Declaration& tool, std::vector<std::string>& words) {
   const Declaration form = form_of(tool, words);
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     const Option* option = find_own(form, words[i]);
     if (option == nullptr || option->value_name.empty()) continue;
-    if (option->left_out.empty()) {
+    if (option->implicit.empty()) {
       ++i;  // its value may look like an option
     } else if (i + 1 == words.size() || !parse_number(words[i + 1])) {
-      words[i] += "=" + option->left_out;
+      words[i] += "=" + option->implicit;
     }
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/log/log.hpp"
 #include "base/log/progress.hpp"
-#include "cli/private/words.hpp"
+#include "cli/private/command_line.hpp"
 #include "lib/cli/demo.hpp"
 #include "testing.hpp"
 
@@ -24,14 +24,14 @@ std::string refused(const std::vector<std::string>& words) {
 
 TEST_CASE("options of every tool are taken out of the words, wherever they stand") {
   std::vector<std::string> words{"-v", "part.stl", "--progress=json", "--memory", "2", "--half", "--", "--quiet"};
-  const ForAll all = take_for_all(words);
+  const CommonOptions all = take_common_options(words);
   CHECK(words == std::vector<std::string>{"part.stl", "--half", "--", "--quiet"});
   CHECK(all.memory_gib == "2");
-  CHECK(all.talk.verbose);
-  CHECK_FALSE(all.talk.quiet);
-  CHECK(all.talk.progress == ProgressStyle::json);
+  CHECK(all.log.verbose);
+  CHECK_FALSE(all.log.quiet);
+  CHECK(all.log.progress == ProgressStyle::json);
   std::vector<std::string> none{"part.stl"};
-  CHECK(take_for_all(none).talk.progress == ProgressStyle::line);
+  CHECK(take_common_options(none).log.progress == ProgressStyle::line);
 }
 
 TEST_CASE("and are not part of the history") {
