@@ -149,7 +149,7 @@ void run(const cli::App& app, Options& options) {
   options.insert_unit_given = app.given("--insert-unit");
   const model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, options.output)) return;
-  settle(options, printer);
+  resolve(options, printer);
 
   solid::Writable room = options.extent == "resin" ? solid::whole_resin(printer)
                                                    : solid::writable(printer, optics::writable_radius_mm(printer));

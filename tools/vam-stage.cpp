@@ -46,7 +46,7 @@ struct Options {
 };
 
 // Unset options come from the printer file; calibration records do not concern the stage.
-void settle(Options& options) {
+void resolve(Options& options) {
   const model::PrinterStage stage =
       io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).stage;
   if (options.device.empty()) options.device = stage.device;
@@ -67,7 +67,7 @@ std::string plan_text(device::Stage& stage, const Options& options) {
 
 void drive(const std::string& command, Options& options) {
   if (session::print_printer(options.printer)) return;
-  settle(options);
+  resolve(options);
   if (options.with_parent) device::end_with_parent();
   device::Guardian guardian;
   device::EventLog log(options.log);

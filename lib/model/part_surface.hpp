@@ -6,11 +6,11 @@
 
 namespace vam::model {
 
-/// In a wall or gap of so many voxels some voxel is more than half within; whether it prints, voxels do not tell.
+/// A wall or gap as wide holds a voxel that is more than half within; below, coverage cannot tell whether it prints.
 inline constexpr double thin_voxels = 1.5;
-/// In one of so many some voxel is wholly within; in thinner ones all may be cut by the surface.
+/// One at least as wide holds a voxel that is wholly within; in thinner ones the surface may cut all.
 inline constexpr double narrow_voxels = 2;
-/// In a cavity of so many some voxel is three quarters free; what is smaller may be lost.
+/// A cavity at least as wide holds a voxel that is three quarters free; smaller ones may be lost.
 inline constexpr double lost_voxels = 2.3;
 /// In a bore of so many some voxel is wholly free, wherever it lies: the diagonals of two voxels' faces.
 inline constexpr double free_voxels = 2.83;

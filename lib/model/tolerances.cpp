@@ -42,7 +42,7 @@ double amount(std::string text, std::string_view unit, const std::string& clause
                                 (unit.empty() ? "" : " in " + std::string(unit)) + std::string(example)};
 }
 
-double of(const Tolerances& tolerances, const PrinterDeviation& by, Deviating what) {
+double of(const Tolerances& tolerances, const PrinterDeviation& by, ToleranceKind what) {
   const auto i = static_cast<std::size_t>(what);
   return tolerances[i] * by[i];
 }
@@ -82,12 +82,12 @@ std::vector<std::string> exact_quantities(const Tolerances& tolerances) {
 }
 
 DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, const PrinterDeviation& by) {
-  DeviatingPrinter off{printer, of(tolerances, by, Deviating::angle) * rad_per_deg,
-                       1 + 0.01 * of(tolerances, by, Deviating::lamp)};
-  off.printer.projector.axis_column += of(tolerances, by, Deviating::axis);
-  off.printer.resin.index += of(tolerances, by, Deviating::index);
-  off.printer.vial.radius_mm *= 1 + 0.01 * of(tolerances, by, Deviating::radius);
-  off.printer.resin.psf_mm = std::max(0.0, printer.resin.psf_mm + of(tolerances, by, Deviating::psf));
+  DeviatingPrinter off{printer, of(tolerances, by, ToleranceKind::angle) * rad_per_deg,
+                       1 + 0.01 * of(tolerances, by, ToleranceKind::lamp)};
+  off.printer.projector.axis_column += of(tolerances, by, ToleranceKind::axis);
+  off.printer.resin.index += of(tolerances, by, ToleranceKind::index);
+  off.printer.vial.radius_mm *= 1 + 0.01 * of(tolerances, by, ToleranceKind::radius);
+  off.printer.resin.psf_mm = std::max(0.0, printer.resin.psf_mm + of(tolerances, by, ToleranceKind::psf));
   if (off.intensity > 0 && off.printer.resin.index >= 1 && resin_radius_mm(off.printer.vial) > 0) return off;
   throw Error{Fault::usage, "tolerances: they allow an impossible printer (relative intensity " +
                                 format_number(off.intensity) + ", resin index " +

@@ -24,7 +24,7 @@ inline constexpr std::array<Tolerance, 6> tolerance_table{{{"axis", "px", "proje
                                                            {"radius", "%", "vial.radius_mm"},
                                                            {"lamp", "%", "intensity"},
                                                            {"psf", "mm", "resin.psf_mm, which stays at least 0"}}};
-enum class Deviating : std::uint8_t { axis, index, angle, radius, lamp, psf };
+enum class ToleranceKind : std::uint8_t { axis, index, angle, radius, lamp, psf };
 
 /// Largest deviation of each, either way, in the unit of the table; 0: exact.
 using Tolerances = std::array<double, tolerance_table.size()>;

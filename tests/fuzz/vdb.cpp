@@ -8,7 +8,7 @@
 
 #include "fuzz/fuzz.hpp"
 #include "io/stream/private/shared_buffers.hpp"
-#include "io/vdb/private/passage.hpp"
+#include "io/vdb/private/serialisation.hpp"
 
 namespace {
 

@@ -105,7 +105,7 @@ metrology::SweepScan to_scan(const ScanOptions& options, const Sweeps& sweeps, c
   return scan;
 }
 
-// Of all angles: the rotation axis where the vial's middle was, what does not depend on the angle by its mean.
+// Combines all angles: the rotation axis from the vial's middles, and means of what does not depend on the angle.
 metrology::VialEdges combine(const std::vector<double>& angles, const std::vector<metrology::VialEdges>& all,
                              Finding& finding, const model::Printer& printer) {
   if (all.size() == 1) {

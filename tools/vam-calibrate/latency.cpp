@@ -17,7 +17,7 @@ namespace {
 
 constexpr int settling_frames = 10;  // until the way of the time stamps from camera to machine is known
 
-// Of the camera's lag, for which the times of the frames were corrected: what it is off by, the latency is off by.
+// Uncertainty of the camera's lag, for which the times of the frames were corrected: its error is that of the latency.
 double lag_sigma_ms(const model::Calibration& calibration) {
   const auto lag = io::current_record(calibration, "lag");
   if (!lag || !io::objection(*lag, calibration, utc_seconds()).empty()) return 0;

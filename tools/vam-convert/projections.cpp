@@ -30,7 +30,7 @@ namespace vam::convert_tool {
 
 namespace {
 
-/// Of slices along z.
+/// Heights of slices along z.
 struct Heights {
   int count = 0;
   double z0_mm = 0;
@@ -189,7 +189,7 @@ Heights own_heights(const Options& options, const model::Projector& projector, i
   return {slices, -slice_of_zero(options, projector, slices, from_top) * pitch_mm, pitch_mm};
 }
 
-/// Of the part, or of the only grid.
+/// The grid of the part, or the only one.
 std::optional<io::SparseVolume> volume_like(const Options& options) {
   if (options.like.empty()) return std::nullopt;
   std::vector<io::SparseVolume> volumes = io::read_volumes(options.like);
@@ -246,7 +246,7 @@ std::string fitting_axes(const io::ArraySize& size, const model::Projector& proj
   return "";
 }
 
-/// What to do about light that lies above or below all slices.
+/// The remedy for light above or below all slices.
 std::string place_remedy(const Options& options, const Slices& slices, const model::Projector& projector, bool frames) {
   if (frames) {
     return is_exchanged(slices.size(), projector) ? "columns and rows look exchanged" : "check --axis-row";
@@ -264,7 +264,7 @@ void warn_of_light(const Options& options, double left_out, const std::string& r
        options.like + " and is left out; " + remedy);
 }
 
-/// Of frames that the projector would have shown in another size.
+/// Warns of frames that the projector would have shown in another size.
 void warn_of_size(const Options& options, const io::ArraySize& size, const model::Projector& projector) {
   if (!options.in_vial() || (size.columns == projector.columns && size.images == projector.rows)) return;
   warn(io::input_name(options.input) + ": images of " + std::to_string(size.columns) + " x " +
@@ -276,7 +276,7 @@ void warn_of_size(const Options& options, const io::ArraySize& size, const model
             : "; columns and rows look exchanged: check --orientation"));
 }
 
-/// Of frames in one colour, whose full intensity is the luma of that colour, within a level of limited range.
+/// Warns of frames in one colour, whose full intensity is the luma of that colour, within a level of limited range.
 void warn_of_colour(const Options& options, double peak) {
   constexpr double level = 1.0 / 219;
   for (const auto& [colour, luma] : {std::pair{"blue", 0.114}, {"red", 0.299}, {"green", 0.587}}) {

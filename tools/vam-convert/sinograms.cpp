@@ -34,7 +34,7 @@ void respond(const std::vector<float>& table, Image& image) {
   }
 }
 
-/// By a quarter of a turn, as one sees it: row 0 is at the top.
+/// The image turned by 90 degrees, as one sees it: row 0 is at the top.
 Image quarter_turned(const Image& image, bool clockwise) {
   Image turned(image.height, image.width);
   for (int y = 0; y < image.height; ++y) {

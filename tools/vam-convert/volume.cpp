@@ -115,7 +115,7 @@ std::string scale_doubt(const Options& options, float most) {
          ", where a full voxel is 1; if they are grey levels, give --full-scale " + std::to_string(full);
 }
 
-/// Of a target that is void everywhere.
+/// The doubt about a target that is void everywhere.
 std::string void_doubt(const Options& options, float most) {
   const bool target = options.grid.empty() || options.grid == "target";
   if (!target || model::label_of(most) != model::Label::void_) return "";
@@ -126,7 +126,7 @@ std::string void_doubt(const Options& options, float most) {
 
 }  // namespace
 
-/// Of a file that states its voxels, as NRRD does: both, where they differ.
+/// The doubt about a file that states its voxels, as NRRD does: both sizes, where they differ.
 std::string voxel_doubt(const Options& options, const std::vector<double>& stated_mm) {
   constexpr double least = 1e-3;
   const double voxel_mm = *options.voxel_mm;

@@ -6,7 +6,7 @@
 
 namespace vam::correct_tool {
 
-/// The command, which goes on as the script of that name. It throws Fault::no_input where that is not there.
+/// The command: replaces this process by the script of that name. It throws Fault::no_input where that is not there.
 void add_renew(cli::App& app);
 
 }  // namespace vam::correct_tool

@@ -42,10 +42,10 @@ class Session {
   };
   void write(const model::Volume& volume, const std::string& path, const Origin& origin) const;
   void write(const metrology::VoxelUncertainty& voxels, const std::string& path, const Origin& origin) const;
-  /// What was taken out of the views of the last volume.
+  /// Disturbances that were removed from the views of the last volume.
   [[nodiscard]] Json dirt() const { return metrology::to_json(dirt_); }
   [[nodiscard]] Json run_out() const { return metrology::to_json(run_out_); }
-  /// Of axis, volume and views, for a report.
+  /// Figures of axis, volume and views, for a report.
   [[nodiscard]] Json figures(const model::Volume& volume) const;
   [[nodiscard]] const model::Printer& printer() const { return printer_; }
 

@@ -47,9 +47,9 @@ struct Level {
   }
 };
 
-Level level_of(const Wanted& wanted, int coarseness) {
+Level level_of(const EstimateTask& task, int coarseness) {
   constexpr double rounding = 1e-9;
-  Level level{wanted.printer, filled(wanted.part, coarseness * wanted.grid.voxel_mm), coarseness};
+  Level level{task.printer, filled(task.part, coarseness * task.grid.voxel_mm), coarseness};
   while (2 * level.printer.projector.pixel_mm < (1 + rounding) * level.voxel_mm())
     level.printer = model::coarser(level.printer);
   return level;
@@ -62,37 +62,37 @@ optimize::Preview preview_of(const Level& level, const model::Projector& project
   task.radius_mm = optics::judged_radius_mm(task.printer, level.part.content.radius_mm);
   task.target = level.part.volume;
   task.tolerances = model::parse_tolerances(deviations);
-  task.tolerances[static_cast<std::size_t>(model::Deviating::axis)] *=  // of the printer's pixels
+  task.tolerances[static_cast<std::size_t>(model::ToleranceKind::axis)] *=  // of the printer's pixels
       projector.pixel_mm / level.printer.projector.pixel_mm;
   return optimize::preview(task);
 }
 
 /// What the voxels of the print lose is lost whatever these show.
-verdict::Verdict verdict_of(const Level& level, const Wanted& wanted, const optimize::VolumeOutcome& outcome) {
+verdict::Verdict verdict_of(const Level& level, const EstimateTask& task, const optimize::VolumeOutcome& outcome) {
   verdict::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
-  verdict.unresolved = is_lost(wanted.unresolved) ? wanted.unresolved : level.unresolved();
+  verdict.unresolved = is_lost(task.unresolved) ? task.unresolved : level.unresolved();
   set_pieces(verdict, outcome.pieces);
   return verdict;
 }
 
 /// Whether what these voxels show is all of the part: no edge tapers, and no neck is narrower, than they resolve.
-bool may_tell(const Level& level, const Wanted& wanted) {
-  return level.is_final() || (level.shows_all() && !wanted.sharp_edges &&
-                              wanted.thinnest_voxels >= model::narrow_voxels * level.coarseness);
+bool may_tell(const Level& level, const EstimateTask& task) {
+  return level.is_final() ||
+         (level.shows_all() && !task.sharp_edges && task.thinnest_voxels >= model::narrow_voxels * level.coarseness);
 }
 
 /// What the print of these voxels shows of that of the final ones.
-std::optional<bool> prints(const Level& level, const verdict::Verdict& verdict, const Wanted& wanted) {
-  const verdict::Unresolved& final = wanted.unresolved;
+std::optional<bool> prints(const Level& level, const verdict::Verdict& verdict, const EstimateTask& task) {
+  const verdict::Unresolved& final = task.unresolved;
   switch (answer(verdict)) {
     case verdict::Answer::no:
-      if (level.is_final() || is_lost(final) || (may_tell(level, wanted) && verdict.whole.pw < hopeless)) return false;
+      if (level.is_final() || is_lost(final) || (may_tell(level, task) && verdict.whole.pw < hopeless)) return false;
       break;
     case verdict::Answer::not_as_designed:
       if (level.is_final() || is_lost(final)) return false;
       break;
     case verdict::Answer::yes:
-      if (may_tell(level, wanted) && !final.leaves_doubt() && verdict.whole.pw >= sure_window) return true;
+      if (may_tell(level, task) && !final.leaves_doubt() && verdict.whole.pw >= sure_window) return true;
       break;
     case verdict::Answer::not_judged:
     case verdict::Answer::unsure:
@@ -102,12 +102,12 @@ std::optional<bool> prints(const Level& level, const verdict::Verdict& verdict, 
 }
 
 /// What tells where an estimate does not.
-std::string told_by(const Level& level, const verdict::Verdict& verdict, const Wanted& wanted) {
+std::string told_by(const Level& level, const verdict::Verdict& verdict, const EstimateTask& task) {
   const auto voxel = [](double mm) { return "--voxel " + format_number(mm, 2); };
-  if (wanted.unresolved.leaves_doubt()) return voxel(solid::telling_voxel_mm(wanted.unresolved, wanted.grid.voxel_mm));
-  if (!level.is_final()) return voxel(wanted.grid.voxel_mm);
-  if (verdict.pieces && !verdict.pieces->knows_pieces()) return voxel(0.5 * wanted.grid.voxel_mm);
-  return level.is_judged() ? "vam-optimize" : voxel(solid::resolving_voxel_mm(level.part.content, wanted.grid));
+  if (task.unresolved.leaves_doubt()) return voxel(solid::telling_voxel_mm(task.unresolved, task.grid.voxel_mm));
+  if (!level.is_final()) return voxel(task.grid.voxel_mm);
+  if (verdict.pieces && !verdict.pieces->knows_pieces()) return voxel(0.5 * task.grid.voxel_mm);
+  return level.is_judged() ? "vam-optimize" : voxel(solid::resolving_voxel_mm(level.part.content, task.grid));
 }
 
 std::optional<WrongHeights> wrong_of(const optimize::Preview& preview, double stretch_z) {
@@ -128,45 +128,45 @@ void expose(Estimate& estimate, const optimize::VolumeOutcome& outcome, const mo
                                            optimize::DoseWindow{}.threshold());
 }
 
-void judge(Estimate& made, const Level& level, const Wanted& wanted) {
-  const optimize::Preview preview = preview_of(level, wanted.printer.projector);
+void judge(Estimate& made, const Level& level, const EstimateTask& task) {
+  const optimize::Preview preview = preview_of(level, task.printer.projector);
   made.angles = optimize::PreviewTask{}.angles;
   made.iterations = preview.outcome.iterations;
-  made.verdict = verdict_of(level, wanted, preview.outcome);
-  if (made.verdict.pieces) made.verdict.pieces->set_places(preview.grid, wanted.stretch_z);
-  made.prints = prints(level, made.verdict, wanted);
+  made.verdict = verdict_of(level, task, preview.outcome);
+  if (made.verdict.pieces) made.verdict.pieces->set_places(preview.grid, task.stretch_z);
+  made.prints = prints(level, made.verdict, task);
   for (const optimize::VolumeOutcome& other : preview.beside)
-    made.dose_decides |= prints(level, verdict_of(level, wanted, other), wanted) != made.prints;
+    made.dose_decides |= prints(level, verdict_of(level, task, other), task) != made.prints;
   if (made.dose_decides) made.prints.reset();
-  made.wrong = wrong_of(preview, wanted.stretch_z);
+  made.wrong = wrong_of(preview, task.stretch_z);
   made.trials = preview.trials;
-  expose(made, preview.outcome, wanted.printer);
+  expose(made, preview.outcome, task.printer);
 }
 
-Estimate estimate_on(const Level& level, const Wanted& wanted) {
+Estimate estimate_on(const Level& level, const EstimateTask& task) {
   Estimate made;
   made.voxel_mm = level.voxel_mm();
   made.verdict.unresolved = level.unresolved();
-  if (level.is_judged()) judge(made, level, wanted);
-  made.told_by = told_by(level, made.verdict, wanted);
+  if (level.is_judged()) judge(made, level, task);
+  made.told_by = told_by(level, made.verdict, task);
   if (!made.prints && !level.is_final()) {
     made.too_coarse = solid::resolution_doubts("at " + format_number(made.voxel_mm, 3) + " mm", level.unresolved(),
-                                               level.part.volume.grid, wanted.stretch_z);
+                                               level.part.volume.grid, task.stretch_z);
   }
   return made;
 }
 
 }  // namespace
 
-Estimate estimated(const Wanted& wanted) {
-  const auto voxels = [&](int coarseness) { return static_cast<double>(wanted.grid.size()) / std::pow(coarseness, 3); };
-  int by = wanted.on_these_voxels ? 1 : usual_coarseness;
-  while (!wanted.on_these_voxels && voxels(by) > most_coarse_voxels) by *= 2;
+Estimate estimated(const EstimateTask& task) {
+  const auto voxels = [&](int coarseness) { return static_cast<double>(task.grid.size()) / std::pow(coarseness, 3); };
+  int by = task.on_these_voxels ? 1 : usual_coarseness;
+  while (!task.on_these_voxels && voxels(by) > most_coarse_voxels) by *= 2;
   while (true) {
-    const Level level = level_of(wanted, by);
+    const Level level = level_of(task, by);
     const bool is_last = by == 1 || voxels(by / 2) > most_finer_voxels;
-    if (is_last || may_tell(level, wanted)) {
-      Estimate made = estimate_on(level, wanted);
+    if (is_last || may_tell(level, task)) {
+      Estimate made = estimate_on(level, task);
       if (is_last || made.prints) return made;
     }
     by /= 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the judge says of a print of few iterations, on voxels that are larger for large parts.
+// The verdict on a print of few iterations, on voxels that are larger for large parts.
 #pragma once
 
 #include <array>
@@ -36,8 +36,8 @@ struct Estimate {
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
 };
 
-/// The part as it is sliced, and for whom.
-struct Wanted {
+/// The part as it is sliced, and its printer.
+struct EstimateTask {
   const solid::Part& part;
   const model::Printer& printer;
   model::Grid grid;                // of the final print
@@ -48,9 +48,9 @@ struct Wanted {
   bool on_these_voxels = false;  // however long it takes
 };
 
-/// On voxels four times as large as those of the print, or larger by another power of 2 where the part has more than 2
-/// million of these; on smaller ones while these do not tell, and are few.
-[[nodiscard]] Estimate estimated(const Wanted& wanted);
+/// Estimates on voxels four times as large as those of the print, or larger by another power of 2 where the part has
+/// more than 2 million of these; then on smaller ones, while the estimate does not decide and they are few.
+[[nodiscard]] Estimate estimated(const EstimateTask& task);
 
 /// "will print: ...", or "unknown at 0.26 mm; --voxel 0.1 tells: ...".
 [[nodiscard]] std::string words(const Estimate& estimate);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a plan says.
+// The text and figures of a plan.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double most_voxels = 16e6;  // of the grid on which walls are measured
 
-/// Of walls and gaps that no voxel resolves.
 void warn_of_resolution(const std::string& subject, const Filled& fine, double stretch_z) {
   for (const std::string& doubt :
        solid::resolution_doubts(subject, fine.content.unresolved, fine.volume.grid, stretch_z))

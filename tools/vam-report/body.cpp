@@ -76,8 +76,7 @@ void append(model::TriangleSoup& mesh, const model::TriangleSoup& other) {
   }
 }
 
-/// Walls that no voxel nearby is half covered by, which the surface of the coverage leaves out; of a print those that
-/// do not cure.
+/// Walls thinner than half a voxel, which the surface of the coverage leaves out; of a print, those that do not cure.
 model::TriangleSoup lost_body(const io::SparseVolume& target, const PrintedDose* print, int by) {
   const io::SparseVolume lost =
       plot::lost_wall_volume(target, print != nullptr ? print->dose : nullptr, print != nullptr ? print->threshold : 0);

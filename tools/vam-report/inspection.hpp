@@ -18,7 +18,7 @@ struct DimensionErrors {
   [[nodiscard]] double expanded_mm(double size_mm) const;
 };
 
-/// Of the first report of vam-sdf among the files.
+/// Views of the first report of vam-sdf among the files.
 struct InspectionViews {
   std::string verdict;  // HTML; empty where no conditions were given
   std::string figures;  // HTML table

@@ -46,7 +46,7 @@ Columns lit_columns(const std::vector<Image>& images) {
   return {std::max(0, lit.first - margin), std::min(images[0].width - 1, lit.last + margin)};
 }
 
-/// Its columns first...last, with so many rows.
+/// Its columns first...last, resampled to this number of rows.
 Image square(const Image& image, int first, int last, double rows) {
   Image made(last - first + 1, std::clamp(round_int(rows), 1, 4 * most_pixels));
   for (int y = 0; y < made.height; ++y) {

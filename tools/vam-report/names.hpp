@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a page calls a file.
+// Names of files on a page.
 #pragma once
 
 #include <filesystem>

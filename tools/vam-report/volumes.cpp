@@ -18,14 +18,14 @@ namespace {
 
 constexpr int shown_px = 400;
 
-/// What is drawn into the sections of a volume; null for none.
-struct Within {
+/// Overlays on the sections of a volume; null for none.
+struct SectionOverlays {
   const io::SparseVolume* target = nullptr;
   const io::SparseVolume* insert = nullptr;
 };
 
-std::string sections(const io::SparseVolume& volume, const std::string& file, const Within& within, plot::Plane plane,
-                     int count) {
+std::string sections(const io::SparseVolume& volume, const std::string& file, const SectionOverlays& within,
+                     plot::Plane plane, int count) {
   plot::ViewOptions options;
   options.name = file;
   options.plane = plane;
@@ -72,7 +72,7 @@ std::string section_views(const Volumes& volumes, int count, bool outlined) {
   std::string views;
   for (std::size_t n = 0; n < volumes.grids.size(); ++n) {
     const io::SparseVolume& volume = volumes.grids[n];
-    Within within;
+    SectionOverlays within;
     if (outlined && volume.name() == "dose") within.target = volumes.find("target");
     const io::SparseVolume* insert = volumes.find("insert");
     const bool around = volume.name() == "dose" || volume.name() == "target";

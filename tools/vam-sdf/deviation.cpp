@@ -108,7 +108,7 @@ void warn_of_doubles(const model::TriangleSoup& mesh, const std::string& file) {
        " duplicate triangles; a body may be there twice, and counts twice in areas and percentiles");
 }
 
-// Of all figures only `within` needs one.
+// Only the figure `within` needs one.
 bool has_tolerance(const std::string& figure, const Toleranced& asked) {
   if (figure == "within") return asked.tolerance_mm.has_value();
   return std::all_of(asked.regions.begin(), asked.regions.end(), [&](const metrology::Region& region) {

@@ -12,8 +12,8 @@
 
 namespace vam::sdf_tool {
 
-/// By --align, then --datum; the print's points are moved. Throws Fault::data for a part that fits in two places, and
-/// what find_region() throws.
+/// Aligns by --align, then --datum; the print's points are moved. Throws Fault::data for a part that fits in two
+/// places, and what find_region() throws.
 [[nodiscard]] solid::Alignment align_print(const Options& options, const std::vector<metrology::Region>& regions,
                                            const model::TriangleSoup& design_mesh, const solid::Surface& design,
                                            model::TriangleSoup& print);

@@ -30,7 +30,7 @@ std::vector<metrology::Region> read_faces(const Options& options) {
   return regions;
 }
 
-/// Whose tolerance "0.05" or "top=0.05" is.
+/// The target of a tolerance "0.05" or "top=0.05".
 std::optional<double>& place_for(const std::string& text, Toleranced& all) {
   const auto equals = text.find('=');
   if (equals == std::string::npos) return all.tolerance_mm;

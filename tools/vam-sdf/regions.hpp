@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a print vam-sdf measures separately, and the tolerances: --region and --tolerance.
+// Regions of a print that vam-sdf measures separately, and tolerances: --region and --tolerance.
 #pragma once
 
 #include <optional>

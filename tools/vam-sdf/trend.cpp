@@ -30,7 +30,7 @@ using AllSeries = std::map<std::string, Series>;
 
 bool is_inspection(const Json& report) { return is_of(report, "vam-sdf") && report.contains("expanded_uncertainty"); }
 
-// A folder of a run stands for the report in it.
+// The folder of a run means the report in it.
 std::string report_in(const std::string& path) {
   if (!std::filesystem::is_directory(path)) return path;
   std::vector<std::string> found;

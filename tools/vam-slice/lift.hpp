@@ -9,9 +9,9 @@
 
 namespace vam::slice_tool {
 
-/// By how much the part is lifted along z, in whole voxels of the stretched target: to the requested height; to that
-/// with least smear by rays that climb; or, unless it keeps its origin, as little as brings it into the image. Throws
-/// Fault::usage for a height that is none.
+/// The lift of the part along z, in whole voxels of the stretched target: to the requested height; to that of least
+/// smear by climbing rays; or, unless it keeps its origin, as little as brings it into the image. Throws Fault::usage
+/// for an invalid height.
 [[nodiscard]] double lift_mm(const Options& options, const model::Printer& printer, const solid::Part& part,
                              const solid::Writable& room);
 

@@ -162,7 +162,7 @@ solid::PlacementAdvice advice(const Options& options) {
   return advice;
 }
 
-void settle(Options& options, const model::Printer& printer) {
+void resolve(Options& options, const model::Printer& printer) {
   solid::Placement& placement = options.placement;
   placement.scale *= solid::mm_per(options.unit);
   placement.axes = solid::upright(options.up);

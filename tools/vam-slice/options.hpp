@@ -49,7 +49,7 @@ void declare(cli::App& app, Options& options);
 /// Throws Fault::usage for options that do not apply to what PART is.
 void check(const cli::App& app, const Options& options);
 /// Fills in what follows from other options and the printer: units, voxel and stretch.
-void settle(Options& options, const model::Printer& printer);
+void resolve(Options& options, const model::Printer& printer);
 /// The options that help a part which does not fit.
 [[nodiscard]] solid::PlacementAdvice advice(const Options& options);
 [[nodiscard]] bool is_folder(const std::string& path);

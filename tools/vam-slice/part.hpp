@@ -12,7 +12,7 @@
 
 namespace vam::slice_tool {
 
-/// What the prints before said of the design.
+/// Measurements of previous prints of the design.
 struct Correction {
   std::vector<double> rms_mm;  // of each round
   std::size_t applied = 0;     // of them
@@ -25,7 +25,7 @@ struct Correction {
 [[nodiscard]] solid::Part part_of(const Options& options, const model::Projector& projector,
                                   const solid::Writable& room, Correction& correction);
 
-/// Of its own size, where the options put it.
+/// The insert of its own size, at the place of the options.
 [[nodiscard]] std::optional<solid::Part> insert_of(const Options& options, const solid::Part& part,
                                                    const solid::Writable& room);
 

@@ -33,7 +33,7 @@ class LightView {
   /// The largest dose that a turn gives.
   [[nodiscard]] double full_dose() const { return full_dose_; }
 
-  /// Of the stack.
+  /// Extent of the stack.
   [[nodiscard]] double half_width_mm() const { return 0.5 * info_.width * info_.pixel_mm; }
   [[nodiscard]] double low_mm() const { return info_.z_start_mm - 0.5 * info_.row_mm; }
   [[nodiscard]] double high_mm() const { return low_mm() + info_.count * info_.row_mm; }

@@ -60,7 +60,7 @@ std::string arrow(double x, double from, double to, double size) {
                              " " + mm(0.7 * size) + "\" class=\"line ray\"");
 }
 
-// Of the colours of the dose, from 0 to `high`.
+// The bar of dose colours, from 0 to `high`.
 std::string colour_bar(double high, const std::string& unit) {
   std::string stops;
   for (int i = 0; i <= 8; ++i) {

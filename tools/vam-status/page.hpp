@@ -16,7 +16,7 @@ struct CameraImage {
   std::optional<double> angle_deg;
 };
 
-/// Of the run's views/, else its camera.png; nothing where there is neither.
+/// The newest image of the run's views/, else its camera.png; nothing where there is neither.
 [[nodiscard]] std::optional<CameraImage> newest_image(const RunFolder& run);
 
 /// HTML in UTF-8. Every text that is not of this program is escaped. light: null without sinogram; renewed every

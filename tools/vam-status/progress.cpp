@@ -53,7 +53,7 @@ bool is_locked(const std::string& file) {
   return locked;
 }
 
-// To the planned end; infinite where it is not known or light has not begun.
+// Time to the planned end; infinite where it is not known or light has not begun.
 double left_s(const PrintProgress& p, double speed_deg_s) {
   if (p.blanks == 0 || !(p.turns > 0) || !(speed_deg_s > 0)) return std::numeric_limits<double>::infinity();
   return std::max(0.0, 360 * p.turns - p.angle_deg) / speed_deg_s;

@@ -46,9 +46,9 @@ class RunFolder {
   /// Reads what has been added.
   void read();
   [[nodiscard]] const PrintProgress& progress() const { return progress_; }
-  /// Of the run's frozen settings.
+  /// The run's frozen settings.
   [[nodiscard]] const model::Printer& printer() const { return printer_; }
-  /// Of the sinogram that the print began with.
+  /// Images of the sinogram that the print began with.
   [[nodiscard]] std::vector<io::ShownImage> shown() const;
   /// Whether others have taken its place.
   [[nodiscard]] bool renewed() const;

@@ -25,7 +25,7 @@ constexpr double power_beyond_doubt = 20;
 
 }  // namespace
 
-RippleFilter::Vector RippleFilter::Belief::covariance_with(const Vector& seen) const {
+RippleFilter::Vector RippleFilter::StateEstimate::covariance_with(const Vector& seen) const {
   Vector product{};
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < size; ++j) product[i] += covariance[i][j] * seen[j];
@@ -33,32 +33,32 @@ RippleFilter::Vector RippleFilter::Belief::covariance_with(const Vector& seen) c
   return product;
 }
 
-double RippleFilter::Belief::expected(const Vector& seen) const {
+double RippleFilter::StateEstimate::expected(const Vector& seen) const {
   double sum = 0;
   for (std::size_t i = 0; i < size; ++i) sum += seen[i] * mean[i];
   return sum;
 }
 
-double RippleFilter::Belief::variance(const Vector& seen) const {
+double RippleFilter::StateEstimate::variance(const Vector& seen) const {
   const Vector common = covariance_with(seen);
   double sum = 0;
   for (std::size_t i = 0; i < size; ++i) sum += seen[i] * common[i];
   return sum;
 }
 
-void RippleFilter::Belief::observe(const Vector& seen, double value, double noise) {
+void RippleFilter::StateEstimate::observe(const Vector& seen, double value, double noise) {
   const Vector common = covariance_with(seen);
   double total = noise;
   for (std::size_t i = 0; i < size; ++i) total += seen[i] * common[i];
   correct(common, total, value - expected(seen));
 }
 
-void RippleFilter::Belief::observe_zero(std::size_t place, double noise) {
+void RippleFilter::StateEstimate::observe_zero(std::size_t place, double noise) {
   const Vector common = covariance[place];
   correct(common, common[place] + noise, -mean[place]);
 }
 
-void RippleFilter::Belief::correct(const Vector& common, double total, double off) {
+void RippleFilter::StateEstimate::correct(const Vector& common, double total, double off) {
   for (std::size_t i = 0; i < size; ++i) {
     const double gain = common[i] / total;
     mean[i] += gain * off;
@@ -121,9 +121,9 @@ bool RippleFilter::ready() const { return count_ >= 3 && t_s_ - first_s_ >= leas
 
 // That a harmonic is as small as its power beyond the noise is an observation of its own: harmonics do not change, so
 // it may as well be made last.
-const RippleFilter::Belief& RippleFilter::without_noise() const {
+const RippleFilter::StateEstimate& RippleFilter::without_noise() const {
   if (without_noise_) return *without_noise_;
-  Belief& kept = without_noise_.emplace(all_);
+  StateEstimate& kept = without_noise_.emplace(all_);
   if (farthest_deg_ < 360) return kept;  // before, line and harmonics are not distinguished
   for (std::size_t k = 1; k <= harmonics; ++k) {
     double power = 0;
@@ -140,16 +140,16 @@ const RippleFilter::Belief& RippleFilter::without_noise() const {
 }
 
 AngleSample RippleFilter::at(double t_s) const {
-  const Belief& belief = without_noise();
+  const StateEstimate& estimate = without_noise();
   const double dt = t_s - t_s_;
-  double angle_deg = belief.mean[0] + dt * belief.mean[1];
+  double angle_deg = estimate.mean[0] + dt * estimate.mean[1];
   Vector seen{};
   for (int pass = 0; pass < 3; ++pass) {  // the ripple is of the angle itself
     seen = seen_at(angle_deg);
     seen[1] = dt;
-    angle_deg = belief.expected(seen);
+    angle_deg = estimate.expected(seen);
   }
-  return {t_s, angle_deg, std::sqrt(std::max(0.0, belief.variance(seen)))};
+  return {t_s, angle_deg, std::sqrt(std::max(0.0, estimate.variance(seen)))};
 }
 
 double RippleFilter::speed_deg_s() const { return without_noise().mean[1]; }

@@ -17,7 +17,7 @@
 #include "io/array/private/nrrd_head.hpp"
 #include "io/hdf5/hdf5_array.hpp"
 #include "io/image/tiff_pages.hpp"
-#include "io/stream/passage.hpp"
+#include "io/stream/serialisation.hpp"
 #include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"

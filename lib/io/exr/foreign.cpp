@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/error.hpp"
-#include "io/stream/passage.hpp"
+#include "io/stream/serialisation.hpp"
 
 namespace vam::io::exr {
 

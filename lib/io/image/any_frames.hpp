@@ -26,11 +26,11 @@ class ImageSource {
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
   /// Are the values grey levels, which a projector's response makes intensities of?
   [[nodiscard]] virtual bool is_grey() const { return false; }
-  /// Whether all of it has hashes of what was written, to which reading holds it.
+  /// True if all of it has hashes, which are verified on reading.
   [[nodiscard]] virtual bool is_sealed() const { return false; }
   /// The first 16 digits of that of a video; empty for others.
   [[nodiscard]] virtual std::string seal() const { return ""; }
-  /// Whether its bytes have checksums, and these are right: of a video, whoever wrote it.
+  /// True if the container's checksums are valid; of a video of any program.
   [[nodiscard]] virtual bool has_checksums() const { return false; }
 };
 

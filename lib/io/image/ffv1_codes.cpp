@@ -43,7 +43,7 @@ class BitWriter {
 };
 
 // What a context has learned of its differences (section 3.8.2.3).
-struct Learned {
+struct ContextState {
   int drift = 0;
   int error_sum = 4;
   int bias = 0;
@@ -172,7 +172,7 @@ class RowCoder {
     run_ = 0;
   }
 
-  void symbol(Learned& context, int difference) {
+  void symbol(ContextState& context, int difference) {
     const int value = folded(difference - context.bias);
     const int low_bits = context.low_bits();
     const int turned = value ^ ((2 * context.drift + context.count) >> 31);
@@ -187,7 +187,7 @@ class RowCoder {
   }
 
   BitWriter bits_;
-  std::vector<Learned> learned_{contexts};
+  std::vector<ContextState> learned_{contexts};
   std::size_t run_index_ = 0;
   int run_ = 0;
 };

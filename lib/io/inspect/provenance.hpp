@@ -13,7 +13,7 @@ struct ProvenanceEntry {
   bool sealed = false;                   // and held to it
   std::string seal;                      // 16 digits; empty where there is none, or it is not known
   std::vector<std::string> history;      // with the lines of seals
-  bool checksums = false;                // of a video: those of its container hold, whoever wrote it
+  bool checksums = false;                // of a video of any program: those of its container are valid
   std::vector<std::string> damage = {};  // of a folder: what differs, is gone or does not belong to it, a line each
 };
 

@@ -13,7 +13,7 @@ namespace vam::io {
 
 namespace {
 
-using model::Deviating;
+using model::ToleranceKind;
 
 constexpr double sigmas = 2;
 constexpr double sigma_of_fwhm = 2.354820045;  // of a Gaussian
@@ -37,18 +37,18 @@ model::Tolerances recorded_tolerances(const model::Printer& printer) {
                 "the tolerances"};
   }
   model::Tolerances found{};
-  const auto set = [&](Deviating what, double one_sigma) {
+  const auto set = [&](ToleranceKind what, double one_sigma) {
     found[static_cast<std::size_t>(what)] = sigmas * one_sigma;
   };
   if (const auto edges = current_record(calibration, "edges")) {
-    set(Deviating::axis, sigma(*edges, "axis_column"));
-    set(Deviating::radius, 100 * sigma(*edges, "radius") / printer.vial.radius_mm);
+    set(ToleranceKind::axis, sigma(*edges, "axis_column"));
+    set(ToleranceKind::radius, 100 * sigma(*edges, "radius") / printer.vial.radius_mm);
   }
   if (const auto latency = current_record(calibration, "latency")) {
-    set(Deviating::angle, 1e-3 * sigma(*latency, "latency") * printer.stage.speed_deg_s);
+    set(ToleranceKind::angle, 1e-3 * sigma(*latency, "latency") * printer.stage.speed_deg_s);
   }
   if (const auto beam = current_record(calibration, "beam"))
-    set(Deviating::psf, sigma(*beam, "axis_fwhm") / sigma_of_fwhm);
+    set(ToleranceKind::psf, sigma(*beam, "axis_fwhm") / sigma_of_fwhm);
   if (std::any_of(found.begin(), found.end(), [](double one) { return one > 0; })) return found;
   throw Error{Fault::data, calibration.folder + ": has no record of edges, latency or beam; run vam-calibrate"};
 }

@@ -21,7 +21,7 @@ constexpr const char* mark_name = "resumed.json";
 constexpr std::uint64_t most_mark_bytes = std::uint64_t{1} << 20;
 
 // What the events of a run say of it and of others.
-struct Ties {
+struct RunLinks {
   std::string armed_utc;
   std::string sinogram_sha256;
   std::string resumes;
@@ -29,8 +29,8 @@ struct Ties {
   std::string resumed_by;   // empty: not resumed
 };
 
-Ties ties_of(const std::string& run) {
-  Ties ties;
+RunLinks links_of(const std::string& run) {
+  RunLinks links;
   const std::string path = (fs::path(run) / "events.jsonl").string();
   LogLines events(path);
   for (std::string text; events.next(text);) {
@@ -38,15 +38,15 @@ Ties ties_of(const std::string& run) {
     if (!event.is_object()) continue;
     const std::string name = text_at(event, "event");
     if (name == "armed") {
-      ties.armed_utc = text_at(event, "utc");
-      ties.sinogram_sha256 = text_at(event, "sinogram_sha256");
-      ties.resumes = text_at(event, "resumes");
-      ties.resumes_utc = text_at(event, "resumes_utc");
+      links.armed_utc = text_at(event, "utc");
+      links.sinogram_sha256 = text_at(event, "sinogram_sha256");
+      links.resumes = text_at(event, "resumes");
+      links.resumes_utc = text_at(event, "resumes_utc");
     }
-    if (name == "resumed") ties.resumed_by = text_at(event, "by", "another print");
-    if (name == "released") ties.resumed_by = "";
+    if (name == "resumed") links.resumed_by = text_at(event, "by", "another print");
+    if (name == "released") links.resumed_by = "";
   }
-  return ties;
+  return links;
 }
 
 bool is_same(const fs::path& one, const fs::path& other) {
@@ -101,7 +101,7 @@ std::string resumption_problem(const std::string& run) {
   const std::string problem = is_there ? mark_problem(run, path) : "";
   if (is_there && problem.empty()) return "";
   try {
-    const std::string by = ties_of(run).resumed_by;
+    const std::string by = links_of(run).resumed_by;
     if (is_there) return problem + remedy_of(by);
     return by.empty() ? "" : path + ": is gone, but events.jsonl states that " + by + " resumed this print; restore it";
   } catch (const Error& error) {
@@ -120,13 +120,13 @@ void require_resumption(const std::string& run) {
   if (const std::string problem = resumption_problem(run); !problem.empty()) throw Error{Fault::data, problem};
 }
 
-std::string resumes_of(const std::string& run) { return ties_of(run).resumes; }
+std::string resumes_of(const std::string& run) { return links_of(run).resumes; }
 
 bool resumes(const std::string& run, const std::string& earlier) {
-  const Ties ties = ties_of(run);
-  if (ties.resumes.empty() || is_same(run, earlier)) return false;
-  const Ties first = ties_of(earlier);
-  return ties.resumes_utc == first.armed_utc && ties.sinogram_sha256 == first.sinogram_sha256;
+  const RunLinks links = links_of(run);
+  if (links.resumes.empty() || is_same(run, earlier)) return false;
+  const RunLinks first = links_of(earlier);
+  return links.resumes_utc == first.armed_utc && links.sinogram_sha256 == first.sinogram_sha256;
 }
 
 std::vector<std::string> unmarked_resumptions(const std::vector<std::string>& runs) {
@@ -134,7 +134,7 @@ std::vector<std::string> unmarked_resumptions(const std::vector<std::string>& ru
   std::error_code ignored;
   for (const std::string& earlier : runs) {
     const std::string mark = (fs::path(earlier) / mark_name).string();
-    if (fs::exists(fs::symlink_status(mark, ignored)) || !ties_of(earlier).resumed_by.empty()) continue;  // told
+    if (fs::exists(fs::symlink_status(mark, ignored)) || !links_of(earlier).resumed_by.empty()) continue;  // told
     for (const std::string& run : runs) {
       if (!resumes(run, earlier) || !has_light(run)) continue;
       problems.push_back(mark + ": is gone, but " + run +

@@ -18,14 +18,14 @@ namespace vam::io {
 namespace {
 
 // OpenVDB comments on std::cerr on what it meets in a damaged file; one line is enough, and it will be ours.
-struct Quiet {
-  Quiet() : saved(std::cerr.rdbuf(nullptr)) {}
-  ~Quiet() {
+struct SilencedCerr {
+  SilencedCerr() : saved(std::cerr.rdbuf(nullptr)) {}
+  ~SilencedCerr() {
     std::cerr.rdbuf(saved);
     std::cerr.clear();
   }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
+  SilencedCerr(const SilencedCerr&) = delete;
+  SilencedCerr& operator=(const SilencedCerr&) = delete;
   std::streambuf* saved;
 };
 
@@ -41,7 +41,7 @@ void for_archives(InputFile& file, const std::function<void(std::istream&)>& arc
                                  " on, is not a volume; write the file again, or truncate it there");
       }
       check_head(file.peek());
-      const Quiet quiet;
+      const SilencedCerr quiet;
       InputBuffer buffer(file);
       std::istream stream(&buffer);
       stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);

@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
 #include "io/stream/stream.hpp"
-#include "io/vdb/private/passage.hpp"
+#include "io/vdb/private/serialisation.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {
@@ -12,9 +12,9 @@ namespace vam::io {
 namespace {
 
 // Passes the voxels of the requested grid to the receiver that begin() names.
-class Taker {
+class BlockForwarder {
  public:
-  Taker(Receiver& in, const std::function<BlockTaker(const VolumeFacts&)>& begin) : in_(in), begin_(begin) {}
+  BlockForwarder(Receiver& in, const std::function<BlockTaker(const VolumeFacts&)>& begin) : in_(in), begin_(begin) {}
 
   [[nodiscard]] bool found() const { return found_; }
   [[nodiscard]] const std::string& names() const { return names_; }  // of all grids
@@ -65,10 +65,10 @@ void read_blocks(const std::string& path, const std::string& name,
   read_apart(
       {file.name(), file.size(), file.descriptor()}, [&](Sender& out) { send_archives(file, wanted, out); },
       [&](Receiver& in) {
-        Taker taker(in, begin);
-        receive_records(in, taker);
-        found = taker.found();
-        names = taker.names();
+        BlockForwarder forwarder(in, begin);
+        receive_records(in, forwarder);
+        found = forwarder.found();
+        names = forwarder.names();
       });
   if (!found) throw Error{Fault::data, file.name() + ": has no grid '" + name + "'; choose one of " + briefly(names)};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A grid's voxels one leaf (8 x 8 x 8) at a time. An archive holds a tree's topology first and the leaves' values after
-// it, in the order of the tree: so each leaf is read when its turn comes, sent and let go. This runs in the child: it
-// starts no threads, and what would start some to be destroyed stays.
+// it, in the order of the tree: so each leaf is read when its turn comes, sent and let go. This runs in the
+// single-threaded child: grids are leaked, as their destructors use threads.
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
@@ -18,8 +18,8 @@
 #include "io/stream/finite.hpp"
 #include "io/vdb/private/archive.hpp"
 #include "io/vdb/private/facts.hpp"
-#include "io/vdb/private/passage.hpp"
 #include "io/vdb/private/seals.hpp"
+#include "io/vdb/private/serialisation.hpp"
 
 namespace vam::io {
 
@@ -34,9 +34,9 @@ using Leaf = Tree::LeafNodeType;
 static_assert(Leaf::SIZE == 512 && Leaf::NodeMaskType::WORD_COUNT == 8, "what a LeafRecord holds");
 
 // OpenVDB reads name, metadata, transform and topology of a grid before it calls readBuffers().
-class PassingGrid : public FloatGrid {
+class StreamedGrid : public FloatGrid {
  public:
-  PassingGrid(std::string unique_name, bool shown, Sender& out)
+  StreamedGrid(std::string unique_name, bool shown, Sender& out)
       : unique_name_(std::move(unique_name)), shown_(shown), out_(out) {}
 
   // A sealed grid is held to its seals, the head before its topology is read.
@@ -136,9 +136,9 @@ class PassingGrid : public FloatGrid {
 };
 
 // The grids of one archive after the other.
-class PassingArchive : public openvdb::io::Archive {
+class StreamedArchive : public openvdb::io::Archive {
  public:
-  PassingArchive(const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
+  StreamedArchive(const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
       : wanted_(wanted), out_(out), kept_(kept) {}
 
   void pass(std::istream& stream) {
@@ -150,7 +150,7 @@ class PassingArchive : public openvdb::io::Archive {
     setLibraryVersion(stream);
     setDataCompression(stream);
     openvdb::MetaMap().readMeta(stream);
-    std::map<std::string, PassingGrid*> grids;  // of this archive
+    std::map<std::string, StreamedGrid*> grids;  // of this archive
     auto left = readGridCount(stream);
     if (left == 0) throw std::runtime_error("has no grids; the program that wrote it had nothing to write");
     for (; left > 0; --left) {
@@ -169,10 +169,10 @@ class PassingArchive : public openvdb::io::Archive {
 
  private:
   void pass_floats(const openvdb::io::GridDescriptor& about, std::istream& stream,
-                   std::map<std::string, PassingGrid*>& grids) {
+                   std::map<std::string, StreamedGrid*>& grids) {
     const bool shown = !wanted_.name || about.gridName() == *wanted_.name;
     if (wanted_.name && shown && found_) throw std::runtime_error(occurs_twice(*wanted_.name));
-    const auto grid = std::make_shared<PassingGrid>(about.uniqueName(), shown, out_);
+    const auto grid = std::make_shared<StreamedGrid>(about.uniqueName(), shown, out_);
     kept_.push_back(grid);
     grids[about.uniqueName()] = grid.get();
     grid->setSaveFloatAsHalf(about.saveFloatAsHalf());
@@ -206,19 +206,19 @@ class PassingArchive : public openvdb::io::Archive {
   }
 
   // The tools seal every grid of an archive. Weights and tolerances are also added by other programs.
-  void require_seals(const PassingGrid& grid) {
+  void require_seals(const StreamedGrid& grid) {
     if (grid.getName() == "weight" || grid.getName() == "tolerance") return;
     if (!first_) first_ = &grid;
     if (grid.sealed() == first_->sealed()) return;
-    const PassingGrid& sealed = grid.sealed() ? grid : *first_;
-    const PassingGrid& other = grid.sealed() ? *first_ : grid;
+    const StreamedGrid& sealed = grid.sealed() ? grid : *first_;
+    const StreamedGrid& other = grid.sealed() ? *first_ : grid;
     throw std::runtime_error("grid " + excerpt(sealed.getName()) + " is sealed, and grid " + excerpt(other.getName()) +
                              " is not; make the file again");
   }
 
   const WantedGrids& wanted_;
   Sender& out_;
-  const PassingGrid* first_ = nullptr;  // of this archive; on one stream archives of several programs may follow
+  const StreamedGrid* first_ = nullptr;  // of this archive; on one stream archives of several programs may follow
   bool found_ = false;
   std::vector<std::shared_ptr<void>>& kept_;
 };
@@ -226,7 +226,7 @@ class PassingArchive : public openvdb::io::Archive {
 }  // namespace
 
 void pass_archives(InputFile& file, const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept) {
-  PassingArchive archive(wanted, out, kept);
+  StreamedArchive archive(wanted, out, kept);
   for_archives(file, [&](std::istream& stream) { archive.pass(stream); });
   out.put(Record::end);
 }

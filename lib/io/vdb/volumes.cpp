@@ -13,7 +13,7 @@
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/grid.hpp"
-#include "io/vdb/private/passage.hpp"
+#include "io/vdb/private/serialisation.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {

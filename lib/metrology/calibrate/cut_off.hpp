@@ -8,7 +8,7 @@
 
 namespace vam::metrology {
 
-/// Of a frame at one height: sums over its pixels, so that those of several frames add up.
+/// Sums over the pixels of a frame at one height; those of several frames add up.
 struct BandReading {
   double pixels = 0;
   double light = 0;

@@ -30,7 +30,8 @@ static_assert(least_readings == 2 * unknowns);
 
 class BandModel {
  public:
-  BandModel(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes, const Steepest& first)
+  BandModel(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes,
+            const SteepestEdges& first)
       : shapes_(shapes), width_px_(scan.width_px) {
     const double middle = 0.5 * (first.rise + first.fall);
     const double radius = 0.5 * (first.fall - first.rise);
@@ -62,8 +63,7 @@ class BandModel {
     }
     return out;
   }
-  // Of the light's parameters those that bring it nearest to the readings; with an even share only the first of each
-  // edge's terms.
+  // The light's parameters that fit the readings best; with an even share only the first of each edge's terms.
   [[nodiscard]] std::vector<double> best_parts(std::vector<double> rows, bool even) const {
     for (std::size_t i = 0; even && i < signal_.size(); ++i) {
       for (const std::size_t share : {low_share, high_share}) {
@@ -110,7 +110,7 @@ std::ptrdiff_t half_of_light(const std::vector<double>& signal, double ground) {
 
 }  // namespace
 
-Steepest steepest(const std::vector<double>& column, const std::vector<double>& signal) {
+SteepestEdges steepest(const std::vector<double>& column, const std::vector<double>& signal) {
   const std::size_t n = signal.size();
   std::vector<double> smooth(n);
   double noise = 0;
@@ -125,7 +125,7 @@ Steepest steepest(const std::vector<double>& column, const std::vector<double>& 
   const auto middle = smooth.begin() + half_of_light(smooth, *low);
   const double rises = 0.5 * (*low + *std::max_element(smooth.begin(), middle + 1));
   const double falls = 0.5 * (*low + *std::max_element(middle, smooth.end()));
-  Steepest edges;
+  SteepestEdges edges;
   std::size_t first = 0;
   while (first < n && smooth[first] < rises) ++first;
   std::size_t last = n;
@@ -144,7 +144,7 @@ Steepest steepest(const std::vector<double>& column, const std::vector<double>& 
 // share may take an edge's place. So they may with a sweep of wide steps whose signal is half its height far inside the
 // edges: the best of several radii is taken. Then all together, for the sigmas.
 BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes,
-                   const Steepest& first) {
+                   const SteepestEdges& first) {
   using Values = std::vector<double>;
   const std::string subject = "sweep: vial edges";
   const BandModel model(scan, signal, shapes, first);

@@ -63,7 +63,7 @@ double top_of(const std::vector<double>& profile, const Crossings& at) {
   return (sxx * sy - sx * sxy) / (n * sxx - sx * sx);
 }
 
-// Of what exceeds the level, as far as it is joined to the samples between the crossings.
+// Centroid of the excess over the level, where it is connected to the samples between the crossings.
 double centroid_above(const std::vector<double>& profile, const Crossings& at, double level) {
   auto first = static_cast<std::size_t>(std::ceil(at.begin));
   while (first > 0 && profile[first - 1] > level) --first;

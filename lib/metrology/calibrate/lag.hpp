@@ -13,7 +13,7 @@ namespace vam::metrology {
 /// Degrees a second of the straight line through the angles; at least two different times. Throws Fault::data.
 [[nodiscard]] double turning_speed_deg_s(const std::vector<double>& time_s, const std::vector<double>& angle_deg);
 
-/// By how much a circle's phase follows an error of each frame's angle: frames at which the bead moves sideways count.
+/// Sensitivity of a circle's phase to an error of each frame's angle: frames at which the bead moves sideways count.
 /// The sum is 1.
 [[nodiscard]] std::vector<double> phase_weights(const std::vector<double>& angle_deg, double phase_deg);
 

@@ -89,17 +89,17 @@ Valley valley_between(const BlinkScan& scan, const Blinks& blinks, double low_s,
   return {latency_s, line_at(latency_s)};
 }
 
-// Every valley of the misfit from one end to the other, and beside them its course at coarse steps.
-struct Landscape {
+// Every valley of the misfit from one end to the other, and the misfit at coarse steps.
+struct MisfitCurve {
   double rise_s = 0;
   std::vector<double> misfit;  // a step beyond either end: infinite
   std::vector<Valley> valleys;
 };
 
-Landscape survey(const BlinkScan& scan, double rise_s) {
+MisfitCurve survey(const BlinkScan& scan, double rise_s) {
   constexpr double beyond = std::numeric_limits<double>::infinity();
   const Blinks blinks(scan, rise_s);
-  Landscape all{rise_s, {beyond}, {}};
+  MisfitCurve all{rise_s, {beyond}, {}};
   for (std::size_t i = 0; i <= steps; ++i) {
     all.misfit.push_back(straight(blinks.lit_parts(at_step(i)), scan.light).misfit);
   }
@@ -111,12 +111,12 @@ Landscape survey(const BlinkScan& scan, double rise_s) {
   return all;
 }
 
-Valley deepest(const Landscape& all) {
+Valley deepest(const MisfitCurve& all) {
   return *std::min_element(all.valleys.begin(), all.valleys.end(),
                            [](const Valley& a, const Valley& b) { return a.line.misfit < b.line.misfit; });
 }
 
-// By how many standard deviations of the difference the other fits worse [VUO89].
+// How much worse the other fits, in standard deviations of the difference [VUO89].
 double worse_by(const Line& other, const Line& best) {
   const auto n = static_cast<double>(best.square.size());
   const double mean = (other.misfit - best.misfit) / n;
@@ -127,18 +127,18 @@ double worse_by(const Line& other, const Line& best) {
   return mean / std::sqrt(std::max(variance / n, 1e-300));
 }
 
-// Of the time constant that fits best of a few that are far apart; a longer one only where it is clearly better.
-Landscape survey_all(const BlinkScan& scan) {
-  Landscape best = survey(scan, fast_s);
+// The misfit by the best of a few time constants that are far apart; a longer one only where it is clearly better.
+MisfitCurve survey_all(const BlinkScan& scan) {
+  MisfitCurve best = survey(scan, fast_s);
   for (const double rise_s : {0.002, 0.008}) {
-    Landscape other = survey(scan, rise_s);
+    MisfitCurve other = survey(scan, rise_s);
     if (worse_by(deepest(best).line, deepest(other).line) >= clearly) best = std::move(other);
   }
   return best;
 }
 
 // The valley of the time constant that fits best about that landscape's.
-Valley refined(const BlinkScan& scan, const Landscape& all, double& rise_s) {
+Valley refined(const BlinkScan& scan, const MisfitCurve& all, double& rise_s) {
   const Valley rough = deepest(all);
   const auto valley = [&](double rise) {
     const double about_s = std::abs(rise - all.rise_s) + coarse_s;
@@ -152,7 +152,7 @@ Valley refined(const BlinkScan& scan, const Landscape& all, double& rise_s) {
 }
 
 // The deepest but for those in the best one's own: where blinks explain more than half of what the best explain.
-const Valley* runner_up(const Landscape& all, const Valley& best, double unexplained) {
+const Valley* runner_up(const MisfitCurve& all, const Valley& best, double unexplained) {
   const double rim = 0.5 * (best.line.misfit + unexplained);
   auto low = static_cast<std::size_t>(std::lround((best.latency_s - earliest_s) / coarse_s)) + 1;
   auto high = low;
@@ -188,7 +188,7 @@ Latency measure_latency(const BlinkScan& scan) {
     throw Error{Fault::data, "latency: " + std::to_string(scan.begin_s.size()) + " frames and " +
                                  std::to_string(scan.lit_s.size()) + " flashes; at least 8 and 1 are needed"};
   }
-  const Landscape all = survey_all(scan);
+  const MisfitCurve all = survey_all(scan);
   double rise_s = 0;
   const Valley best = refined(scan, all, rise_s);
   const Blinks blinks(scan, rise_s);

@@ -29,13 +29,13 @@ void require_camera_beside(double azimuth_deg) {
 /// A band with light between two dark sides.
 struct LitBand {
   std::size_t band;
-  Steepest first;  // where its edges about are
+  SteepestEdges first;  // where its edges about are
 };
 
 std::vector<LitBand> lit_bands(const SweepScan& scan) {
   std::vector<LitBand> lit;
   for (std::size_t b = 0; b < scan.signal.size() && scan.column.size() >= least_readings; ++b) {
-    const Steepest edges = steepest(scan.column, scan.signal[b]);
+    const SteepestEdges edges = steepest(scan.column, scan.signal[b]);
     if (edges.clear) lit.push_back({b, edges});
   }
   if (!lit.empty()) return lit;

@@ -26,7 +26,7 @@ using outline::Outline;
 using outline::OutlinePoint;
 using outline::Similar;
 
-// Heights above the base; where there is no material, base.
+// Heights above the base; the base itself where there is no material.
 struct Design {
   Image above_base_mm;
   double pixel_mm = 0;

@@ -23,7 +23,7 @@ struct AlignmentFacts {
 
 struct Inspection {
   Distances distances;
-  std::vector<solid::Foot> feet;  // nearest points of the design for distances.on_print, where there are regions
+  std::vector<solid::ClosestPoint> feet;  // on the design, of distances.on_print, where there are regions
   std::vector<RegionPoints> regions;
   std::optional<double> tolerance_mm;
   AlignmentFacts pose;

@@ -39,7 +39,7 @@ constexpr double near_it = 5e-3;  // of the design's largest dimension: meshes o
 
 bool belongs(const Region& region, double near_mm, const Vector3& point, const Vector3& normal) {
   if (!region.faces) return region.box.contains(point);
-  const solid::Foot foot = region.faces->closest(point);
+  const solid::ClosestPoint foot = region.faces->closest(point);
   return length(foot.point - point) <= near_mm && dot(foot.normal, normal) > alike;
 }
 
@@ -50,7 +50,7 @@ double angle_deg(const Vector3& a, const Vector3& b) {
 // The largest ball inside the design that touches its surface at a place [MBC12]: where it touches the other side.
 solid::SurfaceSample other_side(const solid::SurfaceSample& from, const solid::Surface& design, double largest_mm) {
   double radius_mm = largest_mm;
-  solid::Foot foot;
+  solid::ClosestPoint foot;
   constexpr int rounds = 30;
   for (int round = 0; round < rounds; ++round) {
     const Vector3 centre = from.point - radius_mm * from.normal;
@@ -64,7 +64,7 @@ solid::SurfaceSample other_side(const solid::SurfaceSample& from, const solid::S
 
 /// Points of the design in the region, and of the print nearest to them; sides of a print that is too large, which an
 /// edge of the design is nearest to, face elsewhere.
-void gather(const Distances& distances, std::span<const solid::Foot> feet, RegionPoints& points) {
+void gather(const Distances& distances, std::span<const solid::ClosestPoint> feet, RegionPoints& points) {
   const double near_mm = near_it * distances.largest_dimension_mm;
   for (std::size_t i = 0; i < feet.size(); ++i) {
     const bool faces = dot(distances.on_print[i].normal, feet[i].normal) > alike;
@@ -78,7 +78,7 @@ void gather(const Distances& distances, std::span<const solid::Foot> feet, Regio
 
 /// Leaves only what faces as wanted.
 template <class Wanted>
-void keep_facing(const Distances& distances, std::span<const solid::Foot> feet, const Wanted& wanted,
+void keep_facing(const Distances& distances, std::span<const solid::ClosestPoint> feet, const Wanted& wanted,
                  RegionPoints& points) {
   std::erase_if(points.print, [&](std::size_t i) { return !wanted(feet[i].normal); });
   std::erase_if(points.design, [&](std::size_t i) { return !wanted(distances.on_design[i].normal); });
@@ -211,7 +211,7 @@ std::vector<std::string> region_figures(RegionKind kind) {
   return names;
 }
 
-RegionPoints find_region(const Region& region, const Distances& distances, std::span<const solid::Foot> feet,
+RegionPoints find_region(const Region& region, const Distances& distances, std::span<const solid::ClosestPoint> feet,
                          const solid::Surface& design, const solid::Surface& print) {
   RegionPoints points;
   points.region = region;

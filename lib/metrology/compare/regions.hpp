@@ -17,7 +17,7 @@
 
 namespace vam::metrology {
 
-/// What a region is measured as, beside its deviation.
+/// Geometry that is measured in a region, beside its deviation.
 enum class RegionKind { surface, plane, cylinder, wall };
 
 /// The design's surface within a box or on some faces, in the design's coordinates.
@@ -34,7 +34,7 @@ struct Region {
 /// a mesh, which is not read; without "plane:" a surface. Throws Fault::usage.
 [[nodiscard]] Region parse_region(const std::string& text);
 
-/// What conditions may say of a region of that kind, after its name and a dot.
+/// Names of figures for conditions on a region of that kind, after its name and a dot.
 [[nodiscard]] std::vector<std::string> region_figures(RegionKind kind);
 
 /// The points of both surfaces that belong to a region.
@@ -56,7 +56,7 @@ struct RegionPoints {
 /// `feet`: nearest points of the design for on_print. Throws Fault::data when less than 100 points of either surface
 /// belong to it.
 [[nodiscard]] RegionPoints find_region(const Region& region, const Distances& distances,
-                                       std::span<const solid::Foot> feet, const solid::Surface& design,
+                                       std::span<const solid::ClosestPoint> feet, const solid::Surface& design,
                                        const solid::Surface& print);
 
 /// A disturbance of the print's distances: of on_print, of on_design and of the opposite sides of a region's wall.

@@ -35,8 +35,8 @@ std::vector<std::size_t> parts_of(const std::vector<solid::SurfaceSample>& point
   return part;
 }
 
-/// By what share of its way a turn about the axis, or a shift along it, moves the surface along its normals: 0 where it
-/// slides on itself. The facets of a round surface leave some 0.001.
+/// Observability of a rotation about the axis, and of a shift along it: mean of abs(n . v), 0 if the surface slides on
+/// itself. The facets of a round surface leave some 0.001.
 struct Observability {
   double turn = 0;
   double shift = 0;

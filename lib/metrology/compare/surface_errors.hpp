@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of the errors of a print's surface.
+// Known errors of a print's surface.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct SurfaceErrors {
   double extreme_mm = 0;     // of the places that err most, by which an extreme differs
 };
 
-/// Of the cells of a volume's surface, as a standard uncertainty, measured on cylinders [physics §8].
+/// Standard uncertainty of a volume's surface, in its cells, measured on cylinders [physics §8].
 inline constexpr double resolved_cells = 0.04;
 
 /// And of the extremes, where a face and its rim ripple: of noise-free views flatness and cylindricity are up to 0.8

@@ -28,7 +28,7 @@ double normal_number(std::uint64_t seed) {
   return radius * std::cos(2 * std::numbers::pi * unit_interval(scrambled(seed + 1)));
 }
 
-/// What the errors of a triangle's vertices are at a point in it: linear between them.
+/// Errors of a triangle's vertices at a point in it, interpolated linearly.
 struct Shares {
   std::array<int, 3> vertex{};
   std::array<double, 3> mm{};
@@ -213,8 +213,8 @@ class Trials {
   std::optional<solid::PoseResponse> pose_;
 };
 
-/// What a figure's name in the report says of it. Noise of the print is in an extreme already; the same again moves it
-/// by sqrt(2) - 1 of what it did.
+/// Whether the figure of this name is an extreme. The noise of the print is in an extreme already; the same noise again
+/// moves it by sqrt(2) - 1 of what it did.
 bool is_extreme(const std::string& name) {
   constexpr std::array<const char*, 5> names{"min", "max", "hausdorff", "flatness", "cylindricity"};
   return std::any_of(names.begin(), names.end(), [&](const char* prefix) { return name.starts_with(prefix); });
@@ -224,7 +224,7 @@ bool is_exact(const std::string& name) {
   return name == "samples" || name == "largest_dimension_mm" || name.starts_with("design_");
 }
 
-/// What the places that err most add to an extreme: in mm, and in % of the largest dimension.
+/// Contribution of the least certain places to an extreme: in mm, and in % of the largest dimension.
 struct Places {
   double mm, percent;
 };

@@ -8,10 +8,10 @@
 
 namespace vam::metrology {
 
-/// Of each figure of figures_json() the expanded uncertainty (k = 2), under the same keys, by Monte Carlo [JCGM08]: 20
-/// trials disturb the distances by drawn errors, take out what the alignment would, and measure a quarter of the
-/// points; twice the standard deviation and mean departure combined. The mean departure of an extreme counts 1 /
-/// (sqrt(2) - 1) times, as it has the noise of the print already.
+/// Expanded uncertainty (k = 2) of each figure of figures_json(), under the same keys, by Monte Carlo [JCGM08]. 20
+/// trials disturb the distances by drawn errors, remove the effect of the alignment, and measure a quarter of the
+/// points. The uncertainty is twice the standard deviation and mean departure combined; the mean departure of an
+/// extreme counts 1 / (sqrt(2) - 1) times, as it has the noise of the print already.
 [[nodiscard]] Json expanded_uncertainty(const Inspection& inspection, const model::TriangleSoup& print,
                                         const SurfaceErrors& errors);
 

@@ -27,7 +27,7 @@ struct BodyRules {
   std::optional<Neighbourhood> inside;  // none: the whole volume
 };
 
-/// What was kept and what was not.
+/// Bodies that were kept and dropped.
 struct BodyCount {
   int kept = 0;
   int dropped = 0;         // bodies too small or elsewhere
@@ -44,8 +44,8 @@ BodyCount keep_bodies(model::Volume& volume, double level, const BodyRules& rule
 
 [[nodiscard]] Json to_json(const BodyCount& count);
 
-/// Where { volume >= level } reaches the end of what the camera saw, so that its surface there is a cut: any of "top",
-/// "bottom" and "side".
+/// Sides on which { volume >= level } reaches the end of the camera's view, so that its surface there is a cut: any of
+/// "top", "bottom" and "side".
 [[nodiscard]] std::vector<std::string> cut_sides(const model::Volume& volume, double level);
 
 }  // namespace vam::metrology

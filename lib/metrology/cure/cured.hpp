@@ -28,7 +28,7 @@ struct Cured {
   double missing_mm3 = 0;   // in the target, not cured
   double overcure_mm3 = 0;  // cured, not in the target
   double iou = 0;           // of the two
-  /// Of the target as the print's voxels see it, which are not the target's: 100 before anything is cured.
+  /// Relative to the target as sampled by the print's voxels, which are not the target's: 100 before anything is cured.
   [[nodiscard]] double missing_percent() const { return 100 * missing_mm3 / (missing_mm3 + cured_mm3 - overcure_mm3); }
   [[nodiscard]] double overcure_percent() const { return 100 * overcure_mm3 / target_mm3; }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the resin cures ahead of its dose or behind it: a smooth field, by the scattering that its views show, and what
-// the light that is left has to take into account [physics §14.7].
+// The resin's sensitivity, by which it cures ahead of its dose or behind it: a smooth field, fitted to the scattering
+// in the views, and taken into account by the light that is left [physics §14.7].
 #pragma once
 
 #include <array>
@@ -35,8 +35,8 @@ struct SensitivityField {
   [[nodiscard]] double sigma_at(double x_mm, double y_mm, double z_mm) const;
 };
 
-/// What is expected before anything is seen: no deviation, with these standard deviations of the whole (lamp, critical
-/// dose) and of each further term.
+/// Prior of the field: no deviation, with these standard deviations of the whole (lamp, critical dose) and of each
+/// further term.
 struct SensitivityPrior {
   double whole = 0.3;
   double term = 0.1;
@@ -46,7 +46,7 @@ struct SensitivityPrior {
 /// Its box is that of doses above half of the critical one. Throws Fault::data where there are none.
 [[nodiscard]] SensitivityField expected_sensitivity(const model::Volume& dose, const ScatterCurve& curve,
                                                     const SensitivityPrior& prior);
-/// Of the turn after the one that the field is of.
+/// The field's prediction for the next turn.
 [[nodiscard]] SensitivityField carried_on(SensitivityField field, const SensitivityPrior& prior);
 
 /// A planned dose, mJ/cm3, in the stretched frame. Of three it is the parabola through them: with the axis at
@@ -102,7 +102,7 @@ struct CorrectionLimits {
   double rms = 3;          // of the residuals, in their standard deviations
   double change = 0.05;    // of its mean since the previous field, beyond three standard deviations of that
 };
-/// What speaks against light by this fit, a phrase each; empty: nothing does. before: of the previous field.
+/// Reasons to reject the fit, a phrase each; empty: none. before: of the previous field.
 [[nodiscard]] std::vector<std::string> doubts(const SensitivityFit& fit, const SensitivityRange& range,
                                               const SensitivityRange& before, const CorrectionLimits& limits);
 

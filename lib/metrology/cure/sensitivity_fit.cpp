@@ -23,7 +23,7 @@ using Matrix = Eigen::Matrix<double, numbers, numbers>;
 constexpr double least_dose = 0.3;        // of the critical one: with less nothing is in question
 constexpr double correlated_voxels = 27;  // voxels whose noise is one, over which rays are interpolated and filtered
 constexpr double least_noise = 0.03;      // of the saturation: what the noise does not contain, as streaks and kinetics
-// Of the saturation: densities beyond tell no more than that they are, as the tails of the curve are not the resin's.
+// Fractions of the saturation. Densities beyond are only classified, as the tails of the curve are not the resin's.
 constexpr double hardly = 0.1;
 constexpr double nearly = 0.9;
 constexpr int steps = 12;
@@ -145,7 +145,7 @@ struct Normal {
   long voxels = 0;
 };
 
-/// What the densities are expected to be, and their derivatives by the logarithm of the dose and by the axis.
+/// Expected densities, and their derivatives by the logarithm of the dose and by the axis.
 struct Expected {
   std::vector<float> density, by_log, by_axis;
 };

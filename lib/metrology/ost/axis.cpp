@@ -75,12 +75,12 @@ double at(const float* row, int width, double x) {
 using Pull = std::array<double, 2>;  // on column and tilt
 constexpr int ranges = 16;
 
-/// What residuals count: beyond a bound the less the farther they are, as dirt passes there.
+/// Weights of residuals: beyond a bound they fall with the distance, as dirt passes there.
 struct Bound {
   double residual = 1e300;
   [[nodiscard]] bool holds(double r) const { return std::abs(r) <= residual; }
   [[nodiscard]] double weight(double r) const { return holds(r) ? 1.0 : std::pow(residual / r, 2); }
-  /// By how much the pull of a residual grows with it: beyond the bound it falls.
+  /// Derivative of a residual's pull: negative beyond the bound.
   [[nodiscard]] double stiffness(double r) const { return holds(r) ? 1.0 : -weight(r); }
 };
 
@@ -205,7 +205,7 @@ Pull disagreement(const Normal& n, double cc, double tt, double left) {
   return most;
 }
 
-// By how much residuals that hardly count, but were thought to hold, make deviations larger. Of blurred noise, which
+// Factor by which residuals of low weight that were expected to hold enlarge deviations. For blurred noise, which
 // neighbours share, it is never more than 2.45.
 double softness(double stiff, double thought) {
   constexpr double most = 2.45;

@@ -8,7 +8,7 @@
 
 namespace vam::metrology {
 
-/// What was found, with one standard deviation.
+/// Result, with one standard deviation.
 struct AxisEstimate {
   AxisPose pose;
   double column_sigma = 0;

@@ -63,7 +63,7 @@ void add_angle(std::span<const Image> level, const Turns::Turn& turn, int angle,
   }
 }
 
-// Of an even number the mean of the two in the middle: the upper one would be too bright by a part of the noise.
+// Median; of an even number the mean of the two in the middle, as the upper one is too bright by a part of the noise.
 float middle(std::vector<float>& values) {
   const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), upper, values.end());

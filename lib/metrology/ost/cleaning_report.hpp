@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a real bench adds to the views of a print: an even background, light that flickers, specks that stay where they
-// are, bubbles that pass.
+// Disturbances of a real bench in the views of a print: an even background, flicker, static specks, passing bubbles.
 #pragma once
 
 #include "base/image.hpp"
@@ -8,7 +7,7 @@
 
 namespace vam::metrology {
 
-/// What was found in the views of one turn and taken out.
+/// Disturbances that were removed from the views of one turn.
 struct CleaningReport {
   double background = 0;        // even, in view units
   bool has_background = false;  // false: no part of the image is empty, nothing was subtracted

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What parallel rays of one direction add up to at a height of a body is the same in all directions [HEL65]. The views'
-// own rays are not parallel: what they add up to changes smoothly over the turn. So neighbouring views are compared
+// The sum of parallel rays at a height of a body is the same in all directions [HEL65]. The views' own rays are not
+// parallel: their sum changes smoothly over the turn. So neighbouring views are compared
 // with this smooth course, and the course itself is found from the parallel rays that are made of the views [physics
 // §8].
 #include "metrology/ost/flicker.hpp"
@@ -65,7 +65,7 @@ Readings median_of(const std::vector<Readings>& heights) {
   return out;
 }
 
-// Of each view, from the totals of its rows: [height][view].
+// Brightness of each view, from the totals of its rows: [height][view].
 Readings apart_from_course(const std::vector<Readings>& totals, std::span<const double> angles_rad) {
   constexpr int rounds = 3;  // a view out of line pulls the course towards itself, less each time
   const std::vector<double> rows = harmonics_at(angles_rad);
@@ -111,7 +111,7 @@ std::vector<Readings> parallel_totals(const std::vector<Image>& sinograms) {
   return all;
 }
 
-// What grows scatters more from view to view, smoothly: the cubic through the values in their order.
+// A growing print scatters more from view to view, smoothly: the cubic fit to the values in their order.
 Readings smooth_course(const Readings& values) {
   constexpr std::size_t powers = 4;
   std::vector<double> rows;

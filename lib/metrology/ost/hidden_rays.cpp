@@ -25,7 +25,7 @@ class Comparison {
   Comparison(const BodyPaths& bodies, const std::vector<Image>& sinograms, int angle, float least)
       : bodies_(bodies), sinograms_(sinograms), angle_(angle), least_(least), passed_(sinograms.size()) {}
 
-  // Of the rays of a column, those from the first to the last that can be too bright. False: there is none.
+  // Rays of a column from the first to the last that can be too bright. False: there is none.
   bool look(int t) {
     const int heights = count_of(sinograms_);
     int first = 0;
@@ -68,7 +68,7 @@ class Comparison {
   std::vector<float> passed_;
 };
 
-// What the rays pass that are hidden, or next to them in the order of angles: one image an angle, columns x heights.
+// Paths of hidden rays, and of those next to them in angle, through bodies: one image an angle, columns x heights.
 std::vector<Image> passed_by(const BodyPaths& bodies, const std::vector<RayMask>& hidden, int width, int heights) {
   const auto angles = count_of(hidden);
   std::vector<Image> passed(hidden.size());

@@ -48,7 +48,7 @@ RayMask rays_beyond(const std::vector<Image>& sinograms, std::span<const int> ro
   return any ? mask : RayMask{};
 }
 
-// By how much a ray stands out of the views before and after.
+// Excess of a ray over the views before and after.
 float passing(const Image& s, int t, int angle) {
   constexpr int views = 4;
   const int n = s.height;

@@ -27,7 +27,7 @@ class LineEnds {
  public:
   LineEnds(const Image& s, int angle)
       : near_(s.row(angle)), far_(s.row((angle + s.height / 2) % s.height) + s.width - 1) {}
-  /// What the line of offset t shows from this end less what it shows from the other.
+  /// Difference of the line of offset t between this end and the other.
   [[nodiscard]] double difference(int t) const { return static_cast<double>(near_[t]) - static_cast<double>(far_[-t]); }
 
  private:
@@ -102,7 +102,7 @@ Sums sums_of(const Lines& lines, double bound) {
   return all;
 }
 
-// Of the first `count` unknowns; the others stay.
+// Inverse over the first `count` unknowns; the others stay.
 bool inverted(Matrix m, int count, Matrix& inverse) {
   double scale = 1;
   for (int i = count; i < unknowns; ++i) {
@@ -173,7 +173,7 @@ Vector variances(const Sums& sums, const Matrix& inverse) {
   return most;
 }
 
-// What the lines on edges differ by between their ends, those that see a motion best.
+// Differences between the ends of lines on edges, which see a motion best.
 std::vector<double> edge_differences(const Lines& lines) {
   struct Line {
     double sight;

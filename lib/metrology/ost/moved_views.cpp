@@ -92,7 +92,7 @@ std::vector<Image> slopes(const std::vector<Image>& level, const std::vector<Col
   return out;
 }
 
-// What each ray would gain if the light were not absorbed, mu per column: mu M, M the integral of u rho along it. As
+// Gain of each ray if the light were not absorbed, mu per column: mu M, M the integral of u rho along it. As
 // dP/dtheta = -dM/dt, the views hold it: P is the mean of both ends of a line, and the integral over t is the mean of
 // those from either side.
 Image absorbed(const Image& s) {
@@ -113,8 +113,8 @@ Image absorbed(const Image& s) {
   return out;
 }
 
-// What views lack that were divided by their intensities: what absorption takes from all rays of an angle alike, the
-// median over the heights.
+// Removes the part of the gain that is common to all rays of an angle, the median over the heights: views that were
+// divided by their intensities do not have it.
 void leave_even_light(const std::vector<Image>& sinograms, std::vector<Image>& gain) {
   parallel_for(gain.front().height, [&](int a) {
     std::vector<double> shares;

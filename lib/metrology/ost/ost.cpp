@@ -30,7 +30,7 @@ namespace vam::metrology {
 
 namespace {
 
-// Of a pass: all, where that takes little memory beside views and volume; else a part of them.
+// Slices of a pass: all, if they take little memory beside views and volume; else a part of them.
 int slices_a_pass(int columns, int angles) {
   constexpr std::size_t little = std::size_t{1} << 25;  // values
   constexpr std::size_t fewest = 64;

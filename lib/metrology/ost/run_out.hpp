@@ -11,14 +11,14 @@ namespace vam::metrology {
 /// From the axis of the stage to that of the vial, in the frame of the part.
 using RunOutVector = std::array<double, 2>;
 
-/// What was found, with one standard deviation.
+/// Result, with one standard deviation.
 struct RunOut {
   bool determined = false;  // the rest is without meaning when it is not
   RunOutVector mm{};
   RunOutVector sigma_mm{};
   double column = 0;  // of the stage's axis, found together with it
   double column_sigma = 0;
-  /// Of the scattered light where none is given, found together with it; where it is seen, no run-out is.
+  /// Absorption of the scattered light, fitted where none is given; where it is seen, run-out is not determined.
   double absorption_per_mm = 0;
   double absorption_sigma_per_mm = 0;
 

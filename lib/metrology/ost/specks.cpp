@@ -14,7 +14,7 @@ namespace vam::metrology {
 
 namespace {
 
-// Of an even number, so that each has one that sees its lines from their other ends.
+// An even number, so that each part has one that sees its lines from their other ends.
 constexpr int parts = 8;
 using PartMeans = std::array<Image, parts>;
 
@@ -43,7 +43,7 @@ float middle_of(std::array<float, parts> values) {
   return 0.5F * (values[parts / 2 - 1] + values[parts / 2]);
 }
 
-/// What stays at a pixel over the turn: medians of the parts', so that what passes in up to three of them does not
+/// Static light of a pixel over the turn: the median of the parts, so that what passes in up to three of them does not
 /// count.
 struct StaticComponent {
   Image mean;        // as symmetric about the axis as the means are
@@ -69,7 +69,7 @@ StaticComponent steady(const PartMeans& means) {
   return out;
 }
 
-// What a pixel departs by from the median of its row's neighbourhood.
+// Departure of a pixel from the median of its row's neighbourhood.
 float departure(const Image& image, int t, int k) {
   constexpr int beside = 9;
   const float* row = image.row(k);
@@ -78,8 +78,8 @@ float departure(const Image& image, int t, int k) {
   return row[t] - static_cast<float>(stats::median(std::vector<float>(row + first, row + last)));
 }
 
-// Of the differences from the other ends of the lines, of which both the edges of a turning body and its faces drop
-// out. Those on the other side of the axis are the same with the other sign.
+// Departures of the differences between both ends of lines, in which the edges and faces of a turning body cancel.
+// Those on the other side of the axis are the same with the other sign.
 Image departures(const Image& difference) {
   Image out(difference.width, difference.height);
   parallel_for(out.height, [&](int k) {
@@ -119,7 +119,7 @@ void close_on_axis(RayMask& marked, int width, int heights) {
   }
 }
 
-/// What rays around a hidden one say of it: of the same view, weighted by the inverse squares of their distances.
+/// Estimate of a hidden ray from those around it in the same view, weighted by the inverse squares of their distances.
 struct Tap {
   int column;
   int height;

@@ -19,7 +19,7 @@ struct CameraView {
   double time_s = 0;
 };
 
-/// What the camera adds by itself. Empty images mean none.
+/// Fields that the camera adds. Empty images mean none.
 struct CameraFields {
   Image dark;  // with the light off, subtracted
   Image flat;  // of an even scene, dark subtracted already; divided out, scaled to its mean

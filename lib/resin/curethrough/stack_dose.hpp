@@ -19,7 +19,7 @@ class StackDose {
 
   /// First reading: every slice in printing order. Throws Fault::data when a slice differs in size from the first.
   void add(const Image& slice);
-  /// Between the readings.
+  /// Call between the first and the second reading.
   void turn();
   /// Second reading, of row y of `block`, which begins with slice `first`, a multiple of block_slices, and is as long
   /// (shorter only at the end): below[i * width + x] becomes Omega at the node below slice first + i. All else follows

@@ -29,7 +29,7 @@ class WayAlong {
   explicit WayAlong(const Surface& surface) : surface_(surface) {}
 
   double operator()(const Vector3& point) {
-    const Foot foot = surface_.closest(point, start_);
+    const ClosestPoint foot = surface_.closest(point, start_);
     start_ = foot.triangle;
     const double distance = length(point - foot.point);
     const bool may_cross = !begun_ || distance + distance_ <= length(point - point_) * (1 + 1e-9);

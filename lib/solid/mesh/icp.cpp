@@ -60,7 +60,7 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Sur
     int start = 0;
     for (std::size_t i = begin; i < std::min(n, begin + chunk); ++i) {
       pairs.moved[i] = pose(points[i]);
-      const Foot foot = reference.closest(from_eigen(pairs.moved[i]), start);
+      const ClosestPoint foot = reference.closest(from_eigen(pairs.moved[i]), start);
       start = foot.triangle;
       pairs.foot[i] = to_eigen(foot.point);
       pairs.normal[i] = to_eigen(foot.normal);

@@ -85,7 +85,7 @@ class OverlapSearch::DistanceGrid {
       for (int j = 0; j < n_[1]; ++j) {
         for (int i = 0; i < n_[0]; ++i) {
           const Vector3 p{low_[0] + i * cell_, low_[1] + j * cell_, low_[2] + k * cell_};
-          const Foot foot = design.closest(p, start);
+          const ClosestPoint foot = design.closest(p, start);
           start = foot.triangle;
           values_[at(i, j, k)] = static_cast<float>(std::min(most_, length(p - foot.point)));
         }

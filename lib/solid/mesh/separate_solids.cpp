@@ -15,7 +15,7 @@ namespace vam::solid {
 
 namespace {
 
-/// Of each point, the one that stands for all it is connected with.
+/// For each point: the representative of its connected points.
 std::vector<int> roots(DisjointSets<int>& connected) {
   std::vector<int> all(connected.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = connected.of(static_cast<int>(i));
@@ -52,7 +52,7 @@ class Pieces {
   std::vector<int> piece_of_;  // of each point
 };
 
-/// Of each triangle in the box those of other pieces that its edges cross, one of each.
+/// For each triangle in the box: one crossed triangle of each other piece.
 std::vector<std::vector<int>> crossed(const model::TriangleSoup& mesh, const Pieces& pieces, const Bounds& box) {
   std::vector<std::vector<int>> found(mesh.triangles.size());
   constexpr int at_once = 1000;

@@ -39,14 +39,14 @@ struct Surface::State {
 Surface::Surface(const model::TriangleSoup& mesh) : state_(std::make_unique<State>(mesh)) {}
 Surface::~Surface() = default;
 
-Foot Surface::closest(const Vector3& point, int start) const {
+ClosestPoint Surface::closest(const Vector3& point, int start) const {
   const Nearest nearest = state_->tree->nearest(point, start);
   const Vector3 normal = twice_area(state_->tree->triangles[nearest.triangle]);
   return {nearest.point, (1 / length(normal)) * normal, nearest.triangle};
 }
 
-std::vector<Foot> Surface::closest(std::span<const Vector3> points) const {
-  std::vector<Foot> feet(points.size());
+std::vector<ClosestPoint> Surface::closest(std::span<const Vector3> points) const {
+  std::vector<ClosestPoint> feet(points.size());
   for_chunks(points.size(), [&](std::size_t i, int& start) {
     feet[i] = closest(points[i], start);
     start = feet[i].triangle;

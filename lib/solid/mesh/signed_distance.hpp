@@ -12,7 +12,7 @@
 namespace vam::solid {
 
 /// The foot of a point on the surface.
-struct Foot {
+struct ClosestPoint {
   Vector3 point{};
   Vector3 normal{};  // of the triangle it lies on, unit length
   int triangle = 0;  // for the next call of closest()
@@ -26,10 +26,10 @@ class Surface {
   explicit Surface(const model::TriangleSoup& mesh);
   ~Surface();
 
-  /// `start`: Foot::triangle of a point nearby makes it faster, not different.
-  [[nodiscard]] Foot closest(const Vector3& point, int start = 0) const;
+  /// `start`: ClosestPoint::triangle of a point nearby makes it faster, not different.
+  [[nodiscard]] ClosestPoint closest(const Vector3& point, int start = 0) const;
   /// closest() of all points, in parallel.
-  [[nodiscard]] std::vector<Foot> closest(std::span<const Vector3> points) const;
+  [[nodiscard]] std::vector<ClosestPoint> closest(std::span<const Vector3> points) const;
   /// mm, positive outside the surface, negative inside (MeshLab's, CloudCompare's and Open3D's sign).
   [[nodiscard]] double signed_distance(const Vector3& point) const;
   /// signed_distance of all points, in parallel.

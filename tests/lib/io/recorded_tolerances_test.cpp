@@ -23,7 +23,7 @@ void write(const model::Printer& printer, const char* scan, const Json& values) 
   write_record(printer.calibration, scan, {{"status", "pass"}, {"values", values}}, now_s);
 }
 
-double of(const model::Tolerances& tolerances, model::Deviating what) {
+double of(const model::Tolerances& tolerances, model::ToleranceKind what) {
   return tolerances[static_cast<std::size_t>(what)];
 }
 
@@ -38,13 +38,13 @@ TEST_CASE("tolerances are twice the recorded standard deviations, in their own u
   write(printer, "edges", {{"axis_column", measured(510, 0.05)}, {"radius", measured(12, 0.006)}});
   write(printer, "latency", {{"latency", measured(40, 1.5)}});
   const model::Tolerances some = recorded_tolerances(printer);
-  CHECK(of(some, model::Deviating::axis) == doctest::Approx(0.1));
-  CHECK(of(some, model::Deviating::radius) == doctest::Approx(0.1));  // percent
-  CHECK(of(some, model::Deviating::angle) == doctest::Approx(0.06));
-  for (const auto what : {model::Deviating::index, model::Deviating::lamp, model::Deviating::psf})
+  CHECK(of(some, model::ToleranceKind::axis) == doctest::Approx(0.1));
+  CHECK(of(some, model::ToleranceKind::radius) == doctest::Approx(0.1));  // percent
+  CHECK(of(some, model::ToleranceKind::angle) == doctest::Approx(0.06));
+  for (const auto what : {model::ToleranceKind::index, model::ToleranceKind::lamp, model::ToleranceKind::psf})
     CHECK(of(some, what) == 0);
   write(printer, "beam", {{"axis_fwhm", measured(0.2, 0.01)}});
-  CHECK(of(recorded_tolerances(printer), model::Deviating::psf) ==
+  CHECK(of(recorded_tolerances(printer), model::ToleranceKind::psf) ==
         doctest::Approx(0.01 / std::sqrt(2 * std::log(2.0))));
 }
 

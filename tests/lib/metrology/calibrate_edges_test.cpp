@@ -115,7 +115,7 @@ TEST_CASE("Vial edges: each is sought at half of its own side's light") {
     column.push_back(2 * i);
     signal.push_back(i < 10 || i >= 50 ? 20 : 45 + 55 * std::exp((10 - i) / 6.0));  // 100 at one edge, 45 at the other
   }
-  const Steepest edges = steepest(column, signal);
+  const SteepestEdges edges = steepest(column, signal);
   CHECK(edges.clear);
   CHECK(std::abs(edges.rise - 19) <= 2);
   CHECK(std::abs(edges.fall - 99) <= 2);

@@ -22,7 +22,7 @@ model::Printer near_printer() {
 
 Trial trial_of(const model::Printer& printer) {
   Trial trial{.printer = printer};
-  trial.tolerances[static_cast<std::size_t>(model::Deviating::index)] = index_error;
+  trial.tolerances[static_cast<std::size_t>(model::ToleranceKind::index)] = index_error;
   trial.grid = grid;
   trial.info.space = model::Space::projector;
   trial.info.width = printer.projector.columns;

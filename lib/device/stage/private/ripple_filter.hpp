@@ -31,7 +31,7 @@ class RippleFilter {
   using Vector = std::array<double, size>;
 
   // What is known of the line's angle, its speed, then cosine and sine of each harmonic, in degrees.
-  struct Belief {
+  struct StateEstimate {
     Vector mean{};
     std::array<Vector, size> covariance{};
 
@@ -49,13 +49,13 @@ class RippleFilter {
   void begin(const AngleSample& sample);
   void advance(double to_s);
   [[nodiscard]] static Vector seen_at(double angle_deg);
-  [[nodiscard]] const Belief& without_noise() const;
+  [[nodiscard]] const StateEstimate& without_noise() const;
 
   int count_ = 0;
   double first_s_ = 0, t_s_ = 0;
-  double first_deg_ = 0, farthest_deg_ = 0;      // of which the harmonics have been seen
-  Belief all_;                                   // with every harmonic that may be
-  mutable std::optional<Belief> without_noise_;  // with those that stand out; made when asked for
+  double first_deg_ = 0, farthest_deg_ = 0;             // of which the harmonics have been seen
+  StateEstimate all_;                                   // with every harmonic that may be
+  mutable std::optional<StateEstimate> without_noise_;  // with those that stand out; made when asked for
 };
 
 /// The share of late answers, from what the filter expects, whose samples all are middles; then adds that of the

@@ -9,7 +9,7 @@
 
 #include "io/stream/seal.hpp"
 #include "io/vdb/private/leaf_store.hpp"
-#include "io/vdb/private/passage.hpp"
+#include "io/vdb/private/serialisation.hpp"
 
 namespace vam::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What exposures see of a screen that blinks, and which latencies they cannot tell apart [physics §10].
+// Exposures of a screen that blinks, and the latencies that they cannot tell apart [physics §10].
 #pragma once
 
 #include <cstddef>

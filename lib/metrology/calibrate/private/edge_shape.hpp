@@ -20,8 +20,8 @@ inline constexpr double edge_window = 0.25;  // of R_e, to either side of an edg
 inline constexpr std::size_t edge_powers = 3;
 using EdgeTerms = std::array<double, edge_powers>;
 
-/// What is seen of the ray of column q * R_e times 1, t, t^2; 0 beyond the edge. As running integrals over q: a line
-/// that has a width is a difference of two integrals, exactly, however steep the edge.
+/// Visible light of the ray of column q * R_e times 1, t, t^2; 0 beyond the edge. Kept as running integrals over q: a
+/// line that has a width is exactly the difference of two integrals, however steep the edge.
 class EdgeShape {
  public:
   /// sign: -1 at the low edge.

@@ -13,11 +13,11 @@ namespace vam::metrology {
 
 /// Columns of the two steepest changes, smoothed over three frames; clear when they stand out of the noise, with a dark
 /// side before and after.
-struct Steepest {
+struct SteepestEdges {
   double rise = 0, fall = 0;
   bool clear = false;
 };
-[[nodiscard]] Steepest steepest(const std::vector<double>& column, const std::vector<double>& signal);
+[[nodiscard]] SteepestEdges steepest(const std::vector<double>& column, const std::vector<double>& signal);
 
 /// Readings that a fit needs at least.
 inline constexpr std::size_t least_readings = 20;
@@ -29,6 +29,6 @@ struct BandEdges {
 
 /// Begins where the signal changes most. Throws Fault::data when the fit does not settle.
 [[nodiscard]] BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes,
-                                 const Steepest& first);
+                                 const SteepestEdges& first);
 
 }  // namespace vam::metrology

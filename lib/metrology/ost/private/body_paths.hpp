@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What rays pass of bodies.
+// Paths of rays through bodies.
 #pragma once
 
 #include <span>

@@ -11,7 +11,7 @@
 
 namespace vam::metrology {
 
-/// What each view shows at the heights of `rows`: camera columns x heights, the axis upright.
+/// Each view at the heights of `rows`: camera columns x heights, the axis upright.
 [[nodiscard]] std::vector<Image> level_views(std::span<const CameraView> views, const LevelRows& rows);
 
 /// Takes an even background out of each view, then divides what is left by its relative intensity; an empty span means

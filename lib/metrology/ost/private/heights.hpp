@@ -49,8 +49,8 @@ class RowOfHeight {
 /// Share of its height that a ray of offset x_v gains per mm along the light; 0 where rays stay level.
 [[nodiscard]] double climb_rate_per_mm(const Eye& eye, double x_v_mm);
 
-/// What a camera image of `columns` x `rows`, four at least, shows at these heights, lowest first, turned about the
-/// axis by its tilt: cubic between pixels [KEYS81]; what is beyond the image is as its last pixels.
+/// Samples a camera image of `columns` x `rows`, four at least, at these heights, lowest first, turned about the axis
+/// by its tilt: cubic between pixels [KEYS81]; beyond the image its last pixels are repeated.
 class LevelRows {
  public:
   LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm, const AxisPose& axis);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the turning vial's place does to the views, from lines that are seen from both of their ends.
+// Effect of the turning vial's position on the views, from lines that are seen from both ends.
 #pragma once
 
 #include <array>

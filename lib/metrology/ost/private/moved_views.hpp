@@ -27,7 +27,7 @@ class MovedViews {
  public:
   MovedViews(const std::vector<Image>& level, const PairBasis& basis, const SinogramsOf& sinograms_of);
   [[nodiscard]] Lines lines(const PairVector& value) const;
-  /// What one unit of a motion makes is kept while the motion is nearly that after which it was found.
+  /// The effect of a unit of motion is kept while the motion is close to that at which it was computed.
   void move(const PairVector& value, Lines& lines) const;
 
  private:

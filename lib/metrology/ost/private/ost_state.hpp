@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a rig is, between the files that use it.
+// The state of a rig, private to the files that use it.
 #pragma once
 
 #include <numbers>
@@ -45,10 +45,10 @@ struct OstReconstructor::State {
   /// resin, without refraction, and where the print leaves the image.
   [[nodiscard]] Flicker flicker(std::span<const CameraView> views, const Image& mean,
                                 std::span<const double> angles_deg, double background) const;
-  /// What a run-out of (x, y) mm in the frame of the part does to the columns of views at these stage angles.
+  /// Motion of the columns of views at these stage angles by a run-out of (x, y) mm in the frame of the part.
   [[nodiscard]] std::vector<ColumnMotion> motion(std::span<const double> angles_deg, double x_mm, double y_mm) const;
   [[nodiscard]] std::vector<double> part_angles_rad(std::span<const double> angles_deg) const;
-  /// By how much the line of each camera column turns from one column to the next.
+  /// Turn of the line of each camera column from one column to the next.
   [[nodiscard]] std::vector<double> lean_rad() const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
   [[nodiscard]] int half_width(double voxel_mm) const;

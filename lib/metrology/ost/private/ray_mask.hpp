@@ -11,7 +11,7 @@ namespace vam::metrology {
 /// The rays of one angle, [height][column]: 1 where marked. Empty: none.
 using RayMask = std::vector<char>;
 
-/// Of all its rays, those that are marked.
+/// Fraction of its rays that are marked.
 [[nodiscard]] double share_of(const RayMask& marked);
 
 /// Marked places and those at most `by` pixels beside them.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <openvdb/tools/LevelSetSphere.h>
 
-#include "io/vdb/private/passage.hpp"
+#include "io/vdb/private/serialisation.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "testing.hpp"
 

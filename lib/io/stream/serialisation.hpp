@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Serialisation of the results of a parsing child process, one list of members for writing and reading:
-// pass(Put{out}, facts) there, pass(Get{in}, facts) here.
+// pass(Writer{out}, facts) there, pass(Reader{in}, facts) here.
 #pragma once
 
 #include <cstdint>

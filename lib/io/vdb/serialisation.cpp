@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A grid's head on its way from the child that reads archives.
-#include "io/vdb/private/passage.hpp"
+#include "io/vdb/private/serialisation.hpp"
 
-#include "io/stream/passage.hpp"
+#include "io/stream/serialisation.hpp"
 
 namespace vam::io {
 
