@@ -247,10 +247,10 @@ fails 66 '/dev/zero: is a device that never ends; name a file' vam-project tiny.
 $exr make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1
 fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam-dose far.exr --printer printer.toml -o x.vdb
 $exr make wrong.exr space=projector width=64 height=36 count=3 value=1e30
-fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' \
+fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, but intensities are at most 1e9' \
   vam-project wrong.exr --printer printer.toml -o x.mkv
 $exr make wrong.exr space=virtual width=64 height=36 count=3 value=1e30
-fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, more than 1e9, which is no intensity' vam-dose wrong.exr -o x.vdb
+fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, but intensities are at most 1e9' vam-dose wrong.exr -o x.vdb
 $exr make wrong.exr space=projector width=64 height=36 count=3 value=-2
 fails 65 'wrong.exr: has a value of -2 at z = [-0-9.]+ mm, 0 deg, column 0; intensity cannot be negative' \
   vam-project wrong.exr --printer printer.toml -o x.mkv

@@ -17,8 +17,8 @@
 #include "io/array/private/nrrd_head.hpp"
 #include "io/hdf5/hdf5_array.hpp"
 #include "io/image/tiff_pages.hpp"
-#include "io/stream/serialisation.hpp"
 #include "io/stream/sandboxed_reader.hpp"
+#include "io/stream/serialisation.hpp"
 #include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
@@ -170,7 +170,7 @@ struct ArrayReader::State {
     size.rows = static_cast<int>(in.get_count(arrays::most_side));
     size.columns = static_cast<int>(in.get_count(arrays::most_side));
     if (product(size.rows, size.columns) > arrays::most_image) {
-      throw Error{Fault::data, file.name() + ": is damaged: its reader failed"};
+      throw Error{Fault::data, file.name() + ": is damaged (its parser failed)"};
     }
     pass(Reader{in}, views);
     for (auto left = in.get_count(most_angles); left > 0; --left) views.angles_deg.push_back(in.get<double>());

@@ -121,7 +121,7 @@ bool ForeignStacks::next_stack() {
     apart_.finish();
     return false;
   }
-  if (!plausible(info_, about_.size())) throw Error{Fault::data, name_ + ": is damaged: its reader failed"};
+  if (!plausible(info_, about_.size())) throw Error{Fault::data, name_ + ": is damaged (its parser failed)"};
   return true;
 }
 

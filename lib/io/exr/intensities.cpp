@@ -29,7 +29,7 @@ std::string objection(const Image& image, std::size_t index, model::Space space)
   const std::string pixel = "pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
                             " of image " + std::to_string(index) + " is ";
   if (!std::isfinite(*bad)) return pixel + "not a finite number";
-  return pixel + format_number(*bad, 3) + ", more than 1e9, which is no intensity; scale or mend it";
+  return pixel + format_number(*bad, 3) + ", but intensities are at most 1e9; check the unit";
 }
 
 }  // namespace vam::io::exr

@@ -45,7 +45,7 @@ Image read_exr_image(const std::string& path) {
         image = Image(static_cast<int>(width), static_cast<int>(height));
         in.get(image.values.data(), image.values.size() * sizeof(float));
       });
-  if (image.values.empty()) throw Error{Fault::data, path + ": is damaged: its reader failed"};
+  if (image.values.empty()) throw Error{Fault::data, path + ": is damaged (its parser failed)"};
   if (!all_finite(image.values.data(), image.size())) {
     throw Error{Fault::data, path + ": has a pixel that is not a finite number"};
   }

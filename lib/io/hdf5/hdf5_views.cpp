@@ -84,7 +84,7 @@ std::vector<std::size_t> projections(hid_t file, const std::string& path, std::s
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (keys[i] == 0) kept.push_back(i);
   }
-  if (kept.empty()) throw Error{Fault::data, name + ": has no projections, by " + printable(path)};
+  if (kept.empty()) throw Error{Fault::data, name + ": " + printable(path) + " marks no frame as a projection"};
   return kept;
 }
 

@@ -189,10 +189,10 @@ void check_indices(const ColouredMesh& made, const std::string& name) {
   const int points = count_of(mesh.points);
   const auto whole = [&](const auto& values) { return values.empty() || values.size() == mesh.points.size(); };
   if (!whole(made.colours) || !whole(made.uncertainty))
-    throw Error{Fault::data, name + ": is damaged: its reader failed"};
+    throw Error{Fault::data, name + ": is damaged (its parser failed)"};
   for (const auto& triangle : mesh.triangles) {
     for (const int corner : triangle) {
-      if (corner < 0 || corner >= points) throw Error{Fault::data, name + ": is damaged: its reader failed"};
+      if (corner < 0 || corner >= points) throw Error{Fault::data, name + ": is damaged (its parser failed)"};
     }
   }
 }

@@ -84,8 +84,8 @@ CameraAxis find_camera_axis(const TurnScan& scan) {
     b.push_back(fit.measured(sin_1));
   }
   if (column.empty()) {
-    throw Error{Fault::data, "axis: at no height is there a single bright object in three quarters of " +
-                                 std::to_string(scan.angle_deg.size()) + " frames"};
+    throw Error{Fault::data,
+                "axis: no height has one bright object in 3/4 of " + std::to_string(scan.angle_deg.size()) + " frames"};
   }
   out.bands = count_of(column);
   out.column = column.front();

@@ -111,7 +111,7 @@ FittedCircle find_circle(const Image& image) {
       if (edge_on_radius(image, circle, 2 * std::numbers::pi * i / radii, reach, edge)) edges.push_back(edge);
     }
     if (edges.size() < radii / 4)
-      throw Error{Fault::data, "no circle: its edge is visible on " + std::to_string(edges.size()) + " of 360 radii"};
+      throw Error{Fault::data, "circle edge found on only " + std::to_string(edges.size()) + " of 360 radii"};
     circle = fit(edges);
   }
   return circle;

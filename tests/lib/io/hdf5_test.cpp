@@ -326,7 +326,7 @@ TEST_CASE("NXtomo keys and units that contradict the projections are refused") {
     file.text("/entry/data/rotation_angle", "units", units);
   };
   made({1, 2}, "degree");
-  CHECK(has(refusal(path, Fault::data, projections()), "has no projections, by /entry/data/image_key"));
+  CHECK(has(refusal(path, Fault::data, projections()), "/entry/data/image_key marks no frame as a projection"));
   made({0, 0, 0}, "degree");
   CHECK(has(refusal(path, Fault::data, projections()), "has 3 keys of 2 frames"));
   made({0, 0}, "mrad");

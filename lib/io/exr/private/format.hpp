@@ -32,7 +32,7 @@ inline constexpr std::int32_t deep_flag = 0x800;
 inline constexpr std::int32_t multi_part_flag = 0x1000;
 
 inline constexpr const char* channel = "Y";
-/// How to make that of another channel: of R where there is one.
+/// Remedy text for files without channel Y.
 std::string channel_remedy(const Imf::ChannelList& channels);
 
 /// Refused beyond these, before memory is taken.
