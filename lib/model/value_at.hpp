@@ -38,4 +38,15 @@ namespace vam::model {
   return sum;
 }
 
+/// A target or dose of a part that was stretched along z, which the light prints at its own height.
+struct StretchedVolume {
+  Volume volume;
+  double stretch_z = 1;
+
+  /// At a point of the part, or of its print.
+  [[nodiscard]] float at(double x_mm, double y_mm, double z_mm) const {
+    return value_at(volume, x_mm, y_mm, z_mm * stretch_z);
+  }
+};
+
 }  // namespace vam::model

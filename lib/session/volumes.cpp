@@ -9,6 +9,7 @@
 #include "base/text/printable.hpp"
 #include "io/stream/input_name.hpp"
 #include "model/grid_place.hpp"
+#include "model/metadata.hpp"
 
 namespace vam::session {
 
@@ -41,6 +42,11 @@ io::SparseVolume read_grid(const std::string& path, const std::string& name) {
     if (grid.name() == name || grids.size() == 1) return std::move(grid);
   }
   throw Error{Fault::data, path + ": has several grids, but none is called '" + name + "'"};
+}
+
+model::StretchedVolume read_target(const std::string& path) {
+  const io::SparseVolume target = read_grid(path, "target");
+  return {io::dense_volume(target), model::stretch_z(target.metadata)};
 }
 
 io::SparseVolume read_dose(const std::string& path) {

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/value_at.hpp"
 
 namespace vam::session {
 
@@ -24,6 +25,8 @@ namespace vam::session {
 
 /// A grid in a file of its own: the one of that name, or the only one. Throws Fault::data where there is none.
 [[nodiscard]] io::SparseVolume read_grid(const std::string& path, const std::string& name);
+/// Coverage of the part: the grid 'target', or the only one. Throws as read_grid().
+[[nodiscard]] model::StretchedVolume read_target(const std::string& path);
 /// The grid 'dose'. Throws Fault::data where it is not in mJ/cm3.
 [[nodiscard]] io::SparseVolume read_dose(const std::string& path);
 /// The grid 'scatter' of vam-ost. Throws Fault::data where it is in mJ/cm3: a dose of that name.

@@ -9,10 +9,10 @@
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
 #include "io/settings/resin_record.hpp"
-#include "io/vdb/vdb.hpp"
 #include "metrology/cure/projection_sheet.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/save.hpp"
+#include "session/volumes.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 namespace vam::ost_tool {
@@ -32,7 +32,7 @@ Print::Print(const cli::App& app, const Options& options, const model::PrinterCa
       absorbs_(camera.absorption_per_mm > 0),
       isovalue_(isovalue_of(options)),
       rules_{options.pieces_mm3, {}} {
-  if (!options.target.empty()) target_ = io::dense_volume(io::read_volume(options.target, ""));
+  if (!options.target.empty()) target_ = session::read_target(options.target);
   constexpr double margin_mm = 1;
   if (isovalue_ && target_) rules_.inside = metrology::neighbourhood(*target_, margin_mm);
 }

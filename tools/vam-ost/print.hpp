@@ -41,7 +41,7 @@ class Print {
   bool absorbs_;
   std::optional<double> isovalue_;
   metrology::BodyRules rules_;
-  std::optional<model::Volume> target_;
+  std::optional<model::StretchedVolume> target_;
   metrology::BodyCount bodies_;
   std::vector<std::string> cut_;  // metrology::cut_sides
 };

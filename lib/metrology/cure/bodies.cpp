@@ -146,13 +146,13 @@ double median_inside(const model::Volume& volume, double level) {
 
 }  // namespace
 
-Neighbourhood neighbourhood(const model::Volume& target, double margin_mm) {
-  const model::Grid& g = target.grid;
+Neighbourhood neighbourhood(const model::StretchedVolume& target, double margin_mm) {
+  const model::Grid& g = target.volume.grid;
   Neighbourhood box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-  Runs runs(target, 0.5, true, 1);
+  Runs runs(target.volume, 0.5, true, 1);
   if (runs.size() == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
   runs.each([&](std::size_t, const VoxelRun& run, int j, int k) {
-    const double low[3] = {g.x_mm(run.first), g.y_mm(j), g.z_mm(k)};
+    const double low[3] = {g.x_mm(run.first), g.y_mm(j), g.z_mm(k) / target.stretch_z};
     const double high[3] = {g.x_mm(run.last - 1), low[1], low[2]};
     for (std::size_t d = 0; d < 3; ++d) {
       box.low[d] = std::min(box.low[d], low[d] - margin_mm);

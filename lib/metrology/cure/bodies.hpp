@@ -9,6 +9,7 @@
 
 #include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
+#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -20,7 +21,7 @@ struct Neighbourhood {
 
 /// The box around all voxels of a target that are covered by a half or more, grown by margin_mm on all sides.
 /// Throws Fault::data when there is none.
-[[nodiscard]] Neighbourhood neighbourhood(const model::Volume& target, double margin_mm);
+[[nodiscard]] Neighbourhood neighbourhood(const model::StretchedVolume& target, double margin_mm);
 
 struct BodyRules {
   std::optional<double> least_mm3;      // smallest body that is kept; 1 % of the largest by default

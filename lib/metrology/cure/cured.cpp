@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/cure/cured.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "model/dose/dose_metrics.hpp"
-#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -34,9 +34,9 @@ SumProjections sum_projections(const model::Volume& volume, std::optional<double
   return sums;
 }
 
-Cured cured(const model::Volume& scatter, double level, const model::Volume& target) {
-  const double whole = std::accumulate(target.values.begin(), target.values.end(), 0.0,
-                                       [](double sum, float v) { return sum + (model::half_covered(v) ? 1 : 0); });
+Cured cured(const model::Volume& scatter, double level, const model::StretchedVolume& target) {
+  const std::vector<float>& coverage = target.volume.values;
+  const auto whole = static_cast<double>(std::count_if(coverage.begin(), coverage.end(), model::half_covered));
   if (whole == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
   const model::Grid& g = scatter.grid;
   std::vector<std::array<long, 3>> counts(g.nz, {0, 0, 0});  // both, only print, only design
@@ -46,7 +46,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& tar
     for (int j = 0; j < g.ny; ++j) {
       for (int i = 0; i < g.nx; ++i) {
         const bool print = static_cast<double>(in[j * g.nx + i]) >= level;
-        const bool design = model::half_covered(model::value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k)));
+        const bool design = model::half_covered(target.at(g.x_mm(i), g.y_mm(j), g.z_mm(k)));
         count[0] += print && design ? 1 : 0;
         count[1] += print && !design ? 1 : 0;
         count[2] += !print && design ? 1 : 0;
@@ -58,7 +58,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& tar
     for (std::size_t d = 0; d < 3; ++d) sums[d] += static_cast<double>(count[d]);
   }
   const double voxel_mm3 = g.voxel_mm * g.voxel_mm * g.voxel_mm;
-  const double design_mm3 = whole * std::pow(target.grid.voxel_mm, 3);
+  const double design_mm3 = whole * std::pow(target.volume.grid.voxel_mm, 3) / target.stretch_z;
   const double outside_mm3 = design_mm3 - voxel_mm3 * (sums[0] + sums[2]);  // design that the camera does not see
   Cured state;
   state.target_mm3 = design_mm3;

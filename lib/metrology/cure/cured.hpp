@@ -9,6 +9,7 @@
 #include "base/image.hpp"
 #include "base/text/json_fwd.hpp"
 #include "model/grid.hpp"
+#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -33,8 +34,8 @@ struct Cured {
   [[nodiscard]] double overcure_percent() const { return 100 * overcure_mm3 / target_mm3; }
 };
 
-/// The target lies in the same frame, on any grid. Throws Fault::data when it is empty.
-[[nodiscard]] Cured cured(const model::Volume& scatter, double level, const model::Volume& target);
+/// The target lies in the frame of the print, on any grid. Throws Fault::data when it is empty.
+[[nodiscard]] Cured cured(const model::Volume& scatter, double level, const model::StretchedVolume& target);
 
 [[nodiscard]] Json to_json(const Cured& state);
 

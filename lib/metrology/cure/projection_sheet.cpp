@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/compute/parallel.hpp"
-#include "model/value_at.hpp"
 
 namespace vam::metrology {
 
@@ -35,12 +34,11 @@ void add_row(const SumProjections& sums, const std::string& what, Sheet& sheet) 
   }
 }
 
-model::Volume sampled(const model::Volume& target, const model::Grid& g) {
+model::Volume sampled(const model::StretchedVolume& target, const model::Grid& g) {
   model::Volume out{g, std::vector<float>(g.size())};
   parallel_for(g.nz, [&](int k) {
     for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i)
-        out.slice(k)[j * g.nx + i] = model::value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k));
+      for (int i = 0; i < g.nx; ++i) out.slice(k)[j * g.nx + i] = target.at(g.x_mm(i), g.y_mm(j), g.z_mm(k));
     }
   });
   return out;
@@ -48,7 +46,8 @@ model::Volume sampled(const model::Volume& target, const model::Grid& g) {
 
 }  // namespace
 
-Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level, const model::Volume* target) {
+Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level,
+                       const model::StretchedVolume* target) {
   Sheet sheet;
   sheet.pixel_mm = scatter.grid.voxel_mm;
   sheet.brightest = 1;

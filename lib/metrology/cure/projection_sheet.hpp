@@ -21,6 +21,6 @@ struct Sheet {
 /// One row for the scattering volume; with a level one for { scatter >= level }; with a target one for its design,
 /// sampled at the volume's voxels. Each row is scaled to its own brightest pixel.
 [[nodiscard]] Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level,
-                                     const model::Volume* target);
+                                     const model::StretchedVolume* target);
 
 }  // namespace vam::metrology

@@ -73,11 +73,11 @@ TEST_CASE("the smallest body, and the neighbourhood of a reference, can be set")
   model::Volume reference{grid, std::vector<float>(grid.size())};
   put(reference, {15, 1, 1}, {2, 2, 1}, 1);  // about the second body alone
   volume = scene();
-  const BodyCount near = keep_bodies(volume, 0.5, {.least_mm3 = {}, .inside = neighbourhood(reference, 1)});
+  const BodyCount near = keep_bodies(volume, 0.5, {.least_mm3 = {}, .inside = neighbourhood({reference}, 1)});
   CHECK(near.kept == 1);
   CHECK(near.kept_mm3 == doctest::Approx(50 * 0.125));
   put(reference, {15, 1, 1}, {2, 2, 1}, 0);
-  CHECK_THROWS_AS((void)neighbourhood(reference, 1), Error);
+  CHECK_THROWS_AS((void)neighbourhood({reference}, 1), Error);
 }
 
 TEST_CASE("an empty selection is not an error") {

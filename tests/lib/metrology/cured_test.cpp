@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/cure/cured.hpp"
 
+#include "metrology/cure/bodies.hpp"
 #include "metrology/cure/threshold.hpp"
 #include "testing.hpp"
 
@@ -24,20 +25,30 @@ TEST_CASE("cured, missing and overcured volumes of two boxes that overlap by hal
   const model::Grid grid = model::centred_grid(81, 41, 11, 0.1);
   const auto design = box(grid, -2.05, 0.95);  // 30 x 21 x 11 voxels
   const auto print = box(grid, -0.55, 2.45);
-  const Cured state = cured(print, 0.5, design);
+  const Cured state = cured(print, 0.5, {design});
   CHECK(state.cured_mm3 == doctest::Approx(state.target_mm3));
   CHECK(state.missing_mm3 == doctest::Approx(0.5 * state.target_mm3));
   CHECK(state.overcure_mm3 == doctest::Approx(0.5 * state.target_mm3));
   CHECK(state.iou == doctest::Approx(1.0 / 3));
   CHECK(state.missing_percent() == doctest::Approx(50));
-  CHECK(cured(design, 0.5, design).iou == doctest::Approx(1));
-  CHECK_THROWS_AS((void)cured(print, 0.5, box(grid, 9, 9)), Error);
+  CHECK(cured(design, 0.5, {design}).iou == doctest::Approx(1));
+  CHECK_THROWS_AS((void)cured(print, 0.5, {box(grid, 9, 9)}), Error);
 }
 
 TEST_CASE("a reference on a finer grid is the same reference") {
   const auto print = box(model::centred_grid(81, 41, 11, 0.1), -2.05, 0.95);
   const auto design = box(model::centred_grid(162, 82, 22, 0.05, -0.025), -2.05, 0.95);
-  CHECK(cured(print, 0.5, design).iou > 0.99);
+  CHECK(cured(print, 0.5, {design}).iou > 0.99);
+}
+
+TEST_CASE("a target that was stretched for rays that climb is the part that they print") {
+  const auto print = box(model::centred_grid(81, 41, 20, 0.1), -2.05, 0.95);
+  const auto stretched = box(model::centred_grid(81, 41, 25, 0.1), -2.05, 0.95);
+  const Cured state = cured(print, 0.5, {stretched, 1.25});
+  CHECK(state.target_mm3 == doctest::Approx(state.cured_mm3));
+  CHECK(state.missing_percent() == doctest::Approx(0));
+  CHECK(state.overcure_percent() == doctest::Approx(0));
+  CHECK(neighbourhood({stretched, 1.25}, 0).high[2] == doctest::Approx(1.92));
 }
 
 TEST_CASE("of a target on another grid all is missing before anything is cured, and no more") {
@@ -45,7 +56,7 @@ TEST_CASE("of a target on another grid all is missing before anything is cured, 
   for (const double voxel_mm : {0.13, 0.17, 0.31}) {
     model::Volume dark{model::centred_grid(61, 41, 21, voxel_mm), {}};
     dark.values.assign(dark.grid.size(), 0.0F);
-    CHECK(cured(dark, 0.5, design).missing_percent() == doctest::Approx(100));
+    CHECK(cured(dark, 0.5, {design}).missing_percent() == doctest::Approx(100));
   }
 }
 
