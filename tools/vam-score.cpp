@@ -21,8 +21,8 @@
 #include "session/dose_score.hpp"
 #include "session/grey_target.hpp"
 #include "session/printer.hpp"
+#include "session/volumes.hpp"
 #include "solid/voxel/size_doubt.hpp"
-#include "vam-score/inputs.hpp"
 #include "vam-score/lit_fraction.hpp"
 #include "vam-score/options.hpp"
 #include "vam-score/print.hpp"
@@ -30,7 +30,6 @@
 namespace {
 
 using namespace vam;
-using score_tool::Inputs;
 using score_tool::Options;
 
 void add_light(score::Score& result, const std::string& sinogram) {
@@ -92,9 +91,10 @@ std::vector<model::Condition> conditions_of(const Options& options) {
 
 void score_grey(const Options& options, const model::Printer& printer,
                 const std::vector<model::Condition>& conditions) {
-  const Inputs in = read(options);
+  session::Companions in(options.input, options.target, io::TargetKind::grey);
+  const io::SparseVolume& dose = in.choose(options.grid);
   const score::GreyScore result =
-      session::score_grey(*in.dose, *in.target, options.grey.options(), in.band, printer, options.input);
+      session::score_grey(dose, in.target_around(), options.grey, in.tolerance(), printer, options.input);
   io::write_report(options.report, "vam-score-grey", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });
@@ -106,19 +106,19 @@ void run(const cli::App& app, Options& options) {
   if (session::print_printer(options.printer, printer, "-")) return;
   if (options.grey.is_target) return score_grey(options, printer, conditions);
   require_files_for_outputs(options);
-  const Inputs in = read(options);
-  const std::string& file = options.target.empty() ? options.input : options.target;
-  const bool is_grey = session::warn_of_grey(*in.target, file);
-  options.how.target = io::input_name(file);
-  session::resolve_exposure(options.how, *in.dose, *in.target, printer);
+  session::Companions in(options.input, options.target, io::TargetKind::coverage);
+  const io::SparseVolume& dose = in.choose(options.grid);
+  const io::SparseVolume& target = in.target_around();
+  const bool is_grey = session::warn_of_grey(target, in.file());
+  options.how.target = io::input_name(in.file());
+  session::resolve_exposure(options.how, dose, target, printer);
   require_known(conditions, options);
-  score::Score result = session::score_print(*in.dose, *in.target, options.how);
-  if (!is_grey) warn_of_gaps(result.unresolved(), *in.target, file);
+  score::Score result = session::score_print(dose, target, options.how);
+  if (!is_grey) warn_of_gaps(result.unresolved(), target, in.file());
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
-  if (!options.lit_fraction.empty())
-    score_tool::write_lit_fraction(options.lit_fraction, in.target->grid(), printer, app);
-  if (!options.print.empty()) write_print(options, *in.dose, options.print_at.value_or(result.print_threshold()));
+  if (!options.lit_fraction.empty()) score_tool::write_lit_fraction(options.lit_fraction, target.grid(), printer, app);
+  if (!options.print.empty()) write_print(options, dose, options.print_at.value_or(result.print_threshold()));
   io::write_report(options.report, "vam-score", figures);
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });

@@ -25,6 +25,7 @@
 namespace {
 
 using namespace vam;
+using session::Companions;
 using view_tool::Options;
 
 void write_figure(const Options& options, const plot::ImageFigure& figure, const std::string& history) {
@@ -34,50 +35,25 @@ void write_figure(const Options& options, const plot::ImageFigure& figure, const
   io::write_png(options.output, pixels, {{"Comment", history}});
 }
 
-/// A volume, and what its file or that of --target has beside it.
-class Shown {
- public:
-  explicit Shown(const Options& options)
-      : file_(options.target.empty() ? options.input : options.target), grids_(io::read_volumes(options.input)) {
-    if (!options.target.empty()) others_ = io::read_volumes(options.target);
-    volume_ = &io::choose_volume(grids_, grid_of(options), options.input);
-  }
+/// Whether doses are held against the part.
+bool judges(const Options& options) {
+  return options.histogram || options.cure || (options.render && !options.target.empty());
+}
 
-  [[nodiscard]] const io::SparseVolume& volume() const { return *volume_; }
-  [[nodiscard]] const std::string& file() const { return file_; }  // of the target
-  [[nodiscard]] io::SparseVolume& target() {
-    if (others_.empty()) return session::require_grid(grids_, "target", file_, "give the part with --target");
-    return io::choose_volume(others_, "target", file_);
-  }
-  /// On the grid of the volume; null: there is none.
-  [[nodiscard]] const io::SparseVolume* insert() {
-    io::SparseVolume* found = session::find_grid(others_.empty() ? grids_ : others_, "insert");
-    if (found == nullptr || volume_->name() == "insert") return nullptr;
-    found->extend_to(volume_->grid(), file_);
-    return found;
-  }
-
- private:
-  /// A target is shown with its insert.
-  [[nodiscard]] std::string grid_of(const Options& options) {
-    if (!options.grid.empty()) return options.grid;
-    if (options.histogram || options.cure || (options.render && !options.target.empty())) return "dose";
-    const auto has = [&](const char* name) { return session::find_grid(grids_, name) != nullptr; };
-    return has("target") && has("insert") ? "target" : "";
-  }
-
-  std::string file_;
-  std::vector<io::SparseVolume> grids_, others_;  // of the file, and of --target
-  io::SparseVolume* volume_ = nullptr;
-};
+/// Of a file with several grids: doses where one is judged, else a target, which is shown with its insert.
+std::string grid_of(const Options& options, const Companions& shown) {
+  if (!options.grid.empty()) return options.grid;
+  if (judges(options)) return "dose";
+  return shown.has("target") && shown.has("insert") ? "target" : "";
+}
 
 constexpr const char* grey_remedy = "a target that is the dose of every voxel is judged by vam-score --grey-target";
 
 /// How the volume is judged as a dose, on whose grid the target is from now on.
-score::ScoreOptions judged(const Options& options, Shown& shown) {
-  io::SparseVolume& target = shown.target();
+score::ScoreOptions judged(const Options& options, Companions& shown) {
+  io::require_usable(shown.file(), shown.target());  // doses below 0 are looked at
+  const io::SparseVolume& target = shown.target_around();
   session::warn_of_grey(target, shown.file(), grey_remedy);
-  target.extend_to(shown.volume().grid(), shown.file());
   score::ScoreOptions how;
   how.threshold = options.threshold;
   session::resolve_exposure(how, shown.volume(), target, session::load_printer(options.printer));
@@ -96,7 +72,7 @@ double threshold_of(const Options& options, const score::Score& result) {
 
 bool is_movie(const Options& options) { return options.output.ends_with(".mp4"); }
 
-void write_movie(const Options& options, Shown& shown, const std::string& history) {
+void write_movie(const Options& options, Companions& shown, const std::string& history) {
   const io::SparseVolume& dose = shown.volume();
   const score::ScoreOptions how = judged(options, shown);
   view_tool::Exposure exposure;
@@ -115,9 +91,9 @@ void write_movie(const Options& options, Shown& shown, const std::string& histor
                          history);
 }
 
-plot::ImageFigure volume_figure(const Options& options, Shown& shown) {
+plot::ImageFigure volume_figure(const Options& options, Companions& shown) {
   const io::SparseVolume& volume = shown.volume();
-  if (options.cure || (options.render && !options.target.empty())) {
+  if (judges(options)) {
     const score::ScoreOptions how = judged(options, shown);
     const io::SparseVolume& target = shown.target();
     const double threshold =
@@ -128,14 +104,16 @@ plot::ImageFigure volume_figure(const Options& options, Shown& shown) {
   if (options.render)
     return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view, shown.insert());
   if (!options.compare.empty()) {
-    const io::SparseVolume other = io::read_volume(options.compare, volume.name());
-    return plot::view_difference(volume, other, view_tool::file_name(options.compare, options.input), options.view);
+    Companions other(options.compare, "", {});
+    return plot::view_difference(volume, other.choose(volume.name()),
+                                 view_tool::file_name(options.compare, options.input), options.view);
   }
   return plot::view_volume(volume, options.target.empty() ? nullptr : &shown.target(), options.view, shown.insert());
 }
 
 void show_volume(Options options, const std::string& history) {
-  Shown shown(options);
+  Companions shown(options.input, options.target, {});
+  shown.choose(grid_of(options, shown));
   options.view.stretch_z = model::stretch_z(shown.volume().metadata);
   if (!options.exported.empty()) return io::write_nrrd(options.exported, shown.volume());
   if (options.histogram) {

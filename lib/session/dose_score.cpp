@@ -14,7 +14,6 @@
 #include "model/grid_size.hpp"
 #include "model/metadata.hpp"
 #include "optics/writable_radius.hpp"
-#include "session/grey_target.hpp"
 #include "session/volumes.hpp"
 #include "verdict/print_pieces.hpp"
 
@@ -103,14 +102,16 @@ score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& t
   return result;
 }
 
-score::GreyScore score_grey(const io::SparseVolume& dose, const io::SparseVolume& target, score::GreyOptions how,
+score::GreyScore score_grey(const io::SparseVolume& dose, const io::SparseVolume& target, const GreyChoice& grey,
                             const io::SparseVolume* band, const model::Printer& printer, const std::string& file) {
   const model::Grid& grid = target.grid();
+  score::GreyOptions how = grey.options();
   how.circle = scoring_circle(target, printer);
   how.unit = grey_unit(target, dose, file);
   require_linear(dose, file);
   score::GreyScore result(how, grid.nx, grid.ny);
   std::optional<io::SparseVolume> bands;
+  if (!grey.band_volume.empty()) band = &bands.emplace(read_grid(grey.band_volume, "tolerance"));
   if (band != nullptr) bands = widened(*band, grid, static_cast<float>(how.band), "target");
   std::vector<const io::SparseVolume*> volumes{&dose, &target};
   if (bands) volumes.push_back(&*bands);

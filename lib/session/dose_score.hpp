@@ -8,6 +8,7 @@
 #include "model/printer.hpp"
 #include "score/grey_score.hpp"
 #include "score/score.hpp"
+#include "session/grey_target.hpp"
 #include "verdict/unresolved.hpp"
 
 namespace vam::session {
@@ -28,11 +29,11 @@ void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, co
 [[nodiscard]] score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target,
                                        const score::ScoreOptions& how);
 
-/// Against a grey target, whose circle and unit are filled in. band: of each voxel, that of `how` around it; null: it
+/// Against a grey target. band: of each voxel, where `grey` names no file of them, that of `grey` around it; null: it
 /// is the same for all. Throws as require_linear() and grey_unit() do, whose messages `file` begins, and Fault::data
 /// where the band is on another grid.
 [[nodiscard]] score::GreyScore score_grey(const io::SparseVolume& dose, const io::SparseVolume& target,
-                                          score::GreyOptions how, const io::SparseVolume* band,
+                                          const GreyChoice& grey, const io::SparseVolume* band,
                                           const model::Printer& printer, const std::string& file);
 
 }  // namespace vam::session

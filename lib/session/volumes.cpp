@@ -13,15 +13,23 @@
 
 namespace vam::session {
 
-std::vector<io::SparseVolume> read_grids(const std::string& path, io::TargetKind kind) {
+std::vector<io::SparseVolume> read_grids(const std::string& path, std::optional<io::TargetKind> kind) {
   std::vector<io::SparseVolume> grids = io::read_volumes(path);
-  io::require_usable(path, grids, kind);
+  if (kind) io::require_usable(path, grids, *kind);
   return grids;
 }
 
-io::SparseVolume* find_grid(std::vector<io::SparseVolume>& grids, const std::string& name) {
-  const auto found = std::find_if(grids.begin(), grids.end(), [&](const auto& grid) { return grid.name() == name; });
-  return found == grids.end() ? nullptr : &*found;
+std::vector<io::SparseVolume> read_like(const std::string& path) {
+  std::vector<io::SparseVolume> grids = io::read_volumes(path);
+  const io::SparseVolume* target = find_grid(grids, "target");
+  const bool states_unit = target != nullptr && target->units != "relative";
+  io::require_usable(path, grids, states_unit ? io::TargetKind::grey : io::TargetKind::coverage);
+  return grids;
+}
+
+io::SparseVolume& target_or_first(std::vector<io::SparseVolume>& grids) {
+  io::SparseVolume* target = find_grid(grids, "target");
+  return target != nullptr ? *target : grids.front();
 }
 
 io::SparseVolume& require_grid(std::vector<io::SparseVolume>& grids, const std::string& name, const std::string& file,
@@ -62,6 +70,33 @@ io::SparseVolume read_scatter(const std::string& path) {
   io::SparseVolume scatter = io::read_volume(path, "scatter");
   if (scatter.units != "mJ/cm3") return scatter;
   throw Error{Fault::data, path + ": its values are a dose in mJ/cm3, not scattering; give a volume of vam-ost"};
+}
+
+Companions::Companions(const std::string& path, const std::string& part, std::optional<io::TargetKind> kind)
+    : path_(path), part_(part), own_(read_grids(path, kind)) {
+  if (!part.empty()) others_ = read_grids(part, kind);
+}
+
+io::SparseVolume& Companions::choose(const std::string& name) {
+  volume_ = &io::choose_volume(own_, name, path_);
+  return *volume_;
+}
+
+io::SparseVolume& Companions::target() {
+  return require_grid(beside(), "target", io::input_name(file()),
+                      part_.empty() ? "give the file of the part by --target" : "vam-slice writes one");
+}
+
+io::SparseVolume& Companions::target_around() {
+  target().extend_to(volume_->grid(), file());
+  return target();
+}
+
+const io::SparseVolume* Companions::insert() {
+  io::SparseVolume* found = find_grid(beside(), "insert");
+  if (found == nullptr || volume_->name() == "insert") return nullptr;
+  found->extend_to(volume_->grid(), file());
+  return found;
 }
 
 io::SparseVolume widened(const io::SparseVolume& volume, const model::Grid& grid, float outside,

@@ -147,6 +147,7 @@ for like in grey part; do vam-convert like-$like.vdb -o like-$like.npy; done
 same "is that of a part" like-grey.npy like-part.npy
 fails 65 "'target' is a dose for every voxel, not a part; --exposure-plan requires" \
   vam-dose virtual.exr --like grey.vdb --exposure-plan --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 -o x.vdb
+fails 65 "grey.vdb: grid 'target' has" vam-view like-grey.vdb --target grey.vdb --cure-map -o x.png
 fails 65 'in relative, but the target is in mJ/cm3; make both in mJ/cm3: .*--exposure-plan' vam-score like-grey.vdb --target grey.vdb --grey-target
 fails 65 camera vam-dose camera.exr -o x.vdb
 fails 65 frames vam-dose images.exr -o x.vdb

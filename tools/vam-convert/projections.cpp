@@ -21,6 +21,7 @@
 #include "light/grids/lit_grid.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "optics/writable_radius.hpp"
+#include "session/volumes.hpp"
 #include "vam-convert/images.hpp"
 #include "vam-convert/resliced.hpp"
 #include "vam-convert/sinograms.hpp"
@@ -192,11 +193,8 @@ Heights own_heights(const Options& options, const model::Projector& projector, i
 /// The grid of the part, or the only one.
 std::optional<io::SparseVolume> volume_like(const Options& options) {
   if (options.like.empty()) return std::nullopt;
-  std::vector<io::SparseVolume> volumes = io::read_volumes(options.like);
-  for (io::SparseVolume& volume : volumes) {
-    if (volume.name() == "target") return std::move(volume);
-  }
-  return std::move(volumes.front());
+  std::vector<io::SparseVolume> volumes = session::read_like(options.like);
+  return session::taken(volumes, session::target_or_first(volumes));
 }
 
 /// Its slices, and those above and below that the projector's climbing rays light as well.

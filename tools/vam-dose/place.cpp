@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-dose/place.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "base/error.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
-#include "io/vdb/gate.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/grids/poses.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "optics/writable_radius.hpp"
+#include "session/volumes.hpp"
 
 namespace vam::dose_tool {
 
@@ -36,12 +35,9 @@ model::StackInfo posed(const cli::App& app, model::StackInfo info, const Options
 
 namespace {
 
-/// A target of --grey-target in a unit of dose.
-bool is_dose(const io::SparseVolume& volume) { return volume.name() == "target" && volume.units != "relative"; }
-
 /// A part whose coverage is judged; of a dose only the place of its voxels is known.
 const io::SparseVolume* part_of(const io::SparseVolume& target, const Options& options) {
-  if (!is_dose(target)) return &target;
+  if (target.units == "relative") return &target;
   if (!options.exposure_plan) return nullptr;
   throw Error{Fault::data, options.like +
                                ": grid 'target' is a dose for every voxel, not a part; --exposure-plan "
@@ -56,26 +52,23 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     place.grid = light::dose_grid(printer, info, options.size_mm);
     return place;
   }
-  place.like = io::read_volumes(options.like);
-  const bool grey = std::any_of(place.like.begin(), place.like.end(), is_dose);
-  io::require_usable(options.like, place.like, grey ? io::TargetKind::grey : io::TargetKind::coverage);
-  const io::SparseVolume* like = &place.like.front();
-  for (const io::SparseVolume& volume : place.like) {
-    if (volume.name() == "target") like = &volume, place.target = part_of(volume, options);
-    if (volume.name() == "insert") place.insert = &volume;
-  }
+  place.grids = session::read_like(options.like);
+  place.insert = session::find_grid(place.grids, "insert");
+  const io::SparseVolume& like = session::target_or_first(place.grids);
+  place.like = &like;
+  if (like.name() == "target") place.target = part_of(like, options);
   if (options.exposure_plan && place.target == nullptr) {
     throw Error{Fault::data,
                 options.like + ": has no grid 'target'; --exposure-plan requires the part (vam-slice writes it)"};
   }
-  const double farthest_mm = like->name() == "target" ? io::farthest_mm(*like, model::coverage_rounding) : 0;
+  const double farthest_mm = like.name() == "target" ? io::farthest_mm(like, model::coverage_rounding) : 0;
   place.judged_mm = optics::judged_radius_mm(printer, farthest_mm);
   light::require_in_reach(info.poses, printer, place.judged_mm);
-  place.grid = like->grid();
+  place.grid = like.grid();
   if (info.space == model::Space::projector) {  // what prints around the part must be seen
     const model::Grid inner = place.grid;
     place.grid = light::extended(inner, light::lit_margin(printer, inner, place.judged_mm, info.poses));
-    for (io::SparseVolume& volume : place.like) {
+    for (io::SparseVolume& volume : place.grids) {
       if (volume.grid() == inner) volume.extend_to(place.grid, options.like);
     }
   }
@@ -86,9 +79,7 @@ io::SparseVolume empty_volume(const cli::App& app, const Place& place, const mod
                               const model::StackInfo& info) {
   io::SparseVolume volume("dose", place.grid);
   volume.metadata = info.extra;
-  if (!place.like.empty()) {
-    volume.metadata.insert(place.like.front().metadata.begin(), place.like.front().metadata.end());
-  }
+  if (place.like != nullptr) volume.metadata.insert(place.like->metadata.begin(), place.like->metadata.end());
   volume.metadata["vam:printer"] = io::printer_settings(printer);
   volume.history = info.history;
   volume.history.push_back(app.history());

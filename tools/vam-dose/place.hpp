@@ -14,7 +14,8 @@ namespace vam::dose_tool {
 
 /// The voxels, what is known about them, and the part and the insert if there are any.
 struct Place {
-  std::vector<io::SparseVolume> like;
+  std::vector<io::SparseVolume> grids;
+  const io::SparseVolume* like = nullptr;  // of these the target, or else the first
   const io::SparseVolume* target = nullptr;
   const io::SparseVolume* insert = nullptr;
   model::Grid grid;

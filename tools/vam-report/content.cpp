@@ -13,7 +13,6 @@
 #include "plot/page.hpp"
 #include "session/dose_score.hpp"
 #include "session/grey_target.hpp"
-#include "session/volumes.hpp"
 #include "vam-report/body.hpp"
 #include "vam-report/inspection.hpp"
 #include "vam-report/light.hpp"
@@ -32,13 +31,7 @@ std::optional<score::GreyScore> judge_grey(const Volumes& volumes, const model::
   const io::SparseVolume* dose = volumes.find("dose");
   const io::SparseVolume* target = volumes.find("target");
   if (dose == nullptr || target == nullptr) return std::nullopt;
-  const io::SparseVolume* band = volumes.find("tolerance");
-  std::optional<io::SparseVolume> own;
-  if (!grey.band_volume.empty()) {
-    own = session::read_grid(grey.band_volume, "tolerance");
-    band = &*own;
-  }
-  return session::score_grey(*dose, *target, grey.options(), band, printer, "dose");
+  return session::score_grey(*dose, *target, grey, volumes.find("tolerance"), printer, "dose");
 }
 
 /// A dose with its target, and what it is worth.

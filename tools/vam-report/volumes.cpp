@@ -8,7 +8,6 @@
 #include "model/metadata.hpp"
 #include "plot/page.hpp"
 #include "plot/view.hpp"
-#include "session/volumes.hpp"
 #include "vam-report/names.hpp"
 #include "vam-report/series.hpp"
 
@@ -40,13 +39,6 @@ std::string sections(const io::SparseVolume& volume, const std::string& file, co
 
 }  // namespace
 
-const io::SparseVolume* Volumes::find(const std::string& name) const {
-  for (const io::SparseVolume& grid : grids) {
-    if (grid.name() == name) return &grid;
-  }
-  return nullptr;
-}
-
 Volumes read_volumes(const std::vector<std::string>& paths, io::TargetKind kind) {
   Volumes all;
   for (const std::string& path : paths) {
@@ -59,11 +51,8 @@ Volumes read_volumes(const std::vector<std::string>& paths, io::TargetKind kind)
   const io::SparseVolume* dose = all.find("dose");
   if (dose == nullptr) return all;
   for (const char* name : {"target", "insert"}) {
-    for (std::size_t i = 0; i < all.grids.size(); ++i) {
-      if (all.grids[i].name() != name) continue;
-      all.grids[i].extend_to(dose->grid(), all.files[i]);
-      break;
-    }
+    io::SparseVolume* grid = session::find_grid(all.grids, name);
+    if (grid != nullptr) grid->extend_to(dose->grid(), all.files[grid - all.grids.data()]);
   }
   return all;
 }

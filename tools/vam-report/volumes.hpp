@@ -9,6 +9,7 @@
 #include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
 #include "score/score.hpp"
+#include "session/volumes.hpp"
 
 namespace vam::report_tool {
 
@@ -16,7 +17,7 @@ namespace vam::report_tool {
 struct Volumes {
   std::vector<std::string> files;  // of each grid
   std::vector<io::SparseVolume> grids;
-  [[nodiscard]] const io::SparseVolume* find(const std::string& name) const;
+  [[nodiscard]] const io::SparseVolume* find(const std::string& name) const { return session::find_grid(grids, name); }
 };
 
 /// Target and insert take the dose's grid, with void around. Throws what read_volumes throws; Fault::data where the

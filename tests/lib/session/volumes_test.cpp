@@ -64,6 +64,45 @@ TEST_CASE("a grid is found by its name, or as the only one of its file") {
   CHECK(grids.size() == 1);
 }
 
+TEST_CASE("what stands beside a volume is in its file, or in that of the part") {
+  const model::Grid grid = cube(4, 0), inner = cube(2, voxel_mm);
+  const scratch::Folder folder;
+  const std::string all = file_of(folder, "all.vdb", volume("insert", inner, 1, 0), volume("target", inner, 1, 0),
+                                  volume("tolerance", inner, 0.25F, 0), volume("dose", grid, 2, 0));
+  const std::string dose = file_of(folder, "dose.vdb", volume("dose", grid, 2, 0));
+  Companions own(all, "", io::TargetKind::coverage);
+  Companions apart(dose, all, io::TargetKind::coverage);
+  for (Companions* in : {&own, &apart}) {
+    CHECK(in->choose("dose").grid() == grid);
+    CHECK(in->target().grid() == inner);
+    CHECK(in->target_around().grid() == grid);
+    CHECK((in->insert()->grid() == grid && in->tolerance() != nullptr && in->file() == all));
+  }
+  own.choose("insert");
+  CHECK(own.insert() == nullptr);
+  Companions none(dose, "", io::TargetKind::coverage);
+  CHECK(none.choose("").name() == "dose");
+  CHECK(none.insert() == nullptr);
+  CHECK(has(error_of([&] { (void)none.target(); }, Fault::data), "--target"));
+  std::vector<io::SparseVolume> grids = read_like(all);  // an insert first
+  CHECK(target_or_first(grids).name() == "target");
+}
+
+TEST_CASE("a target that states a unit is grey, another is coverage, unless it is said") {
+  const scratch::Folder folder;
+  const auto beyond = [&](const char* name, const char* units) {
+    io::SparseVolume made = volume("target", cube(4, 0), 20, 0);
+    made.units = units;
+    return file_of(folder, name, std::move(made));
+  };
+  const std::string grey = beyond("grey.vdb", "mJ/cm3"), wrong = beyond("wrong.vdb", "relative");
+  CHECK(read_like(grey).size() == 1);
+  CHECK(fault_of([&] { (void)read_like(wrong); }) == Fault::data);
+  CHECK(read_grids(wrong, {}).size() == 1);
+  CHECK(read_grids(wrong, io::TargetKind::grey).size() == 1);
+  CHECK(fault_of([&] { Companions(wrong, "", io::TargetKind::coverage); }) == Fault::data);
+}
+
 TEST_CASE("a dose is in mJ/cm3, scattering is not") {
   const model::Grid grid = cube(4, 0);
   const scratch::Folder folder;
@@ -82,14 +121,15 @@ TEST_CASE("a grey target is met within the band of each voxel, and that of the o
   const model::Grid grid = cube(8, -3.5 * voxel_mm);
   const io::SparseVolume target = volume("target", grid, 1, 0);
   const io::SparseVolume dose = volume("dose", grid, 1.3F, 0);
-  score::GreyOptions how{.band = 0.4};
+  GreyChoice how;
+  how.how.band = 0.4;
   const model::Printer printer;
   CHECK(score_grey(dose, target, how, nullptr, printer, "dose").is_met());
-  how.band = 0.2;
+  how.how.band = 0.2;
   CHECK_FALSE(score_grey(dose, target, how, nullptr, printer, "dose").is_met());
   const io::SparseVolume wide = volume("tolerance", grid, 0.4F, 0);
   CHECK(score_grey(dose, target, how, &wide, printer, "dose").is_met());
   const io::SparseVolume narrow = volume("tolerance", cube(4, -1.5 * voxel_mm), 0.2F, 0);
-  how.band = 0.4;
+  how.how.band = 0.4;
   CHECK_FALSE(score_grey(dose, target, how, &narrow, printer, "dose").is_met());
 }
