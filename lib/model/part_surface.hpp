@@ -49,10 +49,6 @@ struct VoxelisedSurface {
     return places.blocked.area_mm2 > 0 ? places.blocked : places.gaps;
   }
   [[nodiscard]] bool may_lose_walls() const { return places.walls.are_below(lost_voxels, voxel_mm) || has_relief(); }
-  /// By the dose, which may have holes in oblique walls, and bridges over such gaps.
-  [[nodiscard]] bool may_be_pierced() const {
-    return places.walls.are_below(lost_voxels, voxel_mm) || places.gaps.are_below(lost_voxels, voxel_mm);
-  }
   [[nodiscard]] bool may_lose_gaps() const { return places.gaps.are_below(lost_voxels, voxel_mm) || has_relief(); }
   [[nodiscard]] bool has_relief() const { return places.relief.are_below(thin_voxels, voxel_mm); }
   [[nodiscard]] bool leaves_doubt() const { return has_thin_walls() || has_thin_gaps() || has_relief(); }

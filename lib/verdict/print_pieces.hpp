@@ -74,7 +74,6 @@ struct PrintPieces {
   [[nodiscard]] bool is_as_part() const {
     return !is_in_other_pieces() && !loses_walls() && !shuts_gaps() && !has_holes();
   }
-  [[nodiscard]] bool is_surely_as_part() const { return is_as_part() && is_certain(); }
 };
 
 /// Slice by slice, from the lowest up.
