@@ -39,10 +39,13 @@ model::TriangleSoup surface_of(const std::string& path, const model::Volume& vol
   throw Error{Fault::data, io::input_name(path) + ": no surface, the volume does not cross " + format_number(isovalue)};
 }
 
-model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue) {
+model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue,
+                                 const std::function<void(model::Volume&)>& prepare) {
   if (!io::is_volume(path)) return io::read_mesh(path);
   const io::SparseVolume sparse = open_body(path, isovalue);
-  model::TriangleSoup mesh = surface_of(path, io::dense_volume(sparse), *isovalue);
+  model::Volume volume = io::dense_volume(sparse);
+  if (prepare) prepare(volume);
+  model::TriangleSoup mesh = surface_of(path, volume, *isovalue);
   model::unstretch(mesh, sparse.metadata);
   return mesh;
 }

@@ -2,6 +2,7 @@
 // The surface of a body: of a mesh, or where a volume has a value.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,8 +23,9 @@ namespace vam::session {
 /// Throws Fault::data where the volume does not cross it.
 [[nodiscard]] model::TriangleSoup surface_of(const std::string& path, const model::Volume& volume, double isovalue);
 
-/// In mm of the part, whose stretch is undone. Throws Error: usage, no_input, data.
-[[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue);
+/// In mm of the part, whose stretch is undone; `prepare` changes a volume before. Throws Error: usage, no_input, data.
+[[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue,
+                                               const std::function<void(model::Volume&)>& prepare = {});
 
 /// Where a volume reaches the level, by its slices; its stretch, or that of another volume, is undone. Empty where it
 /// reaches it nowhere.
