@@ -133,7 +133,10 @@ $exr make flattened.exr pixel=0.1 row=0.3
 $exr make half.exr width=64 step=3
 unsealed() { sed 's|vam:\(facts_\)*seal|vom:\1seal|g' "$1"; }
 { unsealed handle.vdb | sed 's|target|others|g'; unsealed part.vdb; } >mixed.vdb  # an insert of other voxels
-fails 65 "differs from that of 'target'" vam-dose frames.exr --like mixed.vdb -o x.vdb
+fails 65 "mixed.vdb: the grid 'insert' has .* voxels" vam-dose frames.exr --like mixed.vdb -o x.vdb
+vam-slice --shape cylinder:diameter=1,height=0.4 --voxel 0.1 -o rod.vdb
+{ unsealed part.vdb; unsealed rod.vdb | sed 's|target|insert|g'; } >cropped.vdb
+ok "an insert without the void around it" vam-dose virtual.exr --like cropped.vdb -o x.vdb
 # Of a grey target only the voxels are needed.
 vam-convert part.vdb -o part.npy
 python3 -c 'import array

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/error.hpp"
 #include "light/operators/insert.hpp"
 #include "model/dose/dose_metrics.hpp"
 
@@ -24,11 +23,6 @@ Insert::Insert(const io::SparseVolume* insert, const io::SparseVolume* target, c
                const model::StackInfo& light)
     : insert_(insert), target_(target), nx_(grid.nx), ny_(grid.ny) {
   if (insert_ == nullptr) return;
-  if (!(insert_->grid() == grid)) {
-    throw Error{Fault::data,
-                "insert: its grid differs from that of 'target'; slice both together (vam-slice --insert) or with the "
-                "same --voxel and size"};
-  }
   even_ = Image(light.width, light.height, 1.0F);
   rows_ = light.count;
 }

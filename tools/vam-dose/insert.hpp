@@ -16,7 +16,7 @@ namespace vam::dose_tool {
 /// sides.
 class Insert {
  public:
-  /// Null volumes: no insert, no part. Throws Fault::data when the insert has other voxels than the dose.
+  /// Null volumes: no insert, no part; else those of the dose's voxels.
   Insert(const io::SparseVolume* insert, const io::SparseVolume* target, const model::Grid& grid,
          const model::StackInfo& light);
 

@@ -53,9 +53,10 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     return place;
   }
   place.grids = session::read_like(options.like);
-  place.insert = session::find_grid(place.grids, "insert");
-  const io::SparseVolume& like = session::target_or_first(place.grids);
+  io::SparseVolume* insert = session::find_grid(place.grids, "insert");
+  io::SparseVolume& like = session::target_or_first(place.grids);
   place.like = &like;
+  place.insert = insert;
   if (like.name() == "target") place.target = part_of(like, options);
   if (options.exposure_plan && place.target == nullptr) {
     throw Error{Fault::data,
@@ -66,12 +67,10 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
   light::require_in_reach(info.poses, printer, place.judged_mm);
   place.grid = like.grid();
   if (info.space == model::Space::projector) {  // what prints around the part must be seen
-    const model::Grid inner = place.grid;
-    place.grid = light::extended(inner, light::lit_margin(printer, inner, place.judged_mm, info.poses));
-    for (io::SparseVolume& volume : place.grids) {
-      if (volume.grid() == inner) volume.extend_to(place.grid, options.like);
-    }
+    place.grid = light::extended(place.grid, light::lit_margin(printer, place.grid, place.judged_mm, info.poses));
   }
+  like.extend_to(place.grid, options.like);
+  if (insert != nullptr) insert->extend_to(place.grid, options.like);
   return place;
 }
 
