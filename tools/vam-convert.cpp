@@ -25,7 +25,7 @@ void run(const cli::App& app, const Options& options) {
   }
   if (options.input != "-") io::require_content(options.input);  // a socket cannot be looked at
   check_import(app, options);
-  if (options.voxel_mm) return convert_tool::make_volume(app, options, type);
+  if (options.voxel_mm) return convert_tool::make_volume(app, options, type, printer);
   convert_tool::make_projections(app, options, type, printer);
 }
 

@@ -12,7 +12,6 @@
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
 #include "io/array/array_reader.hpp"
-#include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
@@ -94,10 +93,9 @@ class StretchedSlices {
 
 // Prints are lower than their targets by the projector's vertical magnification, for which vam-slice has stretched
 // them.
-std::string height_doubt(const Options& options) {
+std::string height_doubt(const Options& options, const model::Printer& printer) {
   constexpr double least = 0.005;
   if (options.stretch_z || !(options.grid.empty() || options.grid == "target")) return "";
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
   const double factor = 1 / model::vertical_magnification(printer);
   if (std::abs(factor - 1) < least) return "";
   return io::input_name(options.input) + ": the print will be " + format_number(100 * std::abs(1 - 1 / factor), 2) +
@@ -141,9 +139,10 @@ std::string voxel_doubt(const Options& options, const std::vector<double>& state
                 : "; voxels must be cubes: resample it if its header is right");
 }
 
-void make_volume(const cli::App& app, const Options& options, std::optional<io::FileType> type) {
+void make_volume(const cli::App& app, const Options& options, std::optional<io::FileType> type,
+                 const model::Printer& printer) {
   constexpr int slab = 8;
-  const std::string doubt = height_doubt(options);  // now, as the printer file may be refused
+  const std::string height = height_doubt(options, printer);
   const auto in = open_source(options, type, "zyx");
   const std::string edges = voxel_doubt(options, in->views().voxel_mm);
   const double stretch_z = options.stretch_z.value_or(1);
@@ -172,12 +171,9 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   volume.history = {app.history()};
   if (options.stretch_z) volume.metadata["vam:stretch_z"] = format_number(stretch_z, 9);
   io::write_volume(options.output, volume);
-  if (!doubt.empty()) warn(doubt);
-  if (!edges.empty()) warn(edges);
-  const std::string scale = scale_doubt(options, most);
-  if (!scale.empty()) warn(scale);
-  const std::string empty = void_doubt(options, most);
-  if (!empty.empty()) warn(empty);
+  for (const std::string& doubt : {height, edges, scale_doubt(options, most), void_doubt(options, most)}) {
+    if (!doubt.empty()) warn(doubt);
+  }
 }
 
 }  // namespace vam::convert_tool
