@@ -32,20 +32,21 @@ model::Circle scoring_circle(const io::SparseVolume& target, const model::Printe
   return model::judged_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
 }
 
-/// add(count, slices of each volume) for all, a slab at a time.
+/// add(first slice, count, dose, coverage) for all, a slab at a time.
 template <class Add>
-void for_each_slab(const std::vector<const io::SparseVolume*>& volumes, const char* title, const Add& add) {
+void for_each_slab(const io::SparseVolume& dose, const io::SparseVolume& target, const char* title, const Add& add) {
   constexpr int slab = 16;
-  const model::Grid& grid = volumes.front()->grid();
+  const model::Grid& grid = dose.grid();
   constexpr double copies = 4;  // both; pieces are counted in copies
   require_memory(copies * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
-                 volumes[1]->name() + ": " + model::size_text(grid), "use larger voxels");
-  std::vector<std::vector<float>> slices(volumes.size(), std::vector<float>(grid.slice_size() * slab));
+                 target.name() + ": " + model::size_text(grid), "use larger voxels");
+  std::vector<float> doses(grid.slice_size() * slab), coverage(doses.size());
   Progress progress(title, grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
-    for (std::size_t n = 0; n < volumes.size(); ++n) volumes[n]->read_slices(k, count, slices[n].data());
-    add(count, slices);
+    dose.read_slices(k, count, doses.data());
+    target.read_slices(k, count, coverage.data());
+    add(k, count, doses.data(), coverage.data());
     progress.tick(count);
   }
 }
@@ -83,8 +84,8 @@ void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, co
 score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
                            const score::ScoreOptions& how) {
   score::Score result(how, target.grid().nx, target.grid().ny);
-  for_each_slab({&dose, &target}, "scoring",
-                [&](int count, const auto& slices) { result.add(slices[0].data(), slices[1].data(), count); });
+  for_each_slab(dose, target, "scoring",
+                [&](int, int count, const float* x, const float* f) { result.add(x, f, count); });
   return result;
 }
 
@@ -94,8 +95,8 @@ score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& t
   const double threshold = result.print_threshold();
   if (!(threshold > 0)) return result;  // the part stays dark
   verdict::PrintPieceCounter counter(grid.nx, grid.ny, threshold, how.circle);
-  for_each_slab({&dose, &target}, "counting pieces",
-                [&](int count, const auto& slices) { counter.add(slices[0].data(), slices[1].data(), count); });
+  for_each_slab(dose, target, "counting pieces",
+                [&](int, int count, const float* x, const float* f) { counter.add(x, f, count); });
   verdict::PrintPieces pieces = counter.found();
   pieces.set_places(grid, model::stretch_z(target.metadata));
   result.set_pieces(pieces);
@@ -110,13 +111,14 @@ score::GreyScore score_grey(const io::SparseVolume& dose, const io::SparseVolume
   how.unit = grey_unit(target, dose, file);
   require_linear(dose, file);
   score::GreyScore result(how, grid.nx, grid.ny);
-  std::optional<io::SparseVolume> bands;
-  if (!grey.band_volume.empty()) band = &bands.emplace(read_grid(grey.band_volume, "tolerance"));
-  if (band != nullptr) bands = widened(*band, grid, static_cast<float>(how.band), "target");
-  std::vector<const io::SparseVolume*> volumes{&dose, &target};
-  if (bands) volumes.push_back(&*bands);
-  for_each_slab(volumes, "scoring", [&](int count, const auto& slices) {
-    result.add(slices[0].data(), slices[1].data(), count, bands ? slices[2].data() : nullptr);
+  std::optional<io::SparseVolume> named;
+  if (!grey.band_volume.empty()) band = &named.emplace(read_grid(grey.band_volume, "tolerance"));
+  std::vector<float> bands;
+  for_each_slab(dose, target, "scoring", [&](int k, int count, const float* x, const float* f) {
+    if (band == nullptr) return result.add(x, f, count);
+    bands.resize(product(count, grid.slice_size()));
+    read_around(*band, grid, static_cast<float>(how.band), k, count, bands.data());
+    result.add(x, f, count, bands.data());
   });
   return result;
 }

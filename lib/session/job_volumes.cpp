@@ -6,7 +6,6 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "io/vdb/coarser.hpp"
-#include "light/grids/lit_grid.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
 #include "optimize/target/void_rule.hpp"
@@ -61,16 +60,7 @@ namespace {
 optimize::VolumeSource::Read padded(const std::vector<io::SparseVolume>& volumes, const Scene& scene, float outside) {
   if (volumes.empty()) return {};
   return [&volume = volumes.front(), &scene, outside](int k, int count, float* to) {
-    const model::Grid& inner = volume.grid();
-    const light::Margin& margin = scene.margin;
-    std::fill_n(to, scene.grid.slice_size() * static_cast<std::size_t>(count), outside);
-    std::vector<float> slice(inner.slice_size());
-    for (int n = 0; n < count; ++n, to += scene.grid.slice_size()) {
-      const int from = k + n - margin.below;
-      if (from < 0 || from >= inner.nz) continue;
-      volume.read_slices(from, 1, slice.data());
-      light::place_slice(slice.data(), inner, margin, to);
-    }
+    read_around(volume, scene.grid, outside, k, count, to);
   };
 }
 

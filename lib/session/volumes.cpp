@@ -99,27 +99,21 @@ const io::SparseVolume* Companions::insert() {
   return found;
 }
 
-io::SparseVolume widened(const io::SparseVolume& volume, const model::Grid& grid, float outside,
-                         const std::string& file) {
+void read_around(const io::SparseVolume& volume, const model::Grid& grid, float outside, int k, int count, float* to) {
   const model::Grid& own = volume.grid();
   const auto place = model::place_in(grid, own);
-  if (!place) throw differs_from_target(volume, file);
+  if (!place) throw differs_from_target(volume, "target");
   const auto& [left, front, low] = *place;
-  constexpr int slab = 8;  // slices
-  io::SparseVolume wide(volume.name(), grid, outside);
-  std::vector<float> from(own.slice_size());
-  for (int first = 0; first < grid.nz; first += slab) {
-    const int count = std::min(slab, grid.nz - first);
-    std::vector<float> to(product(count, grid.slice_size()), outside);
-    for (int k = std::max(first, low); k < std::min(first + count, low + own.nz); ++k) {
-      volume.read_slices(k - low, 1, from.data());
-      float* corner = to.data() + product(k - first, grid.slice_size()) + product(front, grid.nx) + left;
-      for (int y = 0; y < own.ny; ++y)
-        std::copy_n(from.data() + product(y, own.nx), own.nx, corner + product(y, grid.nx));
-    }
-    wide.write_slices(first, count, to.data());
+  std::fill_n(to, product(count, grid.slice_size()), outside);
+  std::vector<float> slice(own.slice_size());
+  for (int n = 0; n < count; ++n, to += grid.slice_size()) {
+    const int from = k + n - low;
+    if (from < 0 || from >= own.nz) continue;
+    volume.read_slices(from, 1, slice.data());
+    float* corner = to + product(front, grid.nx) + left;
+    for (int y = 0; y < own.ny; ++y)
+      std::copy_n(slice.data() + product(y, own.nx), own.nx, corner + product(y, grid.nx));
   }
-  return wide;
 }
 
 Error differs_from_target(const io::SparseVolume& volume, const std::string& file) {

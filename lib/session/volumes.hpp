@@ -72,10 +72,9 @@ class Companions {
   io::SparseVolume* volume_ = nullptr;
 };
 
-/// A copy on a larger grid of the same voxels, with `outside` around. Throws Fault::data, a message that `file` begins,
-/// where that does not hold its grid, as it must where both are of one target.
-[[nodiscard]] io::SparseVolume widened(const io::SparseVolume& volume, const model::Grid& grid, float outside,
-                                       const std::string& file);
+/// Slices k to k + count - 1 of a larger grid of the same voxels, `outside` around those of the volume. Throws
+/// Fault::data where it does not hold that of the volume, as it must where both are of one target.
+void read_around(const io::SparseVolume& volume, const model::Grid& grid, float outside, int k, int count, float* to);
 /// Of a grid that must lie on that of the target. file: begins the message.
 [[nodiscard]] Error differs_from_target(const io::SparseVolume& volume, const std::string& file);
 

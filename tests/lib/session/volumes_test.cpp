@@ -35,18 +35,19 @@ std::string file_of(const scratch::Folder& folder, const std::string& name, Grid
 
 }  // namespace
 
-TEST_CASE("a widened volume has its own values inside and the given one around") {
+TEST_CASE("read in a larger grid, a volume has its own values inside and the given one around") {
   const model::Grid inner = cube(3, 2 * voxel_mm);
   const io::SparseVolume own = volume("tolerance", inner, 1, 0.25F);
-  const io::SparseVolume wide = widened(own, cube(11, 0), 0.5F, "band.vdb");
-  const model::Volume all = io::dense_volume(wide);
+  model::Volume all{cube(11, 0), std::vector<float>(cube(11, 0).size())};
+  read_around(own, all.grid, 0.5F, 0, 4, all.slice(0));
+  read_around(own, all.grid, 0.5F, 4, 7, all.slice(4));
   const model::Volume part = io::dense_volume(own);
   for (const auto [k, j, i] : indices(11, 11, 11)) {
     const bool inside = std::min({i, j, k}) >= 2 && std::max({i, j, k}) < 5;
     const float wanted = inside ? part.slice(k - 2)[(j - 2) * 3 + i - 2] : 0.5F;
     REQUIRE(all.slice(k)[j * 11 + i] == wanted);
   }
-  CHECK(error_of([&] { (void)widened(own, cube(4, 0), 0, "band.vdb"); }, Fault::data).starts_with("band.vdb: "));
+  CHECK(fault_of([&] { read_around(own, cube(4, 0), 0, 0, 4, all.slice(0)); }) == Fault::data);
 }
 
 TEST_CASE("a grid is found by its name, or as the only one of its file") {
