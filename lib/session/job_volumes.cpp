@@ -44,13 +44,9 @@ JobVolumes read(const JobOptions& options) {
 
 JobVolumes coarser(const JobVolumes& in) {
   JobVolumes coarse;
-  const auto add = [](const std::vector<io::SparseVolume>& from, std::vector<io::SparseVolume>& to) {
-    for (const io::SparseVolume& volume : from) to.push_back(io::coarser(volume));
-  };
-  add(in.target, coarse.target);
-  add(in.insert, coarse.insert);
-  add(in.weight, coarse.weight);
-  add(in.tolerance, coarse.tolerance);
+  for (const auto kind : {&JobVolumes::target, &JobVolumes::insert, &JobVolumes::weight, &JobVolumes::tolerance}) {
+    for (const io::SparseVolume& volume : in.*kind) (coarse.*kind).push_back(io::coarser(volume));
+  }
   return coarse;
 }
 
