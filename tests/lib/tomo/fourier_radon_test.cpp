@@ -2,36 +2,17 @@
 #include "tomo/fourier_radon.hpp"
 
 #include "base/compute/parallel.hpp"
+#include "lib/tomo/radon_cases.hpp"
 #include "testing.hpp"
 
 using namespace vam;
 using namespace vam::tomo;
+using namespace radon_cases;
 using Slices = FourierRadon::Slices;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-ParallelGeometry full_turn(int n, int columns, int angles) {
-  return {n, n, columns, angles, 0.5 * (n - 1), 0.5 * (n - 1), 0, 2 * pi / angles, 0};
-}
-
-/// Odd sizes, an axis off centre, too few columns, angles on the axes and diagonals.
-struct Case {
-  const char* name;
-  ParallelGeometry geometry;
-};
-const std::vector<Case> cases = {
-    {"full turn, even", full_turn(40, 60, 24)},
-    {"full turn, odd columns", full_turn(33, 51, 20)},
-    {"full turn, odd number of angles", full_turn(33, 51, 19)},
-    {"half turn, negative step", {70, 45, 90, 23, 34.5, 22, 0.3, -pi / 23, 0}},
-    {"axis off centre, off the pixel grid", {37, 29, 71, 17, 5.3, 20.9, 0.1, 2 * pi / 17, 0}},
-    {"columns fewer than needed", {64, 40, 31, 18, 31.5, 19.5, 0, 2 * pi / 18, 0}},
-    {"more tiles than one", full_turn(150, 213, 16)},
-    {"one pixel", {1, 1, 3, 8, 0, 0, 0, 2 * pi / 8, 0}},
-    {"one angle", {20, 20, 31, 1, 9.5, 9.5, pi / 4, 1, 0}},
-};
+const std::vector<Case> cases = cases_and({{"more tiles than one", full_turn(150, 213, 16)}});
 
 int used(Slices slices) { return slices == Slices::one ? 1 : lanes; }
 
@@ -54,13 +35,6 @@ Slab blobs(int width, int height, Slices slices, double sigma) {
     slab.at(x, y)[lane] = static_cast<float>(std::exp(-(from_x * from_x + from_y * from_y) / (2 * sigma * sigma)));
   }
   return slab;
-}
-
-double dot(const Slab& a, const Slab& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.values.size(); ++i)
-    sum += static_cast<double>(a.values[i]) * static_cast<double>(b.values[i]);
-  return sum;
 }
 
 double largest(const Slab& a) {
@@ -139,46 +113,9 @@ TEST_CASE("of noise the Fourier slices leave out what is above one cycle per pix
 }
 
 TEST_CASE("Fourier slices: an off-centre disc has the projections of its chords") {
-  // As of the footprints: anti-aliased by 16 x 16 sub-pixels, its chord averaged over the bin.
-  const int n = 512;
-  const int columns = 725;
-  const int angles = 90;
-  const double radius = 150.3;
-  const double cx = 40.2;
-  const double cy = -55.7;
-  ParallelGeometry g = full_turn(n, columns, angles);
-  g.angle_start_rad = 0.01;
-  Slab image(n, n);
-  for (const auto [j, i] : indices(n, n)) {
-    int inside = 0;
-    for (int s = 0; s < 256; ++s) {
-      const double x = i - g.axis_x - cx + (s % 16 - 7.5) / 16;
-      const double y = j - g.axis_y - cy + (s / 16 - 7.5) / 16;  // NOLINT(bugprone-integer-division)
-      inside += x * x + y * y <= radius * radius ? 1 : 0;
-    }
-    *image.at(i, j) = static_cast<float>(inside) / 256;
-  }
-  const auto area_left_of = [&](double t) {  // of the disc
-    const double x = std::clamp(t / radius, -1.0, 1.0);
-    return radius * radius * (x * std::sqrt(1 - x * x) + std::asin(x) + pi / 2);
-  };
-  for (const Slices slices : {Slices::all, Slices::one}) {
-    const Slab sinogram = projected(FourierRadon(g, slices), g, image);
-    double error = 0;
-    double norm = 0;
-    for (int a = 0; a < angles; ++a) {
-      const double theta = g.angle_start_rad + a * g.angle_step_rad;
-      for (int c = 0; c < columns; ++c) {
-        const double t = c - 0.5 * (columns - 1) - (cx * std::cos(theta) + cy * std::sin(theta));
-        const double chord = area_left_of(t + 0.5) - area_left_of(t - 0.5);
-        const double off = static_cast<double>(*sinogram.at(c, a)) - chord;
-        error += off * off;
-        norm += chord * chord;
-        if (std::abs(t) < 0.8 * radius) CHECK(std::abs(off) / chord < 2e-3);
-      }
-    }
-    CHECK(std::sqrt(error / norm) < 1e-3);
-  }
+  const Disc disc;
+  for (const Slices slices : {Slices::all, Slices::one})
+    disc.judge(projected(FourierRadon(disc.g, slices), disc.g, disc.image[0]));
 }
 
 TEST_CASE("Fourier slices: the same bytes for one and two threads, and for any number of neighbours in a call") {
