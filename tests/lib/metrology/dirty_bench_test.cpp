@@ -44,16 +44,6 @@ oracle::ViewBench soiled_bench() {
   return bench;
 }
 
-std::vector<CameraView> views_of(const oracle::ViewBench& bench, const std::vector<std::vector<float>>& pixels) {
-  std::vector<CameraView> views;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    Image image(bench.columns, bench.rows);
-    image.values = pixels[i];
-    views.push_back({std::move(image), 360.0 * static_cast<double>(i) / static_cast<double>(pixels.size())});
-  }
-  return views;
-}
-
 // The same field in pixels `factor` times as large.
 oracle::ViewBench coarser(oracle::ViewBench bench, int factor) {
   bench.pixel_mm *= factor;

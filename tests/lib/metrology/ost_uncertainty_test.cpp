@@ -16,16 +16,6 @@ namespace {
 
 using Kind = oracle::Body::Kind;
 
-std::vector<CameraView> views_of(const oracle::ViewBench& bench, const std::vector<std::vector<float>>& pixels) {
-  std::vector<CameraView> views;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    Image image(bench.columns, bench.rows);
-    image.values = pixels[i];
-    views.push_back({std::move(image), 360.0 * static_cast<double>(i) / static_cast<double>(pixels.size())});
-  }
-  return views;
-}
-
 oracle::ViewBench small_bench() {
   return {.columns = 120, .rows = 64, .pixel_mm = 0.15, .axis_column = 59.5, .axis_row = 31.5};
 }

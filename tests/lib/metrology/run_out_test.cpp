@@ -196,12 +196,7 @@ TEST_CASE("where bubbles pass, run-out and axis deviate by as much as their stan
     std::mt19937 random(seed);
     oracle::ViewBench bench = drawn_bench(random);
     const auto pixels = oracle::bench_views(bench, random_part(random), oracle::bubbles(15, 8, seed + 100), 180);
-    std::vector<CameraView> views;
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      Image image(bench.columns, bench.rows);
-      image.values = pixels[i];
-      views.push_back({std::move(image), 2.0 * static_cast<double>(i)});
-    }
+    const std::vector<CameraView> views = views_of(bench, pixels);
     const AxisEstimate axis = find_axis(views);
     column.add(axis.pose.column - bench.axis_column, axis.column_sigma);
     tilt.add(axis.pose.tilt_rad, axis.tilt_sigma_rad);
@@ -239,12 +234,7 @@ TEST_CASE("bubbles that turn with the vial are no run-out") {
       bubble.rise_mm *= 0.1;  // so slowly that they err alike over the whole turn
     }
     const auto pixels = oracle::bench_views(bench, part, bubbles, 180);
-    std::vector<CameraView> views;
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      Image image(bench.columns, bench.rows);
-      image.values = pixels[i];
-      views.push_back({std::move(image), 2.0 * static_cast<double>(i)});
-    }
+    const std::vector<CameraView> views = views_of(bench, pixels);
     const RunOut found = found_in(bench, views, {bench.axis_column, 0});
     MESSAGE("run-out ", found.size_mm(), " +- ", found.size_sigma_mm(), " mm, determined: ", found.determined);
     CHECK(!found.seen());
@@ -315,12 +305,7 @@ TEST_CASE("specks in the window of a bath do not hide the run-out, nor are they 
       bench.run_out_mm = {x_mm, 0};
       auto pixels = oracle::bench_views(bench, part, {}, 120);
       oracle::soil(bench, {.noise = 0.02, .specks = 10}, pixels);
-      std::vector<CameraView> views;
-      for (std::size_t i = 0; i < pixels.size(); ++i) {
-        Image image(bench.columns, bench.rows);
-        image.values = pixels[i];
-        views.push_back({std::move(image), 3.0 * static_cast<double>(i)});
-      }
+      const std::vector<CameraView> views = views_of(bench, pixels);
       return found_in(bench, views, {bench.axis_column, 0});
     };
     const RunOut none = found_at(0);
