@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/os/synced_log.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,22 +9,14 @@
 
 #include "base/text/json.hpp"
 #include "device/os/event_log.hpp"
+#include "lib/io/scratch.hpp"
 #include "testing.hpp"
 
 using namespace vam;
 using namespace vam::device;
+using scratch::Folder;
 
 namespace {
-
-struct Folder {
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "vam-test-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
-  std::filesystem::path path;
-};
 
 std::vector<Json> lines_of(const std::string& path) {
   std::ifstream file(path);
