@@ -29,8 +29,11 @@ App::App(Manual manual) : state_(std::make_unique<State>()) {
 
 App::~App() = default;
 
-App& App::group(const std::string& title) {
+App& App::group(const std::string& title, const std::vector<std::string>& only_with,
+                const std::vector<std::string>& not_for) {
   state_->heading = title;
+  state_->only_with = only_with;
+  state_->not_for = not_for;
   return *this;
 }
 
@@ -45,7 +48,7 @@ App& App::declare(Option option, const std::function<void(const std::string&)>& 
       });
   parsed->expected(option.repeatable ? -1 : 1)->type_size(1)->allow_extra_args(false);
   parsed->multi_option_policy(option.repeatable ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::Throw);
-  state_->current_group().options.push_back(std::move(option));
+  state_->add(std::move(option));
   state_->operand_last = false;
   return *this;
 }
@@ -165,7 +168,7 @@ App& App::choice(const std::string& flag, std::string& target, const std::vector
 
 App& App::flag(const std::string& name, bool& target, const std::string& help) {
   state_->parser->add_flag(name, target);
-  state_->current_group().options.push_back({name, "", help, "", "", {}});
+  state_->add({name, "", help, "", "", {}});
   state_->operand_last = false;
   state_->current_group().options.back().value = [&target] { return std::string(target ? "1" : "0"); };
   return *this;

@@ -65,7 +65,10 @@ class App {
   ~App();
 
   static constexpr const char* plain_heading = "Options";  // that of options without one
-  App& group(const std::string& title);                    // heading of the options that follow
+  /// Heading of the options that follow, which all require one of these conditions (but for options that they name)
+  /// and are not for these kinds: only_with(), not_for().
+  App& group(const std::string& title, const std::vector<std::string>& only_with = {},
+             const std::vector<std::string>& not_for = {});
   /// An empty target: required.
   App& positional(const std::string& value_name, std::string& target, const std::string& help);
   /// The last one: all operands that are left; target holds the one that stands for none.
@@ -119,7 +122,8 @@ class App {
   App& only_with(const std::vector<std::string>& any_of, const std::string& value = "");
   /// And where one of these holds.
   App& excludes(const std::vector<std::string>& conditions, const std::string& value = "");
-  /// The option declared last has no effect on these kinds of input or output, in the plural [require_for].
+  /// The option declared last has no effect on these kinds of input or output, in the plural [require_for]. Called
+  /// again: nor on those.
   App& not_for(const std::vector<std::string>& kinds);
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move), which runs `body`. Returns the
   /// nested declaration. A tool with operands or options of its own has a plain form, which runs without a command;

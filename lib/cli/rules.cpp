@@ -39,7 +39,8 @@ App& App::excludes(const std::vector<std::string>& conditions, const std::string
 }
 
 App& App::not_for(const std::vector<std::string>& kinds) {
-  state_->current_group().options.back().not_for = kinds;
+  auto& known = state_->current_group().options.back().not_for;
+  known.insert(known.end(), kinds.begin(), kinds.end());
   return *this;
 }
 

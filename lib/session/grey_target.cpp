@@ -20,27 +20,22 @@ score::GreyOptions GreyChoice::options() const {
 }
 
 void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::string>& not_beside) {
-  app.group("Grey target");
+  app.group("Grey target", {"--grey-target"});
   app.flag("--grey-target", grey.is_target,
            "The target specifies a relative dose for every voxel, to be met within --band.");
   if (!not_beside.empty()) app.excludes(not_beside);
-  app.option("--band", "EPSILON", grey.how.band, cli::non_negative, "Maximum deviation of the dose from the target.")
-      .only_with({"--grey-target"});
+  app.option("--band", "EPSILON", grey.how.band, cli::non_negative, "Maximum deviation of the dose from the target.");
   app.choice("--void", grey.void_rule, {"met", "below", "free"},
              "Void, where the target is 0: must be 0 within --band (met) or not exceed --dose-low (below), or is not "
-             "scored (free).")
-      .only_with({"--grey-target"});
+             "scored (free).");
   app.option("--dose-low", "DOSE", grey.how.void_limit, cli::non_negative, "LOW: upper bound on the dose of the void.")
-      .only_with({"--grey-target"})
       .only_with({"--void below"});
   app.option("--void-band", "EPSILON", grey.how.void_band, cli::non_negative, "--band in the void.")
-      .only_with({"--grey-target"})
       .only_with({"--void met"});
   app.default_is("--band");
   app.option("--band-volume", "FILE", grey.band_volume,
              "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
-      .reads()
-      .only_with({"--grey-target"});
+      .reads();
   app.default_is("the grid 'tolerance' of the target file, if present");
 }
 

@@ -69,14 +69,11 @@ void declare_beam(cli::App& app, Options& options) {
 }
 
 void declare_alignment(cli::App& app, Options& options) {
-  app.group("Alignment");
+  app.group("Alignment", {}, {"virtual sinograms"});
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
-             "Distance in columns from projector.axis_column to the image of the axis, positive to the right.")
-      .not_for({"virtual sinograms"});
-  app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.")
-      .not_for({"virtual sinograms"});
-  app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.")
-      .not_for({"virtual sinograms"});
+             "Distance in columns from projector.axis_column to the image of the axis, positive to the right.");
+  app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.");
+  app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.");
 }
 
 }  // namespace

@@ -46,23 +46,20 @@ std::string default_iterations() {
 }
 
 void declare_poses(cli::App& app, Options& options) {
-  app.group("Poses of vial and part");
+  app.group("Poses of vial and part", in_vial);
   app.option("--poses", "FILE", options.poses,
              "Pose of the vial or the part in every frame: a table (CSV) with the columns "
              "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line per frame, 360 / --angles degrees apart, for any number of "
              "turns. The table is stored in the stack.")
-      .reads()
-      .only_with(in_vial);
+      .reads();
   app.option("--helix", "MM", options.helix_mm, cli::not_zero,
              "For parts taller than the image: lift of the vial per turn (negative: downwards), over the number of "
              "turns in which the whole part passes the image.")
-      .only_with(in_vial)
       .excludes({"--poses"});
   app.option("--wobble-record", "RECORD", options.wobble_record,
              "Record of vam-calibrate edges or axis with the wobble of the vial, whose axis circles the rotation axis; "
              "the projections follow it.")
       .reads()
-      .only_with(in_vial)
       .excludes({"--poses", "--helix"});
 }
 

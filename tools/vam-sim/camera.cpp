@@ -58,32 +58,27 @@ void declare_scene(cli::App& app, CameraOptions& o) {
   app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Without --follow: stage speed.");
   app.option("--flips", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.");
   app.option("--projected", "FILE", o.frames,
-             "Frames shown by vam-project: an EXR frame stack, video or folder of images.");
+             "Frames shown by vam-project: an EXR frame stack, video or folder of images.")
+      .excludes({"--pattern"});
 }
 
 void declare_resin(cli::App& app, CameraOptions& o) {
-  app.group("Resin");
+  app.group("Resin", {"--cure"});
   app.flag("--cure", o.cure, "The print is what the light has cured, instead of --part.");
-  app.option("--cure-voxel", "MM", o.resin.voxel_mm, {0.02, 2}, "Edge of a voxel of the resin.").only_with({"--cure"});
+  app.option("--cure-voxel", "MM", o.resin.voxel_mm, {0.02, 2}, "Edge of a voxel of the resin.");
   app.option("--induction", "FRACTION", o.resin.induction, {0, 0.99},
-             "Fraction of the critical dose that the inhibitor takes.")
-      .only_with({"--cure"});
+             "Fraction of the critical dose that the inhibitor takes.");
   app.option("--inhibition-gradient", "FRACTION", o.resin.inhibition_gradient, {-2, 2},
-             "Relative change of the inhibitor from the bottom to the top of the voxels.")
-      .only_with({"--cure"});
+             "Relative change of the inhibitor from the bottom to the top of the voxels.");
   app.option("--inhibitor-diffusion", "MM2/S", o.resin.inhibitor_diffusion_mm2_s, {0, 1},
-             "Diffusion coefficient of the inhibitor.")
-      .only_with({"--cure"});
+             "Diffusion coefficient of the inhibitor.");
   app.option("--cure-delay", "S", o.cure_delay_s, {0, 1e4}, "Lifetime of radicals, by which curing follows the light.")
-      .default_is("resin.dose_lifetime_s, or 3")
-      .only_with({"--cure"});
+      .default_is("resin.dose_lifetime_s, or 3");
   app.option("--lamp-drift", "1/MIN", o.camera.bench.lamp_drift_per_min, {-10, 10},
-             "Relative change of the lamp's intensity per minute of light.")
-      .only_with({"--cure"});
+             "Relative change of the lamp's intensity per minute of light.");
   app.option("--cured", "FILE.vdb", o.cured,
              "Rewrite this volume at every quarter turn: conversion relative to the gel point, solid from 1.")
-      .writes({".vdb"})
-      .only_with({"--cure"});
+      .writes({".vdb"});
 }
 
 void declare_pattern(cli::App& app, CameraOptions& o) {
@@ -206,9 +201,6 @@ optics::PatternPlan pattern_of(const Json& event) {
 }
 
 std::vector<GreyImage> images(const CameraOptions& o, const model::Projector& projector) {
-  if (!o.frames.empty() && !o.pattern.name.empty()) {
-    throw Error{Fault::usage, "--projected: conflicts with --pattern; give one of them"};
-  }
   if (!o.frames.empty()) {
     auto read = read_images(o.frames);
     for (const auto& image : read) {

@@ -56,7 +56,8 @@ void declare_placement(cli::App& app, Options& options) {
 }
 
 void declare_insert(cli::App& app, Options& options) {
-  app.group("Insert, an object to print around");
+  const std::string heading = "Insert, an object to print around";
+  app.group(heading);
   app.option("--insert", "MESH", options.insert,
              "Mesh of the insert, in its own size. Its origin is that of PART's file, and it is rotated with PART.")
       .reads()
@@ -65,20 +66,16 @@ void declare_insert(cli::App& app, Options& options) {
              "Insert by name, as --shape; centred on the axis.")
       .excludes({"--insert"});
   app.choice("--insert-unit", options.insert_unit, solid::unit_names(), "Unit of MESH.").only_with({"--insert"});
-  const std::vector<std::string> either{"--insert", "--insert-shape"};
-  app.option("--insert-scale", "FACTOR", options.insert_scale, cli::positive, "Scale factor of the insert.")
-      .only_with(either);
+  app.group(heading, {"--insert", "--insert-shape"});
+  app.option("--insert-scale", "FACTOR", options.insert_scale, cli::positive, "Scale factor of the insert.");
   app.option("--insert-rotate", "X,Y,Z", options.insert_rotate_deg, 3,
-             "Rotation angles of the insert, as --rotate, instead of those of PART.")
-      .only_with(either);
+             "Rotation angles of the insert, as --rotate, instead of those of PART.");
   app.option("--insert-at", "X,Y,Z", options.insert_at_mm, 3,
              "Position of the centre of the insert's bounding box, in mm of the print, before --place moves it with "
-             "the part; x = y = 0 is the axis.")
-      .only_with(either);
+             "the part; x = y = 0 is the axis.");
   app.option("--cut-insert", "CLEARANCE_MM", options.clearance_mm, cli::non_negative,
              "Subtract the insert from the part, with this clearance all around.")
-      .when_left_out("0")
-      .only_with(either);
+      .when_left_out("0");
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ struct App::State {
   std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
   std::function<void()> body;                     // of a subcommand
   std::vector<std::string> words;                 // of the history
-  std::string heading = App::plain_heading;       // of the options that follow
+  std::string heading = App::plain_heading;       // of the options that follow,
+  std::vector<std::string> only_with, not_for;    // and their rules
   bool operand_last = false;                      // what was declared last is an operand
 
   Group& current_group() {
@@ -32,6 +33,16 @@ struct App::State {
     if (found != tool.groups.end()) return *found;
     tool.groups.push_back({heading, {}});
     return tool.groups.back();
+  }
+  /// With the rules of its group.
+  void add(Option option) {
+    const auto names_it = [&](const std::string& condition) {
+      return (condition + ' ').starts_with(long_flag(option) + ' ');
+    };
+    if (!only_with.empty() && std::none_of(only_with.begin(), only_with.end(), names_it))
+      option.rules.push_back({"", false, only_with});
+    option.not_for = not_for;
+    current_group().options.push_back(std::move(option));
   }
 };
 

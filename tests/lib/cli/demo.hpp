@@ -14,11 +14,12 @@
 
 namespace vam::cli {
 
-inline int run_app(App& app, std::vector<std::string> words) {
+inline int run_app(
+    App& app, std::vector<std::string> words, const std::function<void()>& body = [] {}) {
   words.insert(words.begin(), "vam-demo");
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
-  return app.run(static_cast<int>(argv.size()), argv.data(), [] {});
+  return app.run(static_cast<int>(argv.size()), argv.data(), body);
 }
 
 struct Tool {

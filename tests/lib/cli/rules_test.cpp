@@ -41,6 +41,22 @@ TEST_CASE("an option is refused without what it requires: an option, a value in 
   CHECK(said({"--both", "--half"}).empty());
 }
 
+TEST_CASE("a group's rules are those of each of its options, but for options that they name") {
+  bool live = false, page = false, beside = false;
+  const auto judged = [&](const std::vector<std::string>& words, const std::string& kind) {
+    Tool tool;
+    tool.app.group("Live", {"--live"}, {"images"}).flag("--live", live, "Live.").flag("--page", page, "Page.");
+    tool.app.not_for({"meshes"}).group("Other").flag("--beside", beside, "Beside.");
+    const auto run = [&] { return tool.app.require_for(kind, "x"); };
+    return written_to(stderr, [&] { (void)run_app(tool.app, words, run); });
+  };
+  CHECK(judged({"--page"}, "stacks").starts_with("vam-demo: --page: requires --live;"));
+  CHECK(judged({"--live", "--page", "--beside"}, "stacks").empty());
+  CHECK(has(judged({"--live"}, "images"), "--live: does not apply to images"));
+  CHECK(has(judged({"--page", "--live"}, "meshes"), "--page: does not apply to meshes"));
+  CHECK(judged({"--beside"}, "images").empty());
+}
+
 TEST_CASE("an option is refused beside what it excludes, in either order") {
   CHECK(said({"--mesh", "a", "--both", "--half"}) == "vam-demo: --mesh: conflicts with --both; omit one of them\n");
   CHECK(said({"--both", "--half", "--mesh", "a"}) == "vam-demo: --mesh: conflicts with --both; omit one of them\n");
