@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-convert: data of other programs, and from these tools to others; pieces of stacks.
 #include "io/stream/file_type.hpp"
+#include "io/stream/input_name.hpp"
 #include "manual_page.hpp"
 #include "session/printer.hpp"
 #include "vam-convert/export.hpp"
@@ -20,11 +21,14 @@ void run(const cli::App& app, const Options& options) {
   if (session::print_printer(options.printer, printer, options.output)) return;
   const auto type = io::known_file_type(options.input);
   if (type == io::FileType::volume || type == io::FileType::stack) {
-    check_export(app, options);
-    return type == io::FileType::volume ? convert_tool::export_volume(options) : convert_tool::export_stack(options);
+    const bool volume = type == io::FileType::volume;
+    app.require_for(volume ? "VDB volumes" : "EXR stacks", io::input_name(options.input));
+    check_export(options);
+    return volume ? convert_tool::export_volume(options) : convert_tool::export_stack(options);
   }
   if (options.input != "-") io::require_content(options.input);  // a socket cannot be looked at
-  check_import(app, options);
+  app.require_for(type ? "images" : "arrays", io::input_name(options.input));
+  check_import(options);
   if (options.voxel_mm) return convert_tool::make_volume(app, options, type, printer);
   convert_tool::make_projections(app, options, type, printer);
 }

@@ -72,7 +72,6 @@ fails 64 'stdin: the kind of data is not given; use --voxel MM' sh -c 'vam-conve
 fails 64 'x.exr: a volume is written as .vdb' vam-convert a.npy --voxel 1 -o x.exr
 fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --geometry parallel -o x.vdb
 fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.tif
-fails 64 '--pixel: is for projections' vam-convert a.npy --voxel 1 --pixel 1 -o x.vdb
 
 # Patterns of Dr.TVAM: an EXR file an angle, of intensities, the top row first.
 mkdir patterns
@@ -328,8 +327,6 @@ is 'light that no projector shows is reported' "$(grep -c 'minus.npy: has values
 fails 64 '--view-step: 7 degrees make 51.4286 projections a turn' vam-convert frames --geometry parallel --view-step 7 -o x.exr
 fails 65 'has 360 projections, 720 make a turn' vam-convert frames --geometry parallel --view-step 0.5 -o x.exr
 fails 65 'has light on column .* check --axis-column' vam-convert frames --geometry vial --set projector.columns=60 --set projector.pixel_mm=0.5 --axis-column 50 -o x.exr
-fails 64 '--orientation: is for images' vam-convert sino.npy --geometry parallel --orientation flip-rows -o x.exr
-fails 64 '--axes and --array are for arrays' vam-convert frames --geometry parallel --axes zxa -o x.exr
 
 numpy=/usr/bin/python3
 if "$numpy" -c 'import numpy' 2>/dev/null; then

@@ -65,9 +65,6 @@ class Frames : public Images {
 std::unique_ptr<Images> open_source(const Options& options, std::optional<io::FileType> type,
                                     const std::string& letters) {
   if (!type) return std::make_unique<Array>(options, letters);
-  if (!options.axes.empty() || !options.array.empty()) {
-    throw Error{Fault::usage, options.input + ": --axes and --array are for arrays, not for images"};
-  }
   return std::make_unique<Frames>(options, *type);
 }
 

@@ -12,13 +12,20 @@ namespace vam::convert_tool {
 namespace {
 
 constexpr cli::Range on_image{-65536, 131072};  // also beside it
+const std::vector<std::string> own_files{"VDB volumes", "EXR stacks"};
+const std::vector<std::string> projected{"--geometry parallel", "--geometry vial"};
 
 void declare_volume(cli::App& app, Options& options) {
   app.group("Volumes");
   app.option("--voxel", "MM", options.voxel_mm, {1e-4, 1000}, "The array is a volume with cubic voxels of this edge.")
-      .form();
-  app.option("--grid", "NAME", options.grid, "Name of the grid, of a volume that is read or made.");
+      .form()
+      .excludes(projected)
+      .not_for(own_files);
+  app.option("--grid", "NAME", options.grid, "Name of the grid, of a volume that is read or made.")
+      .excludes(projected)
+      .not_for({"EXR stacks"});
   app.default_is("the only one; target");
+  app.group("Volumes", {"--voxel"});
   app.option("--origin", "X,Y,Z", options.origin_mm, 3, "Centre of the first voxel in mm; the axis is at x = y = 0.");
   app.default_is("that which puts the middle of the volume on the axis, at z = 0");
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{model::least_stretch, model::most_stretch},
@@ -29,11 +36,12 @@ void declare_volume(cli::App& app, Options& options) {
 }
 
 void declare_projections(cli::App& app, Options& options) {
-  app.group("Projections");
+  app.group("Projections", projected);
   app.choice("--geometry", options.geometry, {"none", "parallel", "vial"},
              "The array, images or video are projections: of an ideal parallel beam in the resin, or of the printer's "
              "projector, whose rays the vial refracts.")
-      .form();
+      .form()
+      .not_for(own_files);
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pitch of the columns at the rotation axis.");
   app.default_is("projector.pixel_mm");
   app.option("--slice-height", "MM", options.slice_height_mm, {1e-4, 5}, "Height of a slice.");
@@ -44,7 +52,7 @@ void declare_projections(cli::App& app, Options& options) {
       .reads()
       .brief("Volume (VDB) whose slices the stack gets. Default: those of the array or images.");
   app.default_is("the slices of the array, the rows of the images");
-  app.option("--view-step", "DEG", options.view_step_deg, {-180, 180},
+  app.option("--view-step", "DEG", options.view_step_deg, {-180, 180, false, true},
              "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections "
              "of several turns are averaged.");
   app.default_is(
@@ -56,21 +64,12 @@ void declare_projections(cli::App& app, Options& options) {
              "Row of the images, or slice of the array, on which z = 0 lies.");
   app.default_is("projector.axis_row in images as high as the projector's, else the middle");
   app.choice(
-      "--orientation", options.orientation,
-      {"normal", "flip-columns", "flip-rows", "rotate-90", "rotate-180", "rotate-270"},
-      "How the images were turned for the projector, clockwise; undone first. Those for a projector on its side, "
-      "with rows along the axis, are rotate-90 or rotate-270.");
+         "--orientation", options.orientation,
+         {"normal", "flip-columns", "flip-rows", "rotate-90", "rotate-180", "rotate-270"},
+         "How the images were turned for the projector, clockwise; undone first. Those for a projector on its side, "
+         "with rows along the axis, are rotate-90 or rotate-270.")
+      .not_for({"arrays"});
 }
-
-void refuse_given(const cli::App& app, const std::vector<std::string>& flags, const std::string& why) {
-  for (const std::string& flag : flags) {
-    if (app.given(flag)) throw Error{Fault::usage, flag + ": " + why};
-  }
-}
-
-const std::vector<std::string> volume_flags{"--voxel", "--origin", "--stretch-z"};
-const std::vector<std::string> projection_flags{"--geometry",  "--pixel",       "--slice-height", "--like",
-                                                "--view-step", "--axis-column", "--axis-row",     "--orientation"};
 
 }  // namespace
 
@@ -81,13 +80,14 @@ void declare(cli::App& app, Options& options) {
          "video (MKV, MP4), volume (VDB) or stack (EXR).")
       .reads();
   cli::add_output(app, options.output);
-  app.group("Arrays");
-  app.option("--array", "NAME", options.array,
-             "Name of the array in a .npz file, path of the dataset in an HDF5 file.");
+  app.group("Arrays", {}, own_files);
+  app.option("--array", "NAME", options.array, "Name of the array in a .npz file, path of the dataset in an HDF5 file.")
+      .not_for({"images"});
   app.default_is("the only one; of HDF5 /exchange/data, or what a NeXus group shows, before the only one of 3 axes");
   app.option("--axes", "ORDER", options.axes,
              "Axes of the array from the slowest to the fastest, as NumPy indexes them: x, y and z of a volume; z, a "
-             "(angle) and x (column) of projections.");
+             "(angle) and x (column) of projections.")
+      .not_for({"images"});
   app.default_is("zyx, zax; azx from the top, of DXchange and NXtomo projections");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
              "Value that becomes 1, full coverage or full intensity.");
@@ -96,8 +96,9 @@ void declare(cli::App& app, Options& options) {
   declare_volume(app, options);
   declare_projections(app, options);
   cli::add_printer(app, options.printer);
-  app.group("Output and performance");
+  app.group("Stack", projected);
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  app.group("Performance");
   cli::add_threads(app);
   app.usual({"--output", "--array", "--axes", "--full-scale", "--voxel", "--stretch-z", "--geometry", "--pixel",
              "--like", "--view-step", "--axis-column", "--orientation", "--printer", "--set"});
@@ -113,11 +114,7 @@ std::array<int, 3> axes_of(const Options& options, const std::string& letters) {
   return axes;
 }
 
-void check_export(const cli::App& app, const Options& options) {
-  const std::string why = "is for data of other programs; the input is one of these tools' own files";
-  refuse_given(app, {"--array", "--axes", "--full-scale", "--value-unit"}, why);
-  refuse_given(app, volume_flags, why);
-  refuse_given(app, projection_flags, why);
+void check_export(const Options& options) {
   if (options.output == "-" || options.output.ends_with(".npy") || options.output.starts_with("/dev/")) return;
   throw Error{Fault::usage, options.output +
                                 ": a volume or stack is written as .npy; vam-view --export writes a volume as NRRD, "
@@ -125,22 +122,14 @@ void check_export(const cli::App& app, const Options& options) {
                                 "of a print"};
 }
 
-void check_import(const cli::App& app, const Options& options) {
+void check_import(const Options& options) {
   const bool volume = options.voxel_mm.has_value();
-  const bool projections = options.geometry != "none";
-  if (!volume && !projections) {
+  if (!volume && options.geometry == "none") {
     throw Error{Fault::usage,
                 io::input_name(options.input) +
                     ": the kind of data is not given; use --voxel MM for a volume, or --geometry parallel or "
                     "vial; a mesh is for vam-slice"};
   }
-  if (volume) {
-    refuse_given(app, projection_flags, "is for projections; omit it, or --voxel");
-  } else {
-    refuse_given(app, volume_flags, "is for volumes; omit it, or --geometry");
-    refuse_given(app, {"--grid"}, "is for volumes; omit it, or --geometry");
-  }
-  if (options.view_step_deg == 0.0) throw Error{Fault::usage, "--view-step: must not be 0"};
   const std::string ending = volume ? ".vdb" : ".exr";
   if (options.output == "-" || options.output.ends_with(ending) || options.output.starts_with("/dev/")) return;
   throw Error{Fault::usage, options.output + ": " + (volume ? "a volume" : "a stack") + " is written as " + ending};

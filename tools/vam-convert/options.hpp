@@ -45,10 +45,9 @@ void declare(cli::App& app, Options& options);
 /// Throws Fault::usage unless --axes has just these letters.
 [[nodiscard]] std::array<int, 3> axes_of(const Options& options, const std::string& letters);
 
-/// Out of these tools: throws Fault::usage for options of what comes in, and for an output that is not .npy.
-void check_export(const cli::App& app, const Options& options);
-/// Into them: throws Fault::usage unless it is said whether a volume or projections are made, and for options of the
-/// other.
-void check_import(const cli::App& app, const Options& options);
+/// Out of these tools: throws Fault::usage for an output that is not .npy.
+void check_export(const Options& options);
+/// Into them: throws Fault::usage unless it is said whether a volume or projections are made.
+void check_import(const Options& options);
 
 }  // namespace vam::convert_tool

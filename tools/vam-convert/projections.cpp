@@ -292,9 +292,6 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   auto images = open_source(options, type, "zax");
   const bool frames = images->are_frames();
   const bool grey = images->are_grey();
-  if (!frames && options.orientation != "normal") {
-    throw Error{Fault::usage, "--orientation: is for images and videos; give the array's --axes, or turn it in NumPy"};
-  }
   Slices slices(std::move(images), options, printer);
   Plan plan;
   plan_turns(options, slices, plan);
