@@ -110,8 +110,7 @@ fails 65 'slice height: 50 um is more than ten absorbance heights' \
 printf 'grey,intensity\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
 fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough correct ladder.vdb $light --response falling.csv -o no.exr
 fails 65 'do not match' vam-curethrough model full.exr --target ladder.vdb $light
-fails 64 'ladder.vdb is a part itself; give slices' vam-curethrough model ladder.vdb --target egg.vdb $light
-fails 64 'the table is printed on standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
+fails 64 '--catalogue: does not apply to stacks on standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
 ok "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb
 fails 65 'no voxel reaches a coverage of 1; there is nothing to print' vam-curethrough correct thin.vdb $light --min-coverage 1 -o no.exr
 done_testing

@@ -20,7 +20,7 @@
 #include "io/image/frame_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/settings/report.hpp"
-#include "io/stream/stream.hpp"
+#include "io/stream/input_name.hpp"
 #include "optics/slice_place.hpp"
 #include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/gaps.hpp"
@@ -200,12 +200,19 @@ Job prepare(const cli::App& app, const CorrectOptions& options, bool writes) {
   return job;
 }
 
+constexpr const char* no_stack = "--png or --catalogue alone";
+
 /// What the slices are written to besides -o, and how.
 void declare_output(cli::App& app, CorrectOptions& options) {
   app.option("--png", "FOLDER", options.png,
              "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); no stack is then written "
              "unless -o is given.")
       .writes();
+  app.flag("--full-frame", options.full_frame,
+           "Place the part in an image of projector.columns x projector.rows, with the axis at projector.axis_column, "
+           "projector.axis_row.")
+      .not_for({"--catalogue alone"});
+  app.group("Stack", {}, {no_stack});
   app.choice("--values", options.values, {"intensity", "grey"},
              "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey levels from 0 to 1, "
              "computed by the "
@@ -213,9 +220,6 @@ void declare_output(cli::App& app, CorrectOptions& options) {
   app.flag("--quantise", options.quantise,
            "Write the grey levels of the PNGs to the stack instead of exact values; all slices are then in memory (2 "
            "bytes per pixel).");
-  app.flag("--full-frame", options.full_frame,
-           "Place the part in an image of projector.columns x projector.rows, with the axis at projector.axis_column, "
-           "projector.axis_row.");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
 }
 
@@ -237,12 +241,12 @@ void declare(cli::App& app, CorrectOptions& options) {
   app.option("--mask", "FILE", options.mask,
              "PNG map of the columns: 0 empty or without such gaps, 128 with a tight gap, 255 with a gap that fuses at "
              "any intensity.");
-  app.group("Catalogue");
+  app.group("Catalogue", {"--catalogue"});
   app.option("--catalogue", "FILE", options.catalogue,
              "CSV of resins with the columns name,absorbance_height_um,full_cure_dose_mj_cm3: print a table that "
-             "compares them for this part. Slices are then written only with -o or --png.");
-  app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Platform speeds of the table.")
-      .only_with({"--catalogue"});
+             "compares them for this part. Slices are then written only with -o or --png.")
+      .not_for({"stacks on standard output"});
+  app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Platform speeds of the table.");
   app.default_is("20, 40, 60 and 80 % of the limit of each resin");
   add_print(app, options.print);
   app.group("Report and performance");
@@ -254,10 +258,10 @@ void run(const cli::App& app, CorrectOptions& options) {
   if (session::print_printer(options.print.printer)) return;
   const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
   const bool images = !options.png.empty();
-  if (stack && !options.catalogue.empty() && options.output == "-") {
-    throw Error{Fault::usage, "--catalogue: the table is printed on standard output; give a file with -o"};
-  }
-  if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: requires a stack; give -o"};
+  const std::string part = io::input_name(options.part.path);
+  if (!stack) app.require_for(no_stack, part);
+  if (!stack && !images) app.require_for("--catalogue alone", part);
+  if (stack && options.output == "-") app.require_for("stacks on standard output", part);
   Job job = prepare(app, options, stack || images);
   Json report = figures(options, job);
   if (!options.catalogue.empty())

@@ -13,6 +13,7 @@
 #include "base/text/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/file_type.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/metadata.hpp"
@@ -88,12 +89,11 @@ double slice_height_um(const ModelOptions& options, const Inputs& in) {
 Inputs open_inputs(const cli::App& app, const ModelOptions& options) {
   Inputs in{nullptr, {}, resolve(options.print, 50)};
   PartOptions design = options.part;
-  if (is_volume(options.input) && !design.path.empty()) {
-    throw Error{Fault::usage, "--target: " + options.input + " is a part itself; give slices, or omit --target"};
-  }
-  if (is_volume(options.input)) design.path = options.input;
-  if (!design.path.empty()) in.part = std::make_shared<PartFile>(design, exposure_of(options.print));
   const bool plain = is_volume(options.input);
+  if (plain) app.require_for("volumes", io::input_name(options.input));
+  if (plain) design.path = options.input;
+  if (design.path.empty()) app.require_for("slices alone", options.input);
+  if (!design.path.empty()) in.part = std::make_shared<PartFile>(design, exposure_of(options.print));
   if (!plain) in.slices = open_slices(options.input, in.print.response);
   const PrintOptions print = with_facts(app, options.print, in.slices);
   in.print = resolve(print, slice_height_um(options, in));
@@ -217,19 +217,19 @@ void declare(cli::App& app, ModelOptions& options) {
   app.option("-o,--output", "FILE", options.output,
              "Write the dose at the centres of the voxels as a volume (grid dose, in full-cure doses).")
       .writes();
-  app.option("--target", "FILE", options.part.path, "Target volume of the part, for the cure map.").reads();
-  add_part(app, options.part);
+  app.option("--target", "FILE", options.part.path, "Target volume of the part, for the cure map.")
+      .reads()
+      .not_for({"volumes"});
+  add_part(app, options.part, {"slices alone"});
   app.option("--slice-height", "UM", options.slice_um, {1, 10000},
-             "Slice height of a folder of images without --target.");
-  app.group("Figure");
+             "Slice height of a folder of images without --target.")
+      .excludes({"--target"})
+      .not_for({"volumes"});
+  app.group("Figure", {"--section"});
   app.option("--section", "FILE", options.section,
              "Plot an x-z section: slices, cure map, and intensity and dose along one column (.png, .pdf or .svg).");
-  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.")
-      .default_is("the middle")
-      .only_with({"--section"});
-  app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves.")
-      .default_is("the middle")
-      .only_with({"--section"});
+  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.").default_is("the middle");
+  app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves.").default_is("the middle");
   add_print(app, options.print);
   app.group("Report and performance");
   cli::add_report(app, options.report);

@@ -42,11 +42,13 @@ std::uint64_t reversed(std::uint64_t bits, int count) {
 
 }  // namespace
 
-void add_part(cli::App& app, PartOptions& options) {
+void add_part(cli::App& app, PartOptions& options, const std::vector<std::string>& not_for) {
   app.choice(
-      "--platform", options.platform, {"bottom", "top"},
-      "End of the volume that adheres to the platform and is printed first; the light enters from the other end.");
-  app.option("--min-coverage", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a voxel of the part.");
+         "--platform", options.platform, {"bottom", "top"},
+         "End of the volume that adheres to the platform and is printed first; the light enters from the other end.")
+      .not_for(not_for);
+  app.option("--min-coverage", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a voxel of the part.")
+      .not_for(not_for);
 }
 
 PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)

@@ -17,7 +17,8 @@ struct PartOptions {
   std::string platform = "bottom";  // which end of z is printed first
   double threshold = 0.5;
 };
-void add_part(cli::App& app, PartOptions& options);
+/// not_for: kinds of input without a part.
+void add_part(cli::App& app, PartOptions& options, const std::vector<std::string>& not_for = {});
 
 /// A target volume, one bit a voxel; slice 0 is the one at the platform. Read in one go, file or pipe.
 class PartFile {
