@@ -16,8 +16,10 @@ namespace {
 using namespace vam;
 using capture_tool::Options;
 
-void add_camera(cli::App& app, Options& o) {
+void add_camera(cli::App& app, Options& o, const std::string& heading) {
+  app.group(heading);
   app.option("--device", "DEVICE", o.device, "Camera: " + device::camera_devices() + ".").default_is("camera.device");
+  app.group(heading, {}, {"recordings"});
   app.option("--exposure", "US", o.camera.exposure_us, cli::positive, "Exposure time.")
       .default_is("camera.exposure_us");
   app.option("--fps", "HZ", o.camera.fps, cli::rate, "Frames per second.").default_is("camera.fps");
@@ -37,9 +39,9 @@ void add_camera(cli::App& app, Options& o) {
 }
 
 void declare(cli::App& app, Options& o) {
+  const std::vector<std::string> folders{"folders"};
   cli::add_output(app, o.output);
-  app.group("Camera");
-  add_camera(app, o);
+  add_camera(app, o, "Camera");
   app.group("Frame selection");
   app.option("--frames", "N", o.frames, {1, 1e6},
              "Number of frames. Required for a stack unless --live or --view-step is given.")
@@ -63,22 +65,24 @@ void declare(cli::App& app, Options& o) {
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,
              "Maximum number of dropped and incomplete frames; above it the capture ends with status 75.");
   app.group("Output and performance");
-  app.flag("--live", o.live, "Send every frame immediately as a stack of its own.").form();
+  app.flag("--live", o.live, "Send every frame immediately as a stack of its own.").form().not_for(folders);
   app.option("--latest", "FILE", o.latest, "Also write the newest frame to FILE (PNG), at most once a second.")
       .writes_as({".png"});
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
              "Pixel pitch of the frames at the axis, after the camera's binning.")
       .default_is("camera.pixel_mm times the binning");
   cli::add_printer(app, o.printer);
+  app.group("Stack", {}, folders);
   cli::add_stack_output(app, o.stack.half, o.stack.compression);
+  app.group(cli::App::plain_heading);
   app.option("--log", "FILE", o.log,
              "Append one JSON line per event, with UTC and monotonic time; - is standard error.");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_report(app, o.report);
-  cli::App& who = app.subcommand("identify", "print the camera, its settings and its firmware as JSON", [&o] {
-    if (!session::print_printer(o.printer)) device::interruptible([&] { capture_tool::identify(o); });
+  cli::App& who = app.subcommand("identify", "print the camera, its settings and its firmware as JSON", [&app, &o] {
+    if (!session::print_printer(o.printer)) device::interruptible([&] { capture_tool::identify(app, o); });
   });
-  add_camera(who, o);
+  add_camera(who, o, cli::App::plain_heading);
   cli::add_printer(who, o.printer);
   app.usual({"--output", "--log", "--device", "--exposure", "--fps", "--gain", "--trigger", "--frames", "--view-step",
              "--turns", "--follow", "--live", "--printer", "--set", "--report"});

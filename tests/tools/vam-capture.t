@@ -5,7 +5,6 @@
 sim='sim:?pace=virtual&lit=0.1&speed=90&noise=0.004'
 take="vam-capture --device $sim --binning 12 --fps 10"
 
-fails 64 'a folder cannot hold a stream' $take --live -o views/
 fails 64 'have no angles' $take --view-step 10 --log why -o views/
 fails 64 'neither binning' vam-capture --device v4l2:/dev/null --binning 2 --frames 1 -o views.exr
 vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr --log why 2>said

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "base/error.hpp"
@@ -132,13 +133,12 @@ std::string device_of(const Options& o, const model::Printer& printer) {
 
 bool is_recording(const std::string& device) { return device.rfind("replay:", 0) == 0; }
 
-void check(const Options& o, const model::Printer& printer) {
+void check(const cli::App& app, const Options& o, const model::Printer& printer) {
   require_stack_or_folder(o.output);
   if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
     throw Error{Fault::usage, "--view-step: camera frames have no angles; give --follow or --speed"};
   }
-  if (is_folder(o.output) && o.live)
-    throw Error{Fault::usage, "--live: a folder cannot hold a stream; give a file, a FIFO or -"};
+  if (is_folder(o.output)) app.require_for("folders", o.output);
   if (is_folder(o.output) || o.live || o.frames || o.every_deg) return;
   throw Error{Fault::usage,
               "--frames: required for a stack, whose header states the number of images; give it, --live or a folder"};
@@ -174,10 +174,11 @@ void conclude(const Options& o, const device::CaptureTally& tally, long wanted) 
   if (!lost.empty()) warn(lost);
 }
 
-}  // namespace
-
-std::unique_ptr<device::Camera> open_camera(const Options& options, const model::Printer& printer) {
+// That of the options and the printer file, with their settings.
+std::unique_ptr<device::Camera> open_camera(const cli::App& app, const Options& options,
+                                            const model::Printer& printer) {
   const std::string device = device_of(options, printer);
+  if (is_recording(device)) app.require_for("recordings", device);
   device::CameraSettings settings = options.camera;
   if (!is_recording(device)) {
     settings.exposure_us = settings.exposure_us.value_or(printer.camera.exposure_us);
@@ -190,17 +191,19 @@ std::unique_ptr<device::Camera> open_camera(const Options& options, const model:
   return device::open_camera(device, settings, {open_recording, printer, {}}, device::real_clock());
 }
 
-void identify(const Options& options) {
-  device::print_line(facts(*open_camera(options, session::load_printer(options.printer))).dump(2));
+}  // namespace
+
+void identify(const cli::App& app, const Options& options) {
+  device::print_line(facts(*open_camera(app, options, session::load_printer(options.printer))).dump(2));
 }
 
 void take(const cli::App& app, const Options& options) {
   const model::Printer printer = session::load_printer(options.printer);
-  check(options, printer);
+  check(app, options, printer);
   const device::CapturePlan plan = plan_of(options, printer);
   device::EventLog log(options.log);
   const auto angles = open_angles(options, plan);
-  const auto camera = open_camera(options, printer);
+  const auto camera = open_camera(app, options, printer);
   require_near_views(options, camera->mode());
   const auto store = open_store(app, options, printer, *camera, plan.frames);
   Json about = facts(*camera);

@@ -60,13 +60,8 @@ class ReplayCamera final : public Camera {
 
 }  // namespace
 
-std::unique_ptr<Camera> open_replay_camera(const Address& address, const CameraSettings& settings,
-                                           const CameraBench& bench, Clock& clock) {
-  if (settings.exposure_us || settings.fps || settings.binning || settings.trigger != "free" || settings.gain ||
-      settings.black_level || settings.gamma != 1) {
-    throw Error{Fault::usage, "device '" + address.text +
-                                  "': exposure, rate, binning, trigger and grey levels of a recording are fixed"};
-  }
+std::unique_ptr<Camera> open_replay_camera(const Address& address, const CameraSettings&, const CameraBench& bench,
+                                           Clock& clock) {
   return std::make_unique<ReplayCamera>(address.place, in_real_pace(address, "virtual"), bench, clock);
 }
 
