@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
+#include "io/stream/file_type.hpp"
 #include "manual_page.hpp"
 #include "vam-calibrate/readings.hpp"
 #include "vam-calibrate/scan.hpp"
@@ -113,9 +114,17 @@ void add_delays(cli::App& app, ScanOptions& o) {
            calibrate_tool::scan_latency, Flips::required);
 }
 
+/// A print that was measured: a mesh has no isovalue.
+void require_for_print(const cli::App& app, const std::string& print) {
+  if (!io::is_volume(print)) app.require_for("meshes", print);
+}
+
 void add_registration(cli::App& app, ScanOptions& o) {
-  auto& scan = app.subcommand("registration", "height, angle and scale of the camera in the projector's frame",
-                              [&app, &o] { run_scan(app, "registration", calibrate_tool::scan_registration, o); });
+  auto& scan =
+      app.subcommand("registration", "height, angle and scale of the camera in the projector's frame", [&app, &o] {
+        require_for_print(app, o.from);
+        run_scan(app, "registration", calibrate_tool::scan_registration, o);
+      });
   scan.positional("PRINT", o.from,
                   "Scattering volume of a print (vam-ost), as it stands in the vial, with --isovalue; or its mesh.")
       .reads();
@@ -124,7 +133,8 @@ void add_registration(cli::App& app, ScanOptions& o) {
       .reads()
       .required();
   scan.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Value of the volume at the print's surface.")
-      .default_is("required for a volume");
+      .default_is("required for a volume")
+      .not_for({"meshes"});
   scan.option("--devices", "FILE", o.devices, "Identities of the devices in use, for the record.");
   cli::add_printer(scan, o.printer);
 }
@@ -170,8 +180,11 @@ void add_working_curve(cli::App& app, WorkingCurveOptions& o) {
 }
 
 void add_critical_dose(cli::App& app, CriticalDoseOptions& o) {
-  auto& critical = app.subcommand("critical-dose", "dose with which the resin gels at the surface of a print",
-                                  [&o] { measure_critical_dose(o); });
+  auto& critical =
+      app.subcommand("critical-dose", "dose with which the resin gels at the surface of a print", [&app, &o] {
+        require_for_print(app, o.print);
+        measure_critical_dose(app, o);
+      });
   critical
       .positional(
           "PRINT", o.print,
@@ -183,7 +196,8 @@ void add_critical_dose(cli::App& app, CriticalDoseOptions& o) {
       .reads()
       .required();
   critical.option("--turns", "N", o.turns, cli::positive, "Turns at full intensity, where the dose is that of one.")
-      .default_is("as the dose states");
+      .default_is("as the dose states")
+      .not_for({"doses that state their turns"});
   critical
       .option(
           "--design", "FILE", o.design,
@@ -192,7 +206,8 @@ void add_critical_dose(cli::App& app, CriticalDoseOptions& o) {
       .reads();
   critical.option("-o,--output", "FILE.json", o.record, "Report; - is standard output.");
   critical.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Value of the volume at the print's surface.")
-      .default_is("required for a volume");
+      .default_is("required for a volume")
+      .not_for({"meshes"});
   cli::add_printer(critical, o.printer);
 }
 

@@ -22,7 +22,7 @@ constexpr double most_spread = 0.2;      // of the dose
 
 }  // namespace
 
-void measure_critical_dose(const CriticalDoseOptions& options) {
+void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& options) {
   const model::Printer printer = session::load_printer(options.printer);
   const io::SparseVolume sparse = session::read_dose(options.dose);
   const bool total = model::stated_number(sparse.metadata, "vam:full_intensity_turns").has_value();
@@ -32,7 +32,7 @@ void measure_critical_dose(const CriticalDoseOptions& options) {
                     ": does not state vam:full_intensity_turns, so that its dose is that of one turn; give "
                     "that of the print, by vam-dose --shown or --exposure-plan, or --turns"};
   }
-  if (total && options.turns) throw Error{Fault::usage, "--turns: " + options.dose + " states its turns; omit it"};
+  if (total) app.require_for("doses that state their turns", options.dose);
   model::Volume dose = io::dense_volume(sparse);
   for (float& value : dose.values) value *= static_cast<float>(options.turns.value_or(1));
   const double stretch_z = model::stretch_z(sparse.metadata);

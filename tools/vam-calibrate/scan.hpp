@@ -85,7 +85,7 @@ void measure_working_curve(const WorkingCurveOptions& options);
 
 /// Writes the dose at the surface of a print. Throws Error: usage, no_input, data, no_output; judged where the surface
 /// does not follow the dose.
-void measure_critical_dose(const CriticalDoseOptions& options);
+void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& options);
 
 // ---- frames.cpp: which pattern frame each camera frame shows
 
