@@ -9,7 +9,7 @@ screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 tiny_print part.exr
 
 fails 64 '1.5 is not a whole number' vam-project part.exr -o null: --turns 1.5
-fails 64 'cannot provide both' vam-project - -o null: --follow -
+fails 64 '2 inputs are standard input' vam-project - -o null: --follow -
 fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
 fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
 fails 64 '47 % is above the limit of 40 %' vam-project part.exr -o null: --light 'sim:?current_percent=47' --log why

@@ -2,12 +2,14 @@
 #include "vam-project/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 
 #include "base/error.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
+#include "io/image/frame_sink.hpp"
 #include "session/printer.hpp"
 
 namespace vam::project {
@@ -59,32 +61,30 @@ void add_grey(cli::App& app, Options& options) {
       "Round by error diffusion over columns and angles, so that the dose, a sum over many pixels, is accurate to less "
       "than a grey level. The frames of N turns differ: in them a pixel between two levels shows both in proportion. N "
       "must divide the number of turns.");
-  app.not_for({"slices"});
+  app.not_for({"slices", "stacks without --bits"});
 }
 
 void add_live(cli::App& app, Options& all) {
   LiveOptions& options = all.live;
-  app.group("Live output");
+  app.group("Live output", {}, {"files"});
   app.option("--follow", "FILE", options.follow,
              "Read the stage angle from this output of vam-stage spin, a FIFO or - (SINOGRAM is then required).")
-      .not_for({"files", "slices"});
-  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".").not_for({"files"});
+      .reads()
+      .not_for({"slices"});
+  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000}, "Frames to preload.")
       .default_is("one for each angle of the sinogram")
-      .not_for({"files", "slices"});
+      .not_for({"slices"});
   app.option("--from", "DEG", options.from_deg, {0, 1e9},
              "Stay dark until this stage angle, to print the rest of an aborted print.")
-      .not_for({"files", "slices"});
+      .not_for({"slices"});
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
              "Delay of the projector, from the vertical blank to the light.")
-      .default_is("projector.latency_ms")
-      .not_for({"files"});
+      .default_is("projector.latency_ms");
   app.option("--max-missed", "FRACTION", options.allowed_missed, {0, 1},
-             "Maximum fraction of missed vertical blanks in the run-up.")
-      .not_for({"files"});
+             "Maximum fraction of missed vertical blanks in the run-up.");
   app.option("--max-missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
-             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.")
-      .not_for({"files"});
+             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.");
   app.option(
       "--frames-from", "FOLDER", options.frames_from,
       "Look for new projections in this folder while printing: a sinogram (EXR) that appears in it takes the place "
@@ -94,20 +94,17 @@ void add_live(cli::App& app, Options& all) {
       "--turns do, is shown at it, another one at that of the first; what exceeds that is clipped and counted in the "
       "log. A file named turn-N.exr is for turn N only, and refused once that has begun. Names that begin with a dot "
       "are passed over.");
-  app.not_for({"files"});
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
-             "reason of the end; - is standard error. Every second it is brought to the disk.")
-      .not_for({"files"});
+             "reason of the end; - is standard error. Every second it is brought to the disk.");
   app.option("--log-seals", "FILE", options.log_seals,
              "Append to FILE, whenever --log was brought to the disk, the number of its bytes and their SHA-256, by "
-             "which lines that are lost later are found out; used by vam-print.")
-      .not_for({"files"});
+             "which lines that are lost later are found out; used by vam-print.");
   app.flag("--plan", all.only_plan,
            "Print frames, memory, duration and dose, query display and light engine for their identity, and show "
            "nothing; with --pattern only the query.")
       .excludes({"--report"})
-      .not_for({"files", "slices"});
+      .not_for({"slices"});
   app.flag("--die-with-parent", options.with_parent, "Blank the display and exit when the parent process exits.");
 }
 
@@ -160,8 +157,9 @@ void declare(cli::App& app, Options& options) {
   app.option("--freeze", "FILE", options.freeze,
              "Check the sinogram against the printer, write the settings in force to FILE, including calibration "
              "records and with absolute paths, and exit; used by vam-print.");
-  app.group("Output and performance");
+  app.group("Stack", {}, {"displays", "folders", "videos"});
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  app.group("Output and performance");
   cli::add_report(app, options.report);
   cli::add_threads(app);
   app.usual({"--output", "--accept-printer", "--fps", "--speed", "--turns", "--orientation", "--multiplier", "--dither",
@@ -186,10 +184,12 @@ void refuse_unknown_display(const std::string& output) {
 }  // namespace
 
 bool is_live(const cli::App& app, const std::string& output) {
-  if (device::names_display(output)) return true;
-  refuse_unknown_display(output);
-  app.require_for("files", output == "-" ? "standard output" : output);
-  return false;
+  const bool live = device::names_display(output);
+  if (!live) refuse_unknown_display(output);
+  const std::array files{"folders", app.given("--bits") ? "stacks" : "stacks without --bits", "videos"};
+  app.require_for(live ? "displays" : files.at(static_cast<std::size_t>(io::frame_output(output))), output);
+  if (!live) app.require_for("files", output == "-" ? "standard output" : output);
+  return live;
 }
 
 model::Printer settle(Options& options) {

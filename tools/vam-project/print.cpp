@@ -175,10 +175,6 @@ int turns_to_show(const Options& options, const model::StackInfo& info, const mo
 }
 
 void print_live(const cli::App& app, const Options& options, const model::Printer& printer) {
-  if (options.live.follow == "-" && options.input == "-") {
-    throw Error{Fault::usage,
-                "--follow -: standard input cannot provide both angles and sinogram; give SINOGRAM as a file"};
-  }
   device::logged(options.live.log, [&] {
     Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});
     if (is_folder(options.input)) return play_slices(app, options, printer, slice_folder(options.input), live);
