@@ -153,7 +153,7 @@ void show_other(const cli::App& app, const Options& options) {
 
 void run(const cli::App& app, Options& options) {
   if (session::print_printer(options.printer)) return;
-  check(options);
+  check(app, options);
   if (app.given("--title")) options.view.title = options.title;
   options.view.name = view_tool::file_name(options.input, options.compare);
   options.view.crop = !options.plain;

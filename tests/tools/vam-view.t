@@ -144,7 +144,7 @@ echo '{"schema": "vam-score/1"}' >score.json
 fails 65 'score.json: is JSON \(vam-report shows reports\); a volume' vam-view score.json -o x.png
 fails 65 'stdin: is empty' sh -c ': | vam-view -o x.png'
 fails 65 'has no image at 9; the nearest is z = 0.52 mm' vam-view sino.exr --at 9 -o x.png
-fails 64 'must end in .png' vam-view part.vdb --plain -o x.svg
+fails 64 '--plain: does not apply to PDF and SVG' vam-view part.vdb --plain -o x.svg
 fails 64 'pixels are more than 32767 a side; reduce --image-size or --dpi' \
   vam-view part.vdb --image-size 4000 --dpi 1200 -o x.png
 vam-convert part.vdb -o part.npy

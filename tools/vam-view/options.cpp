@@ -102,24 +102,25 @@ void declare(cli::App& app, Options& options) {
   app.option("--image-size", "PX", options.view.size, {64, 16384},
              "Approximate length of the longer side of the image without axes and title.")
       .not_for({"traces", "plain pixels"});
-  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.");
+  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.")
+      .not_for({"PDF and SVG"});
   app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
   app.default_is("names of file and content");
   app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.")
       .excludes({"--sheet", "--dose-histogram", "--cure-map", "--render", "--compare", "--dpi", "--title"})
-      .not_for({"traces"});
+      .not_for({"traces", "PDF and SVG"});
   cli::add_printer(app, options.printer);
   app.usual({"--output", "--export", "--grid", "--plane", "--at", "--sheet", "--target", "--dose-histogram",
              "--cure-map", "--render", "--compare", "--title", "--printer", "--set"});
 }
 
-void check(const Options& options) {
+void check(const cli::App& app, const Options& options) {
   const auto& view = options.view;
   if (view.low && view.high && *view.low >= *view.high)
     throw Error{Fault::usage,
                 "--low " + format_number(*view.low) + ": must be below --high " + format_number(*view.high)};
-  if (options.plain && plot::is_figure(options.output) && !options.output.ends_with(".png"))
-    throw Error{Fault::usage, "--plain: writes pixels; --output must end in .png"};
+  if (options.output.ends_with(".pdf") || options.output.ends_with(".svg"))
+    app.require_for("PDF and SVG", options.output);
   if (options.output.ends_with(".mp4") && (!options.render || options.target.empty()))
     throw Error{Fault::usage, options.output + ": a movie requires --render and --target"};
 }

@@ -37,6 +37,6 @@ struct Options {
 
 void declare(cli::App& app, Options& options);
 /// Throws Fault::usage for values that contradict each other.
-void check(const Options& options);
+void check(const cli::App& app, const Options& options);
 
 }  // namespace vam::view_tool
