@@ -73,7 +73,8 @@ void declare_print(cli::App& app, Options& o) {
       .reads();
   app.option("--min-body", "MM3", o.pieces_mm3, cli::non_negative,
              "Minimum volume of a body that belongs to the print.")
-      .default_is("1 % of the largest body's volume");
+      .default_is("1 % of the largest body's volume")
+      .only_with({"--isovalue", "--resin"});
   app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (" + join(io::written_mesh_endings(), " or ") + ").")
       .writes(io::written_mesh_endings())
       .only_with({"--isovalue", "--resin"});
@@ -82,32 +83,29 @@ void declare_print(cli::App& app, Options& o) {
       .writes(plot::figure_endings());
   app.option("--target", "FILE.vdb", o.target,
              "Volume of the part to compare the print with, in the same coordinate system.")
-      .reads();
+      .reads()
+      .only_with({"--isovalue", "--resin", "--projections"});
 }
 
 void declare_live(cli::App& app, Options& o) {
-  app.group("Live");
+  app.group("Live", {"--live"});
   app.flag("--live", o.live, "Reconstruct while views arrive; -o is a folder.")
       .form()
       .only_with({"--output", "--log", "--page", "--until"})
       .excludes({"--report", "--uncertainty"});
   app.flag("--uncertainties", o.uncertainties,
            "Write the standard deviations of each volume's values into the folder, too, before the volume.")
-      .only_with({"--live"})
       .only_with({"--output"})
       .excludes({"--mlem-iterations"});
-  app.option("--volume-step", "DEG", o.every_deg, cli::positive, "Angle between reconstructed volumes.")
-      .only_with({"--live"});
+  app.option("--volume-step", "DEG", o.every_deg, cli::positive, "Angle between reconstructed volumes.");
   app.option("--until", "CONDITIONS", o.until,
              "Print a stop event and exit when all conditions hold, on missing and overcure (%), iou and cured (mm3).")
-      .only_with({"--live"})
       .only_with({"--isovalue", "--resin"})
       .only_with({"--target"});
-  app.option("--log", "FILE", o.log, "Append one JSON line per volume; - is standard error.").only_with({"--live"});
+  app.option("--log", "FILE", o.log, "Append one JSON line per volume; - is standard error.");
   app.option("--page", "FILE.html", o.page,
              "Write a page that refreshes itself (HTML), with the image of --projections.")
       .writes({".html"})
-      .only_with({"--live"})
       .only_with({"--projections"});
 }
 

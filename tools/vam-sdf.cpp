@@ -81,7 +81,8 @@ void declare(cli::App& app, Options& options) {
       "mean, sigma, mad, max, hausdorff (mm), rms_percent and within (% of the surface within --tolerance), and on "
       "those of regions, e.g. 'rms<=0.2,top.flatness<0.05'.");
   app.flag("--guard-band", options.guard_band,
-           "Conditions of --require must hold for all values within the expanded uncertainty (ISO 14253-1).");
+           "Conditions of --require must hold for all values within the expanded uncertainty (ISO 14253-1).")
+      .only_with({"--require"});
   app.option(
       "--tolerance", "[NAME=]MM", options.tolerances,
       "Report the fraction of the print's surface within this distance of the design, more than 0; with NAME, of that "
@@ -124,7 +125,7 @@ void declare_trend(cli::App& app, TrendOptions& options) {
   app.positional("RUN ...", options.runs,
                  "Reports of vam-sdf (--report), or folders that hold one, in the order of the prints.")
       .reads();
-  app.option("--figure", "NAME", options.figure, "Figure of --plot.");
+  app.option("--figure", "NAME", options.figure, "Figure of --plot.").only_with({"--plot"});
   app.option("--plot", "FILE", options.plot,
              "Plot the figure and its uncertainties over the prints (.png, .pdf or .svg).")
       .writes(plot::figure_endings());

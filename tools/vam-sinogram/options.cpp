@@ -20,7 +20,8 @@ void declare(cli::App& app, Options& options) {
       .excludes({"--filter none"});
   app.default_is("1");
   app.choice("--negative", options.negative, tomo::negative_names(),
-             "Negative values: keep them, clip them to 0, or subtract the minimum of the stack from all values.");
+             "Negative values: keep them, clip them to 0, or subtract the minimum of the stack from all values.")
+      .excludes({"--filter none"});
   app.group("Absorption");
   app.option("--absorption", "PER_MM", options.absorption_per_mm, cli::non_negative,
              "Absorption coefficient MU of the resin: exponential Radon transform.");
