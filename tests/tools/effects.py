@@ -3,50 +3,70 @@
 
     effects.py TABLE FOLDER [-k PATTERN]
 
-Every option of a tool's --help=all has a row, and on every kind of input of that tool it changes what the tool writes
-(values, figures, facts; histories, seals, times and hashes aside) or is refused with status 64 in its own name. On one
-kind at least it changes something. Prints a line of TAP for each option.
+Every tool, and command of one, has a section, and every option of its --help=all a row. On every kind of input it
+changes what the tool writes (values, figures, facts; histories, seals, times and hashes aside) or is refused with status
+64 in its own name; on one kind at least it changes something. So it is with the context of its row, which succeeds on
+one kind at least, and without: but for settings of the printer, which one gives alike to all tools of a chain. Prints a
+line of TAP for each option.
 """
 import argparse
+import glob
 import os
 import re
 import shlex
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "corpus"))
 import figures  # noqa: E402
 
 
 def read_table(path):
-    """{tool: (kinds, rows)}; kinds: {name: words}, rows: [(option, words, context, reason)]. A row of a reason is not run."""
-    tools, prepared, kinds, rows = {}, [], None, None
+    """{tool: (kinds, rows)}; kinds: {name: words}, rows: [(option, words, context, reason)]. What has a reason is not run."""
+    tools, prepared, aside, kinds, rows = {}, [], [], None, None
     for line in open(path):
         line = line.strip()
         if not line or line.startswith("#"):
             continue
         if line.startswith("$"):
             prepared.append(line[1:].strip())
+        elif line.startswith("[") and " as " in line:
+            aside += re.findall(r"\[(.*?)\]", line)
         elif line.startswith("["):
             kinds, rows = tools.setdefault(line.strip("[]"), ({}, []))
         elif line.startswith("kind "):
             name, command = line[5:].split(":", 1)
             kinds[name.strip()] = shlex.split(command)
-        elif " as " in line:
-            option, reason = line.split(" as ", 1)
-            rows.extend((one, [], [], reason) for one in option.split())
         else:
-            option, _, context = line.partition(";")
-            words = shlex.split(option)
-            rows.append((words[0], words, shlex.split(context), ""))
-    return prepared, tools
+            rows.extend(row for cell in line.split(" | ") for row in rows_of(cell))
+    return prepared, tools, aside
+
+
+def rows_of(cell):
+    if " as " in cell:
+        options, reason = cell.split(" as ", 1)
+        return [(option, [], [], reason) for option in options.split()]
+    words, _, context = cell.partition(";")
+    words = shlex.split(words)
+    return [(words[0], words, shlex.split(context), "")]
+
+
+def help_of(tool):
+    return subprocess.run(shlex.split(tool) + ["--help=all"], stdout=subprocess.PIPE, check=True).stdout.decode()
 
 
 def options_of(tool):
-    text = subprocess.run(shlex.split(tool) + ["--help=all"], stdout=subprocess.PIPE, check=True).stdout.decode()
-    own = text.split("\nCommon options:")[0]
+    own = help_of(tool).split("\nCommon options:")[0]
     return [match.group(1) for match in re.finditer(r"^  (?:-\w, )?(--[\w-]+)", own, re.M)]
+
+
+def forms_of(tool):
+    """It, where it has options of its own, and its commands."""
+    commands = re.search(r"^Commands:\n((?:  .*\n)+)", help_of(tool), re.M)
+    named = re.findall(r"^  (\w[\w-]*)", commands.group(1), re.M) if commands else []
+    return ([tool] if options_of(tool) else []) + ["%s %s" % (tool, name) for name in named]
 
 
 def files_in(folder):
@@ -92,8 +112,9 @@ def values_of(path):
     if kind not in (".exr", ".vdb"):
         return None
     grids = [["--grid", name] for name, _ in figures.grids_of(path)] if kind == ".vdb" else [[]]
-    return [subprocess.run(["vam-view", path, "--quiet", "--export", "/dev/stdout", *grid], stdout=subprocess.PIPE,
-                           check=True).stdout.split(b"\n\n", 1)[1] for grid in grids]
+    shown = [subprocess.run(["vam-view", path, "--quiet", "--export", "/dev/stdout", *grid], stdout=subprocess.PIPE,
+                            check=True).stdout.split(b"\n\n", 1) for grid in grids]
+    return [(values, re.findall(rb"^(?:sizes|space|axis).*", head, re.M)) for head, values in shown]
 
 
 class Run:
@@ -139,21 +160,32 @@ class Tool:
         changed, faults = [], []
         only = [word[1:] for word in context if word.startswith("@")]
         context = [word for word in context if not word.startswith("@")]
+        without = [word for at, word in enumerate(context) if "--set" in (word, context[at - 1 if at else 0])]
+        permits = "!" in context
+        bare = context != without and option not in ("--set", "--printer") and not permits
+        context = [word for word in context if word != "!"]
         for kind in only or self.kinds:
-            base = self.base(kind, context)
-            run = self.run(self.kinds[kind] + context + words)
-            where = "%s: %s" % (kind, " ".join(context + words))
-            if run.status == 64:
-                if option not in run.said and base.status == 0:
-                    faults.append("%s: refused, but not in its name: %s" % (where, run.said))
-            elif run.status not in (0, 1):
-                faults.append("%s: status %d, %s" % (where, run.status, run.said))
-            elif run.differs(base):
-                changed.append(kind)
-            else:
-                faults.append(where + ": changes nothing, and is not refused")
-            shutil.rmtree(run.folder)
+            for beside in (context, without) if bare else (context,):
+                changed += self.judge_one(kind, option, words, beside, faults, beside is context)
+        if not permits and not any(self.base(kind, context).status in (0, 1) for kind in only or self.kinds):
+            faults.append("%s: succeeds on no kind" % " ".join(context))
         return changed, faults
+
+    def judge_one(self, kind, option, words, context, faults, complete):
+        """[kind] if it changes something; without its context it may also lack data."""
+        base = self.base(kind, context)
+        run = self.run(self.kinds[kind] + context + words)
+        where = "%s: %s" % (kind, " ".join(context + words))
+        changes = run.status in (0, 1) and run.differs(base)
+        if run.status == 64:
+            if option not in run.said and base.status == 0:
+                faults.append("%s: refused, but not in its name: %s" % (where, run.said))
+        elif run.status not in (0, 1):
+            faults += ["%s: status %d, %s" % (where, run.status, run.said)] if complete or run.status != 65 else []
+        elif not changes:
+            faults.append(where + ": changes nothing, and is not refused")
+        shutil.rmtree(run.folder)
+        return [kind] if changes else []
 
 
 def main():
@@ -162,37 +194,41 @@ def main():
     parser.add_argument("folder")
     parser.add_argument("-k", default="")
     args = parser.parse_args()
-    prepared, tools = read_table(args.table)
+    prepared, tools, aside = read_table(args.table)
     for command in prepared:
         subprocess.run(command, shell=True, check=True, cwd=args.folder, stdout=subprocess.DEVNULL,
                        stderr=subprocess.DEVNULL)
-    number = failures = 0
-    for name, (kinds, rows) in tools.items():
-        tool = Tool(name, kinds, args.folder)
-        declared = options_of(name)
-        results = {option: ([], []) for option in declared}
-        asides = {option for option, _, _, reason in rows if reason}
-        for option, words, context, reason in rows:
-            if reason or not re.search(args.k, name + " " + option):
-                continue
-            changed, faults = tool.judge(option, words, context)
-            known = results.setdefault(option, ([], ["is in the table, but not an option"]))
-            known[0].extend(changed)
-            known[1].extend(faults)
-        for option, (changed, faults) in results.items():
-            if not re.search(args.k, name + " " + option):
-                continue
-            if option not in asides and option not in [row[0] for row in rows]:
-                faults.append("has no row in the table")
-            elif option not in asides and not changed and not faults:
-                faults.append("is refused everywhere")
-            number += 1
-            failures += 1 if faults else 0
-            print("%s %d - %s %s" % ("not ok" if faults else "ok", number, name, option))
-            for fault in faults:
-                print("#   " + fault)
-    print("1..%d" % number)
-    sys.exit(1 if failures else 0)
+    names = {os.path.basename(path)[:-4] for path in glob.glob(os.environ["VAM_SOURCE"] + "/tools/vam-*.cpp")} - set(aside)
+    forms = {form for name in names for form in forms_of(name)} - set(aside)
+    results = [(form, "", ["has no section in the table"]) for form in sorted(forms - set(tools))]
+    with ThreadPoolExecutor(2) as pool:
+        for found in pool.map(lambda form: judge_tool(form, *tools[form], args), tools):
+            results += found
+    for number, (name, option, faults) in enumerate(results, 1):
+        print("%s %d - %s %s" % ("not ok" if faults else "ok", number, name, option))
+        for fault in faults:
+            print("#   " + fault)
+    print("1..%d" % len(results))
+    sys.exit(1 if any(faults for _, _, faults in results) else 0)
+
+
+def judge_tool(name, kinds, rows, args):
+    """[(name, option, faults)]"""
+    tool = Tool(name, kinds, args.folder)
+    results = {option: ([], []) for option in options_of(name)}
+    asides = {option for option, _, _, reason in rows if reason}
+    for option, words, context, reason in rows:
+        known = results.setdefault(option, ([], ["is in the table, but not an option"]))
+        if reason or not re.search(args.k, name + " " + option):
+            continue
+        for kept, found in zip(known, tool.judge(option, words, context)):
+            kept.extend(found)
+    for option, (changed, faults) in results.items():
+        if option not in [row[0] for row in rows]:
+            faults.append("has no row in the table")
+        elif option not in asides and not changed and not faults:
+            faults.append("is refused everywhere")
+    return [(name, option, faults) for option, (_, faults) in results.items() if re.search(args.k, name + " " + option)]
 
 
 main()
