@@ -105,7 +105,7 @@ is 'prints a line a figure' "$(grep -c '^regions.side.offset_mm,' .log/out)" 1
 drift=$(python3 -c 'import json; print(json.load(open("trend.json"))["figures"]["regions.side.offset_mm"]["drift"])')
 holds 'with the drift' "$drift > 0.0499 && $drift < 0.0501"
 quiet 'of a folder' vam-sdf trend run1.json run2.json run5
-fails 64 'is not in all reports' vam-sdf trend run1.json run2.json run3.json --figure nothing
+fails 64 'is not in all reports' vam-sdf trend run1.json run2.json run3.json --figure nothing --plot x.png
 
 vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
 vam-slice --shape sphere:diameter=6.4 --voxel 0.2 -o bigger.vdb
