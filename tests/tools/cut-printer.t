@@ -49,7 +49,7 @@ is 'and silent are the first 9 keys and the last section' "$(tr '\n' ' ' <silent
   "$(seq 3 11 | tr '\n' ' ')$(seq $((begin + 1)) $((lines - 1)) | tr '\n' ' ')"
 head -n $((begin - 1)) hand.toml >cut.toml
 vam-print frames.exr --display null: --uncalibrated --printer cut.toml --run run >out 2>err
-is 'nothing is printed from such a file, either' "$? $(grep -c "^vam-print: cut.toml: ends after \[camera\], as if it was cut off, without \[calibration\]; add .*'# end of the settings'" err) $(ls -d run 2>/dev/null)" '65 1 '
+is 'nothing is printed from such a file, either' "$? $(grep -c "^vam-print: cut.toml: ends after \[optimize\], as if it was cut off, without \[calibration\]; add .*'# end of the settings'" err) $(ls -d run 2>/dev/null)" '65 1 '
 fails 65 'cut.toml: ends after ' vam-check --seal cut.toml
 echo '# end of the settings' >>cut.toml
 quiet 'unless it says that it is whole' vam-slice --print-printer --printer cut.toml -o x.toml

@@ -46,7 +46,7 @@ fsync figure.png vam-view sino.exr
 fsync print.mkv vam-project light.exr --printer printer.toml
 fsync new.exr vam-sinogram ../want.vdb --angles 8
 fsync new.npy vam-convert ../want.vdb
-fsync deviation.ply vam-sdf ../box.off ../want.vdb --isovalue 0.5
+fsync deviation.ply vam-sdf ../box.off ../want.vdb
 fsync page.html vam-report sino.exr
 syncfs frames/ vam-project light.exr --printer printer.toml
 EOF

@@ -95,7 +95,7 @@ printer file|1|vam-project light.exr --printer new.printer.toml -o no.mkv
 checkpoint|5|vam-optimize part.vdb $printer --angles 24 --iterations 100000 --patience 0 --checkpoint new.run.state -o no.exr
 vam-slice|1|vam-check new.slice.json
 vam-slice|1|vam-report part.vdb new.slice.json -o no.html
-vam-sdf|1|vam-sdf trend new.run1.json run2.json run3.json --figure a
+vam-sdf|1|vam-sdf trend new.run1.json run2.json run3.json
 vam-resin|1|vam-check new.resin.json
 vam-resin|1|vam-sdf dose.vdb part.vdb --resin new.resin.json
 vam-working-curve|1|vam-print light.exr --display null: --correct --until iou>0.9 --target part.vdb --resin new.curve.json --view-step 1
@@ -124,7 +124,7 @@ same 'a printer file without a version is the same' printer.toml "$(vam-slice --
 $exr make bare.exr count=2
 ok 'a stack without one is read' vam-check bare.exr
 sed 's|"vam-sdf/1"|"vam-sdf"|' run1.json >bare.json
-ok 'and a report' vam-sdf trend bare.json run2.json run3.json --figure a
+ok 'and a report' vam-sdf trend bare.json run2.json run3.json
 for file in part.vdb light.exr print.mkv; do
   python3 edit.py bare $file "bare.${file##*.}"
   fails 65 'changed after it was written' vam-check "bare.${file##*.}"
