@@ -95,7 +95,7 @@ void draw(const std::string& path, const std::string& name, const Series& series
 void trend(const TrendOptions& options) {
   const AllSeries all = read_series(options.runs);
   const auto chosen = all.find(options.figure);
-  if (chosen == all.end()) {
+  if (!options.plot.empty() && chosen == all.end()) {
     std::vector<std::string> names;
     for (const auto& [name, series] : all) names.push_back(name);
     throw Error{Fault::usage,
