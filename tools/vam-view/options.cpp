@@ -15,7 +15,7 @@ std::string file_name(const std::string& path) {
 }
 
 std::string file_name(const std::string& path, const std::string& other) {
-  const std::string name = file_name(path);
+  std::string name = file_name(path);
   if (other.empty() || name != file_name(other)) return name;
   const std::string folder = std::filesystem::path(path).parent_path().filename().string();
   return folder.empty() ? name : folder + "/" + name;
