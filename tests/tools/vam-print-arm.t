@@ -24,6 +24,7 @@ f'
 mkdir "$odd"
 printf 'grey,intensity\n0,0\n255,1\n' >"$odd/r.csv"
 sed 's/^rows/response = "r.csv"\nrows/' printer.toml >"$odd/printer.toml"
+: >odd.err
 (cd "$odd" && vam-print ../frames.exr --display null: --light sim: --uncalibrated --max-missed 0.9 $quick --run 'r & #1') 2>odd.err & far_away=$!
 
 # A sinogram for another printer.
