@@ -155,7 +155,7 @@ is 'a printer file that cannot be read keeps no light on' "$status $(grep -c 'dl
 fails 64 'names no stage and no relay' vam-devices off
 fails 69 'no such device' vam-devices off --light dlpc900:
 fails 64 'unknown scheme|is not one of|use one of' vam-devices off --light laser:1
-is 'simulated ones end with their tools' "$(vam-devices off --light none --set stage.device=sim:)" 'stage    sim:  simulated: ends with its tool'
+is 'simulated ones end with their tools, without a folder for locks at once' "$(VAM_LOCK_DIR=/nowhere timeout 4 vam-devices off --light none --set stage.device=sim:)" 'stage    sim:  simulated: ends with its tool'
 
 # Screens: of a card, of another program's card, of a desktop.
 mkdir -p card/dri; touch card/dri/card0

@@ -43,8 +43,10 @@ std::unique_ptr<DeviceLock> take_turn() {
   for (const double last_s = real_clock().now_s() + limit_s; real_clock().now_s() < last_s; wait_a_moment()) {
     try {
       return std::make_unique<DeviceLock>("off");
-    } catch (const Error&) {
+    } catch (const InUse&) {
       continue;
+    } catch (const Error&) {  // no folder for locks: the devices say so
+      break;
     }
   }
   return nullptr;
