@@ -103,7 +103,7 @@ await test -s unmet/angles.jsonl
 live() { print --turns 2 --view-step 10 --isovalue 1 --target part.vdb --until "$@"; }
 fails 64 "unknown figure 'foo'" live 'foo>=1' --run none
 fails 66 'nowhere.vdb: cannot open' print --turns 2 --view-step 10 --isovalue 1 --target nowhere.vdb --until 'iou>=1' --run none
-fails 64 'requires --isovalue(, --resin| or --resin)' print --turns 2 --view-step 10 --target part.vdb --until 'iou>=1' --run none
+fails 64 'vam-ost: --target: requires --isovalue, --resin or --projections; ' print --turns 2 --view-step 10 --target part.vdb --until 'iou>=1' --run none
 fails 64 '.--view-step: is 15; --until requires views at most 12 degrees apart' live 'iou>=1' --view-step 15 --run none
 fails 64 '.--until: requires at least 2 turns' live 'iou>=1' --turns 1 --run none
 is 'by its plan, too' "$(live 'iou>=1' --turns 1 --plan 2>&1 >/dev/null | grep -c 'until: requires at least 2 turns')" 1
