@@ -60,6 +60,7 @@ Line straight(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 struct Valley {
+  double rise_s = 0;  // time constant of the light
   double latency_s = 0;
   Line line;
 };
@@ -83,15 +84,15 @@ double lowest(const Misfit& misfit, double low, double high, double width = 1e-6
   return 0.5 * (low + high);
 }
 
-Valley valley_between(const BlinkScan& scan, const Blinks& blinks, double low_s, double high_s) {
+Valley valley_between(const BlinkScan& scan, double rise_s, double low_s, double high_s) {
+  const Blinks blinks(scan, rise_s);
   const auto line_at = [&](double latency_s) { return straight(blinks.lit_parts(latency_s), scan.light); };
   const double latency_s = lowest([&](double at_s) { return line_at(at_s).misfit; }, low_s, high_s);
-  return {latency_s, line_at(latency_s)};
+  return {rise_s, latency_s, line_at(latency_s)};
 }
 
 // Every valley of the misfit from one end to the other, and the misfit at coarse steps.
 struct MisfitCurve {
-  double rise_s = 0;
   std::vector<double> misfit;  // a step beyond either end: infinite
   std::vector<Valley> valleys;
 };
@@ -99,14 +100,14 @@ struct MisfitCurve {
 MisfitCurve survey(const BlinkScan& scan, double rise_s) {
   constexpr double beyond = std::numeric_limits<double>::infinity();
   const Blinks blinks(scan, rise_s);
-  MisfitCurve all{rise_s, {beyond}, {}};
+  MisfitCurve all{{beyond}, {}};
   for (std::size_t i = 0; i <= steps; ++i) {
     all.misfit.push_back(straight(blinks.lit_parts(at_step(i)), scan.light).misfit);
   }
   all.misfit.push_back(beyond);
   for (std::size_t i = 0; i <= steps; ++i) {
     if (all.misfit[i + 1] > all.misfit[i] || all.misfit[i + 1] > all.misfit[i + 2]) continue;
-    all.valleys.push_back(valley_between(scan, blinks, at_step(i) - coarse_s, at_step(i) + coarse_s));
+    all.valleys.push_back(valley_between(scan, rise_s, at_step(i) - coarse_s, at_step(i) + coarse_s));
   }
   return all;
 }
@@ -137,18 +138,16 @@ MisfitCurve survey_all(const BlinkScan& scan) {
   return best;
 }
 
-// The valley of the time constant that fits best about that landscape's.
-Valley refined(const BlinkScan& scan, const MisfitCurve& all, double& rise_s) {
+// The valley of the time constant that fits best about that of the curve.
+Valley refined(const BlinkScan& scan, const MisfitCurve& all) {
   const Valley rough = deepest(all);
+  if (rough.rise_s == fast_s) return rough;
   const auto valley = [&](double rise) {
-    const double about_s = std::abs(rise - all.rise_s) + coarse_s;
-    return valley_between(scan, Blinks(scan, rise), rough.latency_s - about_s, rough.latency_s + about_s);
+    const double about_s = std::abs(rise - rough.rise_s) + coarse_s;
+    return valley_between(scan, rise, rough.latency_s - about_s, rough.latency_s + about_s);
   };
-  rise_s = all.rise_s;
-  if (rise_s == fast_s) return rough;
-  rise_s = std::exp(lowest([&](double log_rise) { return valley(std::exp(log_rise)).line.misfit; },
-                           std::log(rise_s / 4), std::log(rise_s * 4), 0.02));
-  return valley(rise_s);
+  return valley(std::exp(lowest([&](double log_rise) { return valley(std::exp(log_rise)).line.misfit; },
+                                std::log(rough.rise_s / 4), std::log(rough.rise_s * 4), 0.02)));
 }
 
 // The deepest but for those in the best one's own: where blinks explain more than half of what the best explain.
@@ -189,15 +188,14 @@ Latency measure_latency(const BlinkScan& scan) {
                                  std::to_string(scan.lit_s.size()) + " flashes; at least 8 and 1 are needed"};
   }
   const MisfitCurve all = survey_all(scan);
-  double rise_s = 0;
-  const Valley best = refined(scan, all, rise_s);
-  const Blinks blinks(scan, rise_s);
+  const Valley best = refined(scan, all);
+  const Blinks blinks(scan, best.rise_s);
   const double scatter = std::sqrt(best.line.misfit / static_cast<double>(scan.light.size()));
   if (!(best.line.light > 5 * scatter)) {
     throw Error{Fault::data, "latency: the blinking screen is not visible to the camera; light " +
                                  format_number(best.line.light, 3) + ", scatter " + format_number(scatter, 3)};
   }
-  const Stretch open = unseen_stretch(scan, best.latency_s, rise_s);
+  const Stretch open = unseen_stretch(scan, best.latency_s, best.rise_s);
   refuse_unseen(scan, open);
   const double unexplained = straight(std::vector<double>(scan.light.size()), scan.light).misfit;
   const Valley* second = runner_up(all, best, unexplained);
