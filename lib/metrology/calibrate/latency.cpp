@@ -140,7 +140,7 @@ MisfitCurve survey_all(const BlinkScan& scan) {
 
 // The valley of the time constant that fits best about that of the curve.
 Valley refined(const BlinkScan& scan, const MisfitCurve& all) {
-  const Valley rough = deepest(all);
+  Valley rough = deepest(all);
   if (rough.rise_s == fast_s) return rough;
   const auto valley = [&](double rise) {
     const double about_s = std::abs(rise - rough.rise_s) + coarse_s;
