@@ -21,9 +21,8 @@ struct Incident {
   double transmittance = 1;  // of the window
 };
 
-Incident incident(const View& view, double x_p, double z_p, const Displacement& vial) {
-  const double slope_x = view.lens_mm ? x_p / *view.lens_mm : 0;
-  const double slope_z = view.rows_lens_mm ? z_p / *view.rows_lens_mm : 0;
+Incident incident(const View& view, double x_p, double z_p, const Slopes& slopes, const Displacement& vial) {
+  const auto [slope_x, slope_z] = slopes;
   const double forward = 1 / std::sqrt(1 + square(slope_x) + square(slope_z));  // cosine of the angle with the axis
   const double n = view.bath_index;
   const double window = n == 1.0 ? 0.0 : view.window_mm;
@@ -50,8 +49,16 @@ Incident incident(const View& view, double x_p, double z_p, const Displacement& 
 
 double SkewRay::steepness() const { return std::sqrt(1 + square(climb)); }
 
+Slopes chief_slopes(const View& view, double x_p_mm, double z_p_mm) {
+  return {view.lens_mm ? x_p_mm / *view.lens_mm : 0, view.rows_lens_mm ? z_p_mm / *view.rows_lens_mm : 0};
+}
+
 SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm, const Displacement& vial) {
-  const Incident before = incident(view, x_p_mm, z_p_mm, vial);
+  return ray_of_slopes(view, x_p_mm, z_p_mm, chief_slopes(view, x_p_mm, z_p_mm), vial);
+}
+
+SkewRay ray_of_slopes(const View& view, double x_mm, double z_mm, const Slopes& slopes, const Displacement& vial) {
+  const Incident before = incident(view, x_mm, z_mm, slopes, vial);
   SkewRay ray{true, before.impact_mm, -before.phi_rad, before.height_mm, 0, before.transmittance};
   double index = view.bath_index;
   double level = std::sqrt(square(index) - square(before.s));  // n cos(elevation): the index of the plan view

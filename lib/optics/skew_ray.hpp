@@ -38,6 +38,19 @@ struct Displacement {
 /// vial's frame, whose axis is the vial's.
 [[nodiscard]] SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm, const Displacement& vial = {});
 
+/// The slopes of a ray in air, dx / dy and dz / dy.
+struct Slopes {
+  double x = 0;
+  double z = 0;
+};
+
+/// The slopes of the chief ray of that point.
+[[nodiscard]] Slopes chief_slopes(const View& view, double x_p_mm, double z_p_mm);
+/// The ray that would pass that point of the plane of the rotation axis with these slopes if nothing were in its way;
+/// skew_ray is that of the chief slopes.
+[[nodiscard]] SkewRay ray_of_slopes(const View& view, double x_mm, double z_mm, const Slopes& slopes,
+                                    const Displacement& vial = {});
+
 /// The view in which level rays have the plan of those that pass the plane of the axis at z_p: its indices are others
 /// [physics §2]. In units of the cosine of the elevation in air, so that air stays 1.
 [[nodiscard]] View plan_view(const View& view, double z_p_mm);
