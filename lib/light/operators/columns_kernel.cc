@@ -49,4 +49,27 @@ void add_columns(const float* from, int columns, int count, int pitch, long next
   }
 }
 
+namespace {
+
+/// half > 0: that many neighbours, in registers; 0: `neighbours` of them.
+template <int half>
+inline void spread(const float* weights, int neighbours, int count, const float* from, float* to) {
+  const int rows = half > 0 ? half : neighbours;
+  for (int v = 0; v < count; v += vector_floats) {
+    Vector sum = weights[0] * load(from + v);
+#pragma GCC unroll 4
+    for (int k = 1; k <= rows; ++k) sum += weights[k] * (load(from + v - k) + load(from + v + k));
+    store(to + v, sum);
+  }
+}
+
+}  // namespace
+
+void spread_rows(const float* weights, int half, int count, const float* from, float* to) {
+  if (half == 1) return spread<1>(weights, half, count, from, to);
+  if (half == 2) return spread<2>(weights, half, count, from, to);
+  if (half == 3) return spread<3>(weights, half, count, from, to);
+  spread<0>(weights, half, count, from, to);
+}
+
 }  // namespace vam::light::VAM_SIMD

@@ -85,10 +85,11 @@ struct Weights {
   }
 };
 
-/// taps: 3 or 4, the usual numbers, or 0 for any.
+/// taps: 3 to 6, the usual numbers, or 0 for any.
 template <int width, bool climbs, bool shadowed, int taps>
 void gather(const TileColumns& columns, const RayTaps& ray, const VoxelRay* rays, int count, float* voxels) {
   alignas(64) float line[most_tile_rows + 32];
+  const int pitch = climbs ? columns.pitch : width;
   const int rows = climbs ? columns.rows : width;
   const int ends = taps > 0 ? taps : ray.taps;
   if (climbs) {
@@ -96,7 +97,7 @@ void gather(const TileColumns& columns, const RayTaps& ray, const VoxelRay* rays
   }
   for (int r = 0; r < count; ++r) {
     const int e = rays[r].ray;
-    const float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
+    const float* light = columns.light + columns.first + static_cast<long>(ray.cell[e] - ray.first_cell) * pitch;
     const Weights<taps> weight(ray, e);
     float* to = voxels + static_cast<long>(rays[r].voxel) * (width + voxel_gap(climbs));
     float* sums = climbs ? line : to;
@@ -104,7 +105,7 @@ void gather(const TileColumns& columns, const RayTaps& ray, const VoxelRay* rays
       Vector sum = climbs ? Vector{} : load(to + v);
 #pragma GCC unroll 4
       for (int k = 0; k < ends; ++k) {
-        const long at = static_cast<long>(k) * rows + v;
+        const long at = static_cast<long>(k) * pitch + v;
         const long tap = static_cast<long>(k) * ray.pitch;
         const Vector here = load(light + at);
         if (shadowed) {
@@ -123,11 +124,12 @@ void gather(const TileColumns& columns, const RayTaps& ray, const VoxelRay* rays
 template <int width, bool climbs, bool shadowed, int taps>
 void scatter(const float* voxels, const RayTaps& ray, const VoxelRay* rays, int count, const TileColumns& columns) {
   alignas(64) float line[most_tile_rows + 32];
+  const int pitch = climbs ? columns.pitch : width;
   const int rows = climbs ? columns.rows : width;
   const int ends = taps > 0 ? taps : ray.taps;
   for (int r = 0; r < count; ++r) {
     const int e = rays[r].ray;
-    float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
+    float* light = columns.light + columns.first + static_cast<long>(ray.cell[e] - ray.first_cell) * pitch;
     const Weights<taps> weight(ray, e);
     const float* from = voxels + static_cast<long>(rays[r].voxel) * (width + voxel_gap(climbs));
     if (climbs) give_rows(from, ray.start[e] - ray.first_row, ray.zoom[e], rows, line);
@@ -136,7 +138,7 @@ void scatter(const float* voxels, const RayTaps& ray, const VoxelRay* rays, int 
       const Vector value = load(given + v);
 #pragma GCC unroll 4
       for (int k = 0; k < ends; ++k) {
-        const long at = static_cast<long>(k) * rows + v;
+        const long at = static_cast<long>(k) * pitch + v;
         const long tap = static_cast<long>(k) * ray.pitch;
         Vector share = weight[k] * value;
         if (shadowed) {
@@ -154,6 +156,8 @@ void gather_chunk(const TileColumns& columns, const RayTaps& taps, const VoxelRa
   if (columns.ends_mm != nullptr) return gather<width, climbs, true, 0>(columns, taps, rays, count, voxels);
   if (taps.taps == 3) return gather<width, climbs, false, 3>(columns, taps, rays, count, voxels);
   if (taps.taps == 4) return gather<width, climbs, false, 4>(columns, taps, rays, count, voxels);
+  if (taps.taps == 5) return gather<width, climbs, false, 5>(columns, taps, rays, count, voxels);
+  if (taps.taps == 6) return gather<width, climbs, false, 6>(columns, taps, rays, count, voxels);
   gather<width, climbs, false, 0>(columns, taps, rays, count, voxels);
 }
 
@@ -163,6 +167,8 @@ void scatter_chunk(const float* voxels, const RayTaps& taps, const VoxelRay* ray
   if (columns.ends_mm != nullptr) return scatter<width, climbs, true, 0>(voxels, taps, rays, count, columns);
   if (taps.taps == 3) return scatter<width, climbs, false, 3>(voxels, taps, rays, count, columns);
   if (taps.taps == 4) return scatter<width, climbs, false, 4>(voxels, taps, rays, count, columns);
+  if (taps.taps == 5) return scatter<width, climbs, false, 5>(voxels, taps, rays, count, columns);
+  if (taps.taps == 6) return scatter<width, climbs, false, 6>(voxels, taps, rays, count, columns);
   scatter<width, climbs, false, 0>(voxels, taps, rays, count, columns);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include "base/compute/simd.hpp"
 #include "base/error.hpp"
@@ -20,11 +21,13 @@ struct TileKernels {
   decltype(&baseline::scatter_rays) scatter;
   decltype(&baseline::copy_columns) copy;
   decltype(&baseline::add_columns) add;
+  decltype(&baseline::spread_rows) spread;
 
   static const TileKernels& best() {
     const Simd level = simd_level();
     static const TileKernels kernels{VAM_KERNEL(gather_rays, level), VAM_KERNEL(scatter_rays, level),
-                                     VAM_KERNEL(copy_columns, level), VAM_KERNEL(add_columns, level)};
+                                     VAM_KERNEL(copy_columns, level), VAM_KERNEL(add_columns, level),
+                                     VAM_KERNEL(spread_rows, level)};
     return kernels;
   }
 };
@@ -156,18 +159,24 @@ void TileLight::find_angle(const RayNodes& nodes, AngleTaps& to) {
   to.lit = true;
   to.columns = to.taps.last_cell - to.taps.first_cell + to.taps.taps;
   to.row = chunk_.slice();
-  to.rows = chunk_.width();
+  to.rows = to.used = chunk_.width();
   if (!rays_.climbs()) return;
-  const double across = static_cast<double>(to.taps.last_row) - to.taps.first_row;
-  if (!(across < most_tile_rows - 2)) {  // VialRays bounds the slopes; slices far above or below the lens bend most
+  to.spread = spread_of(to);
+  const int spread = rays_.spread().half_width(to.spread);
+  const double across = static_cast<double>(to.taps.last_row) - to.taps.first_row + 2 * spread;
+  if (!(across <
+        most_tile_rows - 2 -
+            (spread > 0 ? lanes : 0))) {  // VialRays bounds the slopes; slices far above or below the lens bend most
     throw Error{Fault::data, "projector: " + format_number(across, 3) + " rows of its images cross " +
                                  std::to_string(chunk_.width()) + " slices, and " + std::to_string(most_tile_rows) +
                                  " can; the slices are too far from the height of the lens (projector.axis_row)"};
   }
   to.taps.first_row = std::floor(to.taps.first_row);
-  to.row = static_cast<int>(to.taps.first_row);
-  const int needed = static_cast<int>(to.taps.last_row - to.taps.first_row) + 2;
-  to.rows = (needed + lanes - 1) / lanes * lanes;
+  to.first = spread;
+  to.row = static_cast<int>(to.taps.first_row) - spread;
+  const auto whole = [](int rows) { return (rows + lanes - 1) / lanes * lanes; };
+  to.used = whole(static_cast<int>(to.taps.last_row - to.taps.first_row) + 2);
+  to.rows = whole(to.used + 2 * spread);
 }
 
 TileTaps TileLight::find_taps(const RayNodes& nodes, int first, int end) {
@@ -202,17 +211,41 @@ void TileLight::each_piece(const AngleTaps& from, int angle, const Window<SlabTy
 }
 
 void TileLight::fetch(const AngleTaps& from, int angle, const Window<const Slab>& sinograms) {
-  light_.assign(product(from.columns, from.rows), 0.0F);
+  light_.assign(product(from.columns, from.rows) + 2 * most_spread_rows, 0.0F);
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));  // the next stage angle
   each_piece(from, angle, sinograms, [&](const float* light, std::size_t at, int columns, int rows) {
-    TileKernels::best().copy(light, columns, rows, from.rows, next, light_.data() + at);
+    TileKernels::best().copy(light, columns, rows, from.rows, next, light_.data() + most_spread_rows + at);
   });
 }
 
-void TileLight::put_back(const AngleTaps& to, int angle, const Window<Slab>& sinograms) const {
+/// By how much the light of the tile's middle spreads, and how far between rows it is read.
+int TileLight::spread_of(const AngleTaps& at) const {
+  if (rays_.spread().most() == 0) return 0;
+  constexpr int samples = 16;
+  const int ray = rays_of(at)[rays_of(at).size() / 2].ray;
+  double read = 0;
+  for (int i = 0; i < samples; ++i) {
+    const double row = static_cast<double>(at.taps.start[ray] + at.taps.zoom[ray] * static_cast<float>(i));
+    const double place = row - std::floor(row);
+    read += place * (1 - place) / samples;
+  }
+  const VoxelColumn& middle = tile_.voxels[tile_.voxels.size() / 2];
+  return rays_.spread().step(rays_.spread_rows(middle.i, middle.j, at.angle), read);
+}
+
+void TileLight::spread(const AngleTaps& over, const Light& from, Light& to) const {
+  const std::span<const float> weights = rays_.spread().weights(over.spread);
+  to.resize(from.size());
+  TileKernels::best().spread(weights.data(), count_of(weights) - 1, over.columns * over.rows,
+                             from.data() + most_spread_rows, to.data() + most_spread_rows);
+}
+
+void TileLight::put_back(const AngleTaps& to, int angle, const Window<Slab>& sinograms) {
+  if (to.spread > 0) spread(to, light_, spread_);
+  const float* from = (to.spread > 0 ? spread_ : light_).data() + most_spread_rows;
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));
   each_piece(to, angle, sinograms, [&](float* light, std::size_t at, int columns, int rows) {
-    TileKernels::best().add(light_.data() + at, columns, rows, to.rows, next, light);
+    TileKernels::best().add(from + at, columns, rows, to.rows, next, light);
   });
 }
 
@@ -246,10 +279,15 @@ void TileLight::cast_shadow(const AngleTaps& from, int angle) {
   }
 }
 
-TileColumns TileLight::columns(const AngleTaps& from, int angle) {
+TileColumns TileLight::columns(const AngleTaps& from, int angle, Light& light) {
   ends_.clear();
   if (shadowed(from, angle)) cast_shadow(from, angle);
-  return {light_.data(), ends_.empty() ? nullptr : ends_.data(), depth_.data(), from.rows};
+  return {light.data() + most_spread_rows,
+          ends_.empty() ? nullptr : ends_.data(),
+          depth_.data(),
+          from.rows,
+          from.first,
+          from.used};
 }
 
 void TileLight::take(const TileTaps& taps, const Window<const Slab>& sinograms) {
@@ -257,9 +295,10 @@ void TileLight::take(const TileTaps& taps, const Window<const Slab>& sinograms) 
     if (!from.lit) continue;
     const int angle = rays_.turned_angle(from.angle, quarters_);
     fetch(from, angle, sinograms);
+    if (from.spread > 0) spread(from, light_, spread_);
     const std::vector<VoxelRay>& rays = rays_of(from);
-    TileKernels::best().gather(columns(from, angle), from.taps, rays.data(), count_of(rays), chunk_.width(),
-                               rays_.climbs(), voxels_.data() + voxel_at(0));
+    TileKernels::best().gather(columns(from, angle, from.spread > 0 ? spread_ : light_), from.taps, rays.data(),
+                               count_of(rays), chunk_.width(), rays_.climbs(), voxels_.data() + voxel_at(0));
   }
 }
 
@@ -267,10 +306,10 @@ void TileLight::give(const TileTaps& taps, const Window<Slab>& sinograms) {
   for (const AngleTaps& to : taps) {
     if (!to.lit) continue;
     const int angle = rays_.turned_angle(to.angle, quarters_);
-    light_.assign(product(to.columns, to.rows), 0.0F);
+    light_.assign(product(to.columns, to.rows) + 2 * most_spread_rows, 0.0F);
     const std::vector<VoxelRay>& rays = rays_of(to);
     TileKernels::best().scatter(voxels_.data() + voxel_at(0), to.taps, rays.data(), count_of(rays), chunk_.width(),
-                                rays_.climbs(), columns(to, angle));
+                                rays_.climbs(), columns(to, angle, light_));
     put_back(to, angle, sinograms);
   }
 }

@@ -87,12 +87,12 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
   if (r <= static_cast<float>(table.inner_edge_mm) || (here.shifted && r <= static_cast<float>(table.reach_mm))) {
     NodeValues values = node_of(table.inner, 0);
     if (here.shifted) shift_.add(r, turn, here.powers, values);
-    to[0] = node_at(std::bit_cast<TableNode>(values), scale);
+    to[0] = node_at(std::bit_cast<TableNode>(values), scale, table.spread(), x, y);
     return 1;
   }
   if (table.outer.rows == 0 || here.shifted) return 0;
   for (int sheet = 0; sheet < table.outer.sheets; ++sheet) {
-    to[sheet] = node_at(std::bit_cast<TableNode>(node_of(table.outer, sheet)), scale);
+    to[sheet] = node_at(std::bit_cast<TableNode>(node_of(table.outer, sheet)), scale, table.spread(), x, y);
   }
   return table.outer.sheets;
 }

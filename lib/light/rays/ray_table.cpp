@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/compute/parallel.hpp"
+#include "base/constants.hpp"
 #include "base/index.hpp"
 #include "light/rays/private/chief_ray_dose.hpp"
 #include "optics/writable_radius.hpp"
@@ -44,6 +45,11 @@ RayTable::RayTable(const Scope& scope)
     outer.first_mm = inner_edge_mm + 0.5 * outer.pitch_mm;
     outer.first_row = inner.rows;
   }
+  for (int i = 0; i < directions; ++i) {
+    const double alpha = scope.sense * i * turn_rad / directions;
+    cosines_.push_back(static_cast<float>(std::cos(alpha)));
+    sines_.push_back(static_cast<float>(std::sin(alpha)));
+  }
   nodes_.resize(static_cast<std::size_t>(inner.rows + outer.rows * outer.sheets) * directions);
   parallel_for(inner.rows, [&](int row) { fill_inner_row(light, row); });
   constexpr int rows_at_once = 16;  // their circles overlap
@@ -76,9 +82,23 @@ void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) co
   parallel_for(rows, [&](int row) {
     const TableNode* from = nodes_.data() + std::ptrdiff_t{row} * directions;
     RayNode* to = nodes.data() + std::ptrdiff_t{row} * (directions + 1);
-    for (int i = 0; i < directions; ++i) to[i] = node_at(from[i], here);
+    const int circle = row - outer.first_row;
+    const auto r = static_cast<float>(
+        circle < 0 || outer.rows == 0 ? row * inner.pitch_mm : outer.first_mm + circle / outer.sheets * outer.pitch_mm);
+    for (int i = 0; i < directions; ++i) {
+      to[i] = node_at(from[i], here, scope_.spread, r * cosines_[i], r * sines_[i]);
+    }
     to[directions] = to[0];
   });
+}
+
+double RayTable::spread_along_mm(double x_mm, double y_mm) const {
+  const int row = std::min(round_int(std::hypot(x_mm, y_mm) / inner.pitch_mm), inner.rows - 1);
+  const double turn = scope_.sense * std::atan2(y_mm, x_mm) / turn_rad;
+  const int direction = round_int((turn - std::floor(turn)) * directions) % directions;
+  const TableNode& node = nodes_[static_cast<std::size_t>(row) * directions + direction];
+  const float depth = depth_mm(node, static_cast<float>(x_mm), static_cast<float>(y_mm));
+  return static_cast<double>(scope_.spread.along_mm(node.x_p[0], depth) * node.row[0]);
 }
 
 double RayTable::drift_mm(double from_mm, double to_mm, double r_mm) const {

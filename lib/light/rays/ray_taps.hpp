@@ -7,6 +7,7 @@ namespace vam::light {
 
 inline constexpr int ray_block = 16;  // rays are looked up in blocks: arrays of them are as long as whole blocks
 inline constexpr int most_blocks = 16;
+inline constexpr int most_spread_rows = 32;  // over which the light of a row spreads on either side
 
 /// Where the voxels of a tile take light from at one stage angle: columns cell, cell + 1, ... with these weights, and
 /// rows start + zoom * (slice of the chunk).

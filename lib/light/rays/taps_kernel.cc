@@ -35,6 +35,19 @@ struct Shadows {
   alignas(64) float before[ray_block];  // area up to the last edge that was taken
 };
 
+/// A trapezoid, box(wide) * box(thin), widened by a box: that of two boxes with their variance, the wider of the three
+/// and another, or two alike where none is as wide as the others together.
+inline void widen(float spread2, float& wide, float& thin) {
+  const float wide2 = wide * wide;
+  const float thin2 = thin * thin;
+  const float most = spread2 > wide2 ? spread2 : wide2;
+  const float rest = thin2 + (spread2 > wide2 ? wide2 : spread2);
+  const float mean = 0.5F * (most + rest);
+  wide = __builtin_sqrtf(most > mean ? most : mean);
+  thin = __builtin_sqrtf(most > mean ? rest : mean);
+}
+
+template <bool spreads>
 inline void cast_shadows(const Node* at, const RayFrame& frame, int e, RayTaps& taps, Shadows& shadows) {
   for (int i = 0; i < ray_block; ++i) {
     const float cosine = at[i][5];
@@ -42,8 +55,9 @@ inline void cast_shadows(const Node* at, const RayFrame& frame, int e, RayTaps& 
     const float a = size(frame.cosine * cosine - frame.sine * sine);
     const float b = size(frame.sine * cosine + frame.cosine * sine);
     const float edge = at[i][4];
-    const float wide = edge * (a > b ? a : b);
-    const float thin = edge * (a > b ? b : a);
+    float wide = edge * (a > b ? a : b);
+    float thin = edge * (a > b ? b : a);
+    if (spreads) widen(at[i][7], wide, thin);
     const auto shadow = tomo::Trapezoid::of(wide, thin, at[i][3]);
     shadows.half[i] = shadow.half;
     shadows.flat[i] = shadow.flat;
@@ -125,7 +139,7 @@ void find_taps(const RayNode* nodes, const RaySource* sources, int count, const 
   for (int e = 0; e < count; e += ray_block) {
     Shadows& block = shadows[e / ray_block];
     for (int i = 0; i < ray_block; ++i) find_node(nodes, sources[e + i], frame, at[i]);
-    cast_shadows(at, frame, e, taps, block);
+    frame.spreads ? cast_shadows<true>(at, frame, e, taps, block) : cast_shadows<false>(at, frame, e, taps, block);
     if (e == 0) bounds.begin(taps);
     bounds.add(taps, block, 2.0F * frame.half, e);
   }

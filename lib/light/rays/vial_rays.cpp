@@ -53,6 +53,7 @@ RayTable::Scope VialRays::table_scope() const {
   table.r_max_mm = farthest_mm(setup_) + model::farthest_mm(setup_.poses, model::Moves::part);
   table.voxel_mm = setup_.grid.voxel_mm;
   table.height_mm = std::max(top_mm(), least_height_mm);
+  table.spread = LightSpread(setup_);
   return table;
 }
 
@@ -63,10 +64,11 @@ VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(ta
   note_rows();
   RayNodes level;
   table_.at_height(0, scale(), level);
-  const auto narrower = [](const RayNode& a, const RayNode& b) { return a.edge < b.edge; };
-  const float widest = std::max_element(level.begin(), level.end(), narrower)->edge;
-  taps_ = ceil_int(std::numbers::sqrt2 * widest) + 1;
+  float widest2 = 0;  // of a box as variable as a shadow
+  for (const RayNode& node : level) widest2 = std::max(widest2, node.edge * node.edge + node.spread2);
+  taps_ = ceil_int(std::numbers::sqrt2 * std::sqrt(widest2)) + 1;
   require_moderate_rays(level);
+  note_spread();
   for (int a = 0; a < setup_.turn.rows; ++a) {
     const double theta = setup_.part_angle_rad(a);
     cosines_.push_back(static_cast<float>(std::cos(theta)));
@@ -98,6 +100,33 @@ void VialRays::note_columns() {
                                " columns reaches the resin; check projector.axis_column and projector.pixel_mm"};
 }
 
+/// The widest anywhere in the circle.
+void VialRays::note_spread() {
+  if (!table_.spread().along()) return;
+  double most_mm = 0;
+  constexpr int directions = 360;
+  for (const double r : {0.0, 0.5 * farthest_mm(setup_), farthest_mm(setup_)}) {
+    for (int i = 0; i < directions; ++i) {
+      const double alpha = i * turn_rad / directions;
+      most_mm = std::max(most_mm, table_.spread_along_mm(r * std::cos(alpha), r * std::sin(alpha)));
+    }
+  }
+  spread_ = RowSpread(most_mm / setup_.grid.voxel_mm);
+  if (spread_.most() <= most_spread_rows) return;
+  throw Error{Fault::data, "projector: at half_angle_deg " + format_number(setup_.half_angle_rad * deg_per_rad, 3) +
+                               " its light spreads over " + std::to_string(spread_.most()) +
+                               " voxels along z on either side, and " + std::to_string(most_spread_rows) +
+                               " can; use larger voxels, or check projector.half_angle_deg and projector.focus_mm"};
+}
+
+double VialRays::spread_rows(int i, int j, int angle) const {
+  const double x = setup_.grid.x_mm(i);
+  const double y = setup_.grid.y_mm(j);
+  const auto c = static_cast<double>(cosines_[static_cast<std::size_t>(angle)]);
+  const auto s = static_cast<double>(sines_[static_cast<std::size_t>(angle)]);
+  return table_.spread_along_mm(x * c + y * s, y * c - x * s) / setup_.grid.voxel_mm;
+}
+
 void VialRays::note_rows() {
   const double voxel = setup_.grid.voxel_mm;
   const auto row_at = [&](double z_mm) {
@@ -123,8 +152,8 @@ bool VialRays::lit(int first, int slices, int frame) const {
   const double top = height_mm(first + slices - 1) + posed_.lift_mm(frame);
   const auto least = static_cast<double>(least_row_);
   const auto most = static_cast<double>(most_row_);
-  return top * (top > 0 ? most : least) > row_mm(first_row_ - 1) &&
-         bottom * (bottom > 0 ? least : most) < row_mm(end_row_);
+  return top * (top > 0 ? most : least) > row_mm(first_row_ - 1 - spread_.most()) &&
+         bottom * (bottom > 0 ? least : most) < row_mm(end_row_ + spread_.most());
 }
 
 /// Light of a row falls on the next slices, too, and rays are interpolated between nodes.
@@ -137,7 +166,9 @@ RowRange VialRays::rows_to(const RayNodes& nodes, int first, int slices) const {
     low = std::min(low, node.row - half);
     high = std::max(high, node.row + half);
   }
-  return {std::clamp(floor_int(low) - 1, first_row_, end_row_), std::clamp(ceil_int(high) + 2, first_row_, end_row_)};
+  const int more = spread_.most();
+  return {std::clamp(floor_int(low) - 1 - more, first_row_, end_row_),
+          std::clamp(ceil_int(high) + 2 + more, first_row_, end_row_)};
 }
 
 RowRange VialRays::posed_rows_to(int first, int slices) const {
@@ -146,11 +177,12 @@ RowRange VialRays::posed_rows_to(int first, int slices) const {
   const model::LiftRange lift = model::lift_mm(setup_.poses);
   const double bottom = height_mm(first) + lift.least;
   const double top = height_mm(first + slices - 1) + lift.most;
+  const int more = spread_.most();
   const auto row_at = [&](double z_mm) {
-    return std::clamp((z_mm - setup_.first_row_mm) / setup_.grid.voxel_mm, -2.0, setup_.rows + 2.0);
+    return std::clamp((z_mm - setup_.first_row_mm) / setup_.grid.voxel_mm, -2.0 - more, setup_.rows + 2.0 + more);
   };
-  return {std::clamp(floor_int(row_at(bottom * (bottom > 0 ? least : most))) - 1, first_row_, end_row_),
-          std::clamp(ceil_int(row_at(top * (top > 0 ? most : least))) + 2, first_row_, end_row_)};
+  return {std::clamp(floor_int(row_at(bottom * (bottom > 0 ? least : most))) - 1 - more, first_row_, end_row_),
+          std::clamp(ceil_int(row_at(top * (top > 0 ? most : least))) + 2 + more, first_row_, end_row_)};
 }
 
 HeightScale VialRays::posed_scale(int first, int slices, int frame) const {
@@ -267,7 +299,7 @@ void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count
                        part.sine,
                        static_cast<float>(columns() + 2 * padding() - 1),
                        climbs() ? 0.5F * static_cast<float>(slices - 1) : 0.0F,
-                       climbs(),
+                       table_.spread().across(),
                        taps_};
   kernel(nodes.data(), rays, count, frame, taps);
 }

@@ -7,6 +7,7 @@
 #include "base/index.hpp"
 #include "light/rays/private/posed_rays.hpp"
 #include "light/rays/private/ray_table.hpp"
+#include "light/rays/row_spread.hpp"
 #include "light/rays/vial_setup.hpp"
 
 namespace vam::light {
@@ -71,6 +72,11 @@ class VialRays {
   /// Where `count` rays, whole blocks of them, take light from: one node each, and one more.
   void find_posed_taps(const RayNodes& nodes, int count, int frame, int slices, RayTaps& taps) const;
 
+  /// Light of a row spreads to its neighbours by these kernels.
+  [[nodiscard]] const RowSpread& spread() const { return spread_; }
+  /// By which standard deviation in rows, at a voxel column at that stage angle.
+  [[nodiscard]] double spread_rows(int i, int j, int angle) const;
+
   /// The rows that these slices take light from, `nodes` those at_slices(); with poses, in any frame, rather too many.
   [[nodiscard]] RowRange rows_to(const RayNodes& nodes, int first, int slices) const;
 
@@ -96,11 +102,13 @@ class VialRays {
   void require_moderate_rays(RayNodes& nodes) const;
   void note_columns();
   void note_rows();
+  void note_spread();
   [[nodiscard]] RowRange posed_rows_to(int first, int slices) const;
 
   VialSetup setup_;
   RayTable table_;
   PosedRays posed_;
+  RowSpread spread_;
   float least_row_ = 1, most_row_ = 1;  // z_p over height, of any ray
   int first_ = 0;
   int first_row_ = 0;

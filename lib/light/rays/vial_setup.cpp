@@ -96,6 +96,8 @@ VialSetup completed(VialSetup setup) {
     throw Error{Fault::data, "poses: " + std::to_string(setup.poses.size()) + " poses for " +
                                  std::to_string(setup.turn.rows) + " frames; one pose per frame is required"};
   }
+  constexpr double level_mm = 1e9;  // so far away is the lens of rays that stay level and spread
+  if (setup.rows_half_angle_rad > 0 && !setup.view.rows_lens_mm) setup.view.rows_lens_mm = level_mm;
   const double resin_mm = optics::resin_radius_mm(setup.view);
   setup.radius_mm = setup.radius_mm > 0 ? std::min(setup.radius_mm, resin_mm) : resin_mm;
   if (setup.rows == 0) {

@@ -20,6 +20,10 @@ struct VialSetup {
   int direction = 1;
   double angle_offset_rad = 0;
   double absorption_per_mm = 0;
+  double hold_rad = 0;             // the stage turns by it while a frame is shown
+  double half_angle_rad = 0;       // of the round bundle of a pixel, in air; seen along the rotation axis
+  double rows_half_angle_rad = 0;  // the same, seen from the side: rows then light the slices beside their own
+  double focus_mm = 0;             // of the image in air, behind the axis
   model::Grid grid;
   double radius_mm = 0;     // voxels farther from the axis get no light; 0: the resin's radius
   double z_scale = 1;       // M_vp

@@ -59,7 +59,10 @@ Simulation::Simulation(const model::Printer& printer, const optics::AxisAlignmen
   state_->resin_mm = model::resin_radius_mm(printer.vial);
   state_->beam = beam_of(printer, alignment, info, grid);
   auto* vial = std::get_if<VialSetup>(&state_->beam);
-  if (vial != nullptr && climb == Climb::flat) vial->view.rows_lens_mm.reset();
+  if (vial != nullptr && climb == Climb::flat) {
+    vial->view.rows_lens_mm.reset();
+    vial->rows_half_angle_rad = 0;
+  }
   state_->clear = make_operator(state_->beam);
 }
 

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "base/compute/per_slice.hpp"
 #include "base/compute/slab.hpp"
 #include "light/operators/operator.hpp"
 #include "optimize/methods/method.hpp"
@@ -49,6 +50,27 @@ inline double adjoint_error(const vam::light::Operator& light) {
   vam::Slab projected(light.sinogram().width, light.sinogram().height);
   light.forward({&f, 1}, {&projected, 1});
   return std::abs(dot(projected, g) - dot(f, dose_of(light, g))) / std::sqrt(dot(projected, projected) * dot(g, g));
+}
+
+/// Of a grid of `count` slabs.
+inline double adjoint_error_of_volume(const vam::light::Operator& light, std::size_t count) {
+  std::vector<vam::Slab> f, g;
+  for (unsigned s = 0; s < count; ++s) {
+    f.push_back(noise(light.object(), 10 + s));
+    g.push_back(noise(light.sinogram(), 20 + s));
+  }
+  std::vector<vam::Slab> projected = vam::slabs(count, light.sinogram().width, light.sinogram().height);
+  std::vector<vam::Slab> dose = vam::slabs(count, light.object().width, light.object().height);
+  light.forward(f, projected);
+  light.adjoint(g, dose);
+  double left = 0, right = 0, size = 0, given = 0;
+  for (std::size_t s = 0; s < count; ++s) {
+    left += dot(projected[s], g[s]);
+    right += dot(f[s], dose[s]);
+    size += dot(projected[s], projected[s]);
+    given += dot(g[s], g[s]);
+  }
+  return std::abs(left - right) / std::sqrt(size * given);
 }
 
 /// The preconditioner must be symmetric and positive definite.

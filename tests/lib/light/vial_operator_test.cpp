@@ -118,26 +118,6 @@ VialSetup climbing(int size, int slices, int angles) {
   return setup;
 }
 
-double adjoint_error_of_volume(const VialOperator& light, std::size_t count) {
-  std::vector<Slab> f, g;
-  for (unsigned s = 0; s < count; ++s) {
-    f.push_back(parts::noise(light.object(), 10 + s));
-    g.push_back(parts::noise(light.sinogram(), 20 + s));
-  }
-  std::vector<Slab> projected = slabs(count, light.sinogram().width, light.sinogram().height);
-  std::vector<Slab> dose = slabs(count, light.object().width, light.object().height);
-  light.forward(f, projected);
-  light.adjoint(g, dose);
-  double left = 0, right = 0, size = 0, given = 0;
-  for (std::size_t s = 0; s < count; ++s) {
-    left += parts::dot(projected[s], g[s]);
-    right += parts::dot(f[s], dose[s]);
-    size += parts::dot(projected[s], projected[s]);
-    given += parts::dot(g[s], g[s]);
-  }
-  return std::abs(left - right) / std::sqrt(size * given);
-}
-
 }  // namespace
 
 TEST_CASE("voxels a quarter of a turn apart share their rays: the dose is that of a grid whose voxels do not") {
@@ -208,23 +188,23 @@ TEST_CASE("A of a part of the grid is that of the whole whose other slices are d
 }
 
 TEST_CASE("with skew rays A and A* are adjoint, with slices that do not fill the slabs and around an insert") {
-  CHECK(adjoint_error_of_volume(VialOperator(climbing(40, 43, 60)), 3) < 1e-5);
+  CHECK(parts::adjoint_error_of_volume(VialOperator(climbing(40, 43, 60)), 3) < 1e-5);
   VialSetup turned = climbing(33, 70, 37);
   turned.direction = -1;
   turned.angle_offset_rad = 0.4;
   turned.absorption_per_mm = 0.07;
   turned.rows = 75;
   turned.first_row_mm = 2.3;
-  CHECK(adjoint_error_of_volume(VialOperator(turned), 5) < 1e-5);
+  CHECK(parts::adjoint_error_of_volume(VialOperator(turned), 5) < 1e-5);
   VialSetup wide = climbing(40, 20, 48);
   wide.radius_mm = 12.7;  // beyond the reach, where rays fold
   wide.grid = model::centred_grid(40, 40, 20, 25.0 / 40, 3);
-  CHECK(adjoint_error_of_volume(VialOperator(wide), 2) < 1e-5);
+  CHECK(parts::adjoint_error_of_volume(VialOperator(wide), 2) < 1e-5);
   std::vector<Slab> cross = slabs(2, 40, 40);
   for (int k = 8; k < 20; ++k) {
     for (int j = 15; j < 22; ++j) cross[k / lanes].at(18, j)[k % lanes] = 1;
   }
-  CHECK(adjoint_error_of_volume(VialOperator(climbing(40, 32, 36), cross), 2) < 1e-5);
+  CHECK(parts::adjoint_error_of_volume(VialOperator(climbing(40, 32, 36), cross), 2) < 1e-5);
 }
 
 namespace {
@@ -245,7 +225,7 @@ TEST_CASE("in every pose A and A* are adjoint, with more slices than rows and wi
     VialSetup tall = posed(climbing(33, 70, 37), 37, moves);
     tall.rows = 40;
     tall.first_row_mm = 4.3;
-    CHECK(adjoint_error_of_volume(VialOperator(tall), 5) < 1e-5);
+    CHECK(parts::adjoint_error_of_volume(VialOperator(tall), 5) < 1e-5);
     VialSetup wide = posed(climbing(40, 20, 48), 48, moves);
     wide.absorption_per_mm = 0.07;
     wide.direction = -1;
@@ -253,11 +233,11 @@ TEST_CASE("in every pose A and A* are adjoint, with more slices than rows and wi
     wide.grid = model::centred_grid(40, 40, 20, 25.0 / 40, 3);
     wide.rows = 30;
     wide.first_row_mm = 1;
-    CHECK(adjoint_error_of_volume(VialOperator(wide), 2) < 1e-5);
+    CHECK(parts::adjoint_error_of_volume(VialOperator(wide), 2) < 1e-5);
     VialSetup level = posed(climbing(40, 20, 48), 48, moves);
     level.view.rows_lens_mm.reset();
     level.z_scale = 1;
-    CHECK(adjoint_error_of_volume(VialOperator(level), 2) < 1e-5);
+    CHECK(parts::adjoint_error_of_volume(VialOperator(level), 2) < 1e-5);
   }
 }
 

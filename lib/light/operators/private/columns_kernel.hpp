@@ -9,7 +9,9 @@ namespace vam::light {
      the columns `next` floats further on */                                                                   \
   void copy_columns(const float* from, int columns, int count, int pitch, long next, float* to);               \
   /* to[c][i] += from[c][i], the other way */                                                                  \
-  void add_columns(const float* from, int columns, int count, int pitch, long next, float* to);
+  void add_columns(const float* from, int columns, int count, int pitch, long next, float* to);                \
+  /* to[i] = weights[0] from[i] + weights[k] (from[i - k] + from[i + k]), k <= half, i < count, whole slabs */ \
+  void spread_rows(const float* weights, int half, int count, const float* from, float* to);
 
 namespace baseline {
 VAM_COLUMNS_KERNELS

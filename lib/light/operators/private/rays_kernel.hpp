@@ -6,12 +6,12 @@
 
 namespace vam::light {
 
-/// The light on a tile: columns of `rows` floats each.
+/// The light on a tile: columns of `pitch` floats each, of which `rows` from number `first` on reach the voxels.
 struct TileColumns {
   float* light;
-  const float* ends_mm;   // where a pixel's ray meets an insert, as `light`; null: none of them does
-  const float* depth_mm;  // [tap][ray] of the voxel on the ray of that tap's column
-  int rows;               // whole slabs of them, most_tile_rows at most
+  const float* ends_mm;    // where a pixel's ray meets an insert, as `light`; null: none of them does
+  const float* depth_mm;   // [tap][ray] of the voxel on the ray of that tap's column
+  int pitch, first, rows;  // whole slabs, most_tile_rows at most
 };
 
 inline constexpr int most_tile_rows = 192;

@@ -25,9 +25,12 @@ struct AngleTaps {
   int angle = 0;
   bool lit = false;
   RayTaps taps{};
-  int row = 0;      // of the light that the tile's columns begin with
-  int rows = 0;     // floats of a column
+  int row = 0;    // of the light that the tile's columns begin with
+  int rows = 0;   // floats of a column
+  int first = 0;  // those that light the voxels, but for what spreads
+  int used = 0;
   int columns = 0;  // of the tile
+  int spread = 0;   // of its rows, VialRays::spread()
   std::vector<VoxelRay> posed;
   std::vector<int> cells;
   std::vector<float, CacheAligned<float>> floats;
@@ -62,6 +65,7 @@ class TileLight {
   void give(const TileTaps& taps, const Window<Slab>& sinograms);
 
  private:
+  using Light = std::vector<float, CacheAligned<float>>;
   template <class Visit>
   void each_voxel(const Visit& visit) const;
   template <class SlabType, class Visit>
@@ -71,10 +75,13 @@ class TileLight {
   void find_angle(const RayNodes& nodes, AngleTaps& to);
   void find_posed(AngleTaps& to);
   void fetch(const AngleTaps& from, int angle, const Window<const Slab>& sinograms);
-  void put_back(const AngleTaps& to, int angle, const Window<Slab>& sinograms) const;
+  void put_back(const AngleTaps& to, int angle, const Window<Slab>& sinograms);
+  [[nodiscard]] int spread_of(const AngleTaps& at) const;
+  /// Of the rows of `from`, to `to`.
+  void spread(const AngleTaps& over, const Light& from, Light& to) const;
   void cast_shadow(const AngleTaps& from, int angle);
   [[nodiscard]] bool shadowed(const AngleTaps& from, int angle) const;
-  [[nodiscard]] TileColumns columns(const AngleTaps& from, int angle);
+  [[nodiscard]] TileColumns columns(const AngleTaps& from, int angle, Light& light);
   /// The rays of the voxels that are loaded.
   [[nodiscard]] const std::vector<VoxelRay>& rays_of(const AngleTaps& from) const {
     return rays_.posed() ? from.posed : voxel_rays_;
@@ -89,7 +96,8 @@ class TileLight {
   bool bright_only_ = false;
   std::vector<VoxelRay> voxel_rays_;  // of the voxels that are loaded
   RayNodes posed_nodes_;              // of one frame
-  std::vector<float, CacheAligned<float>> voxels_, light_, ends_, depth_;
+  Light light_, spread_;              // most_spread_rows floats before and after the columns
+  std::vector<float, CacheAligned<float>> voxels_, ends_, depth_;
 };
 
 }  // namespace vam::light

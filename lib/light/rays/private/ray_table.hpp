@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/compute/slab.hpp"
+#include "light/rays/private/light_spread.hpp"
 #include "light/rays/private/taps_kernel.hpp"
 #include "optics/chief_ray.hpp"
 
@@ -39,21 +40,27 @@ struct TableNode {
   float cosine = 1, sine = 0;                  // of the ray's angle in plan
 };
 
-/// The node at one height.
-inline RayNode node_at(const TableNode& node, const HeightScale& scale) {
+/// The depth of a point of the plan view on the ray.
+inline float depth_mm(const TableNode& node, float x_mm, float y_mm) { return y_mm * node.cosine - x_mm * node.sine; }
+
+/// The node at one height, the point (x, y) of the plan view.
+inline RayNode node_at(const TableNode& node, const HeightScale& scale, const LightSpread& spread, float x_mm,
+                       float y_mm) {
   const float z2 = scale.z2;
   const auto value = [z2](const TableNode::Even& even) { return even[0] + z2 * (even[1] + z2 * even[2]); };
   const float g = value(node.row);
   const float g_rate = 2 * z2 * (node.row[1] + 2 * z2 * node.row[2]);  // z dg/dz
   const float strength = value(node.strength);
-  return {scale.columns_per_mm * value(node.x_p) + scale.column_origin,
+  const float x_p = value(node.x_p);
+  const float spacing = value(node.spacing);
+  return {scale.columns_per_mm * x_p + scale.column_origin,
           scale.row_rate * g + scale.row_origin,
           scale.rows_per_slice * (g + g_rate),
           strength > 0 ? strength : 0.0F,
-          scale.columns_per_voxel * value(node.spacing),
+          scale.columns_per_voxel * spacing,
           node.cosine,
           node.sine,
-          0};
+          spread.across() ? spread.across2(x_p, depth_mm(node, x_mm, y_mm), scale.columns_per_mm * spacing) : 0.0F};
 }
 
 struct ChiefRayDose;
@@ -95,6 +102,7 @@ class RayTable {
     double r_max_mm = 0;   // radii up to this are needed
     double voxel_mm = 0;   // edge of a voxel
     double height_mm = 0;  // largest |z| above or below the lens's axis that is needed
+    LightSpread spread;
   };
   explicit RayTable(const Scope& scope);
 
@@ -111,6 +119,10 @@ class RayTable {
     return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
   [[nodiscard]] bool climbs() const { return climbs_; }
+  [[nodiscard]] const LightSpread& spread() const { return scope_.spread; }
+  /// Standard deviation of the spread along z of the light that passes a point of the plan view, in mm of the image
+  /// plane.
+  [[nodiscard]] double spread_along_mm(double x_mm, double y_mm) const;
   /// Largest change of x_p, in mm of the image plane, from one height to another, at that radius.
   [[nodiscard]] double drift_mm(double from_mm, double to_mm, double r_mm) const;
 
@@ -132,7 +144,8 @@ class RayTable {
 
   Scope scope_;
   bool climbs_ = false;
-  std::vector<TableNode> nodes_;  // [zone, row, sheet][direction]
+  std::vector<float> cosines_, sines_;  // of the directions
+  std::vector<TableNode> nodes_;        // [zone, row, sheet][direction]
 };
 
 }  // namespace vam::light

@@ -15,7 +15,7 @@ struct alignas(32) RayNode {
   float edge;      // of a voxel's edge across the ray, in columns
   float cosine;    // of the ray's angle in plan
   float sine;
-  float unused;
+  float spread2;  // of the light about the ray: the square of the edge of the box with that variance, in columns^2
 };
 
 /// A point between four nodes of the table at stage angle 0: two radii, and two directions one after the other.
@@ -35,12 +35,13 @@ struct RayFrame {
   float sine;
   float last_column;  // columns are held within [0, last]
   float half;         // slices from the chunk's first one to its middle
-  bool climbs;
+  bool spreads;
   int taps;  // at most
 };
 
-#define VAM_TAPS_KERNEL                                                              \
-  /* The exact mean of box pixels over a square voxel: its shadow is a trapezoid. */ \
+#define VAM_TAPS_KERNEL                                                                                             \
+  /* The exact mean of box pixels over a square voxel: its shadow is a trapezoid. Light that spreads widens it, and \
+     its variance by exactly its own. */                                                                            \
   void find_taps(const RayNode* nodes, const RaySource* sources, int count, const RayFrame& frame, RayTaps& taps);
 
 namespace baseline {
