@@ -23,12 +23,14 @@ struct Projector {
   std::string response;                    // CSV "grey,intensity"; empty = linear
   int bits = 8;
   double fps = 16;
-  double axis_column = 511.5;           // where the rotation axis appears
-  double axis_row = 383.5;              // the row of z = 0 of a centred part
-  std::string orientation = "normal";   // normal, flip-columns, flip-rows, rotate-180
-  double latency_ms = 0;                // from a vertical blank to the light
-  double max_led_current_percent = 40;  // of the light engine; more is refused
-  std::string relay;                    // dead-man relay on the lamp's power; empty: none
+  double axis_column = 511.5;            // where the rotation axis appears
+  double axis_row = 383.5;               // the row of z = 0 of a centred part
+  std::string orientation = "normal";    // normal, flip-columns, flip-rows, rotate-180
+  std::optional<double> half_angle_deg;  // of the light of a pixel in the image, in air: the lens's aperture; absent: 0
+  std::optional<double> focus_mm;        // of the image in air, behind the axis; absent: 0
+  double latency_ms = 0;                 // from a vertical blank to the light
+  double max_led_current_percent = 40;   // of the light engine; more is refused
+  std::string relay;                     // dead-man relay on the lamp's power; empty: none
 
   /// The rotation axis is in the image, whose first pixel is around 0.
   [[nodiscard]] bool shows_axis() const { return axis_column >= -0.5 && axis_column <= columns - 0.5; }
@@ -62,6 +64,7 @@ struct PrinterStage {
   double speed_deg_s = 10;
   int turns = 1;
   int direction = 1;  // +1: the vial turns clockwise seen from above and theta increases; -1: the other way
+  std::string motion = "stepped";  // during a frame: stepped, the stage stands; held, or interpolated, it turns
 };
 
 struct PrinterCamera {

@@ -78,11 +78,13 @@ void place_poses(Scene& scene, const model::Grid& part) {
   scene.margin.above += std::max(0, scene.rows - scene.grid.nz);
 }
 
-/// auto: footprints where the light is absorbed or blocked.
-light::LineIntegrals integrals_of(const Scene& scene, const JobOptions& options, double mu, bool inserts) {
-  if (options.line_integrals == "fourier") return light::fourier_for(scene.grid.nz);
-  if (options.line_integrals == "footprints" || mu > 0 || inserts) return light::LineIntegrals::footprints;
-  return light::quicker_for(scene.grid.nz, scene.turn);
+/// auto: footprints where the light is absorbed or blocked, or has width.
+light::LineIntegrals integrals_of(const light::ParallelBeam& beam, int slices, const JobOptions& options,
+                                  bool inserts) {
+  if (options.line_integrals == "fourier") return light::fourier_for(slices);
+  const bool plain = !(beam.mu_per_px > 0 || beam.has_width() || inserts);
+  if (options.line_integrals == "footprints" || !plain) return light::LineIntegrals::footprints;
+  return light::quicker_for(slices, beam.turn);
 }
 
 light::Beam beam_of(const Scene& scene, const JobOptions& options, bool inserts) {
@@ -90,9 +92,11 @@ light::Beam beam_of(const Scene& scene, const JobOptions& options, bool inserts)
   const double voxel_mm = scene.grid.voxel_mm;
   const model::Printer printer = modelled(scene.printer, options);
   const double mu = printer.resin.absorption_per_mm * voxel_mm;
-  return light::ParallelBeam{scene.turn, mu, model::resin_radius_mm(printer.vial) / voxel_mm,
-                             options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact,
-                             integrals_of(scene, options, mu, inserts)};
+  light::ParallelBeam beam{scene.turn, mu, model::resin_radius_mm(printer.vial) / voxel_mm,
+                           options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact};
+  light::give_width(beam, printer);
+  beam.integrals = integrals_of(beam, scene.grid.nz, options, inserts);
+  return beam;
 }
 
 std::string reaches(const JobOptions& options, double farthest_mm) {

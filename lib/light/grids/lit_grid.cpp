@@ -5,10 +5,14 @@
 #include <array>
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "base/index.hpp"
+#include "model/circle.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
+#include "optics/bundle.hpp"
 #include "optics/skew_ray.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::light {
 
@@ -23,6 +27,22 @@ double climb_ratio(const model::Printer& printer, double radius_mm) {
   return std::max(near, far) / std::min(near, far);
 }
 
+/// How far the light of a point spreads along z within the circle.
+double spread_mm(const model::Printer& printer, double radius_mm) {
+  const double half_angle_rad = printer.projector.half_angle_deg.value_or(0) * rad_per_deg;
+  if (half_angle_rad == 0) return 0;
+  const optics::View view = optics::projector_view(printer);
+  const double edge_mm = std::min(radius_mm, 0.99 * optics::reach_mm(view));
+  double most = 0;
+  for (const double t_mm : {0.0, 0.5 * edge_mm, edge_mm}) {
+    const double x_p_mm = optics::column_of(view, t_mm).value().x_p_mm;
+    const optics::Bundle rays = optics::bundle(view, x_p_mm, printer.projector.focus_mm.value_or(0));
+    const double u_mm = model::half_chord(radius_mm, t_mm);
+    for (const double u : {-u_mm, u_mm}) most = std::max(most, std::abs(rays.height_rate_mm + u * rays.climb_rate));
+  }
+  return half_angle_rad * most;
+}
+
 }  // namespace
 
 Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm, const model::Poses& poses) {
@@ -35,7 +55,8 @@ Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double
   const model::LiftRange lift = model::lift_mm(poses);
   const double scale = model::vertical_magnification(printer);
   if (lift.least != 0 || lift.most != 0) margin.above = margin.below = 1;
-  if (ratio == 1) return margin;
+  const double width_mm = spread_mm(printer, radius_mm) / scale;
+  if (ratio == 1 && width_mm == 0) return margin;
   const model::Projector& p = printer.projector;
   const double lowest_mm = model::z_mm(p, p.rows - 1);
   const double highest_mm = model::z_mm(p, 0);
@@ -46,8 +67,8 @@ Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double
     const auto in_image = [&](double lift_mm) { return std::clamp(end_mm + lift_mm / scale, lowest_mm, highest_mm); };
     return std::max(spread(sign * in_image(lift.least)), spread(sign * in_image(lift.most)));
   };
-  margin.above = voxels(most(grid.z_mm(grid.nz - 1), 1)) + 1;
-  margin.below = voxels(most(grid.z_mm(0), -1)) + 1;
+  margin.above = voxels(most(grid.z_mm(grid.nz - 1), 1) + width_mm) + 1;
+  margin.below = voxels(most(grid.z_mm(0), -1) + width_mm) + 1;
   return margin;
 }
 

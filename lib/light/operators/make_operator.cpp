@@ -40,10 +40,32 @@ std::unique_ptr<Operator> operator_of(const VialSetup& setup, std::span<const Sl
   return std::make_unique<VialOperator>(setup, inserts);
 }
 
+/// The same beam, from a projector whose rays are parallel in a vial that refracts nothing, in voxels.
+VialSetup vial_of(const ParallelBeam& beam) {
+  const tomo::ParallelGeometry& turn = beam.turn;
+  VialSetup setup;
+  setup.view.shells = {{beam.resin_radius_px, 1}};
+  setup.projector = optics::centred_detector(turn.columns, 1);
+  setup.turn = {turn.angles, turn.angle_start_rad, turn.angle_step_rad};
+  setup.absorption_per_mm = beam.mu_per_px;
+  setup.hold_rad = beam.hold_rad;
+  setup.half_angle_rad = beam.half_angle_rad;
+  setup.grid = model::centred_grid(turn.nx, turn.ny, 1, 1);
+  setup.grid.origin_mm[0] = -turn.axis_x;
+  setup.grid.origin_mm[1] = -turn.axis_y;
+  return setup;
+}
+
 std::unique_ptr<Operator> operator_of(const ParallelBeam& beam, std::span<const Slab> inserts) {
   const double mu = beam.mu_per_px;
   if (beam.integrals != LineIntegrals::footprints && (mu > 0 || !inserts.empty())) {
     throw Error{Fault::usage, "Fourier slices do not apply to light that is absorbed or blocked; use footprints"};
+  }
+  if (beam.has_width()) {
+    if (beam.integrals == LineIntegrals::footprints) return operator_of(vial_of(beam), inserts);
+    throw Error{Fault::usage,
+                "Fourier slices do not apply to light that has width; use footprints, or stage.motion "
+                "stepped without projector.half_angle_deg"};
   }
   if (!inserts.empty()) {
     if (mu > 0 && beam.correction == Correction::disc) {
@@ -64,8 +86,15 @@ Beam beam_of(const model::Printer& printer, const optics::AxisAlignment& alignme
   if (info.space != model::Space::virtual_) {
     throw Error{Fault::data, "sinogram: a camera sinogram has no dose; a projector or virtual sinogram is required"};
   }
-  return ParallelBeam{parallel_turn(info, grid), printer.resin.absorption_per_mm * grid.voxel_mm,
-                      model::resin_radius_mm(printer.vial) / grid.voxel_mm};
+  ParallelBeam beam{parallel_turn(info, grid), printer.resin.absorption_per_mm * grid.voxel_mm,
+                    model::resin_radius_mm(printer.vial) / grid.voxel_mm};
+  give_width(beam, printer);
+  return beam;
+}
+
+void give_width(ParallelBeam& beam, const model::Printer& printer) {
+  beam.hold_rad = hold_rad(printer, beam.turn.angle_step_rad);
+  beam.half_angle_rad = printer.projector.half_angle_deg.value_or(0) * rad_per_deg / printer.bath.index;
 }
 
 LineIntegrals fourier_for(int slices) { return slices == 1 ? LineIntegrals::fourier_of_one : LineIntegrals::fourier; }

@@ -28,7 +28,15 @@ struct ParallelBeam {
   double resin_radius_px = 0;
   Correction correction = Correction::exact;
   LineIntegrals integrals = LineIntegrals::footprints;
+  double hold_rad = 0;        // the stage turns by it while a frame is shown
+  double half_angle_rad = 0;  // of bundles whose focus is on the axis; seen along the rotation axis only
+
+  [[nodiscard]] bool has_width() const { return hold_rad > 0 || half_angle_rad > 0; }
 };
+
+/// As the turning stage and the lens spread it: what aims at the axis of a round vial keeps its angle, behind a flat
+/// window it is refracted.
+void give_width(ParallelBeam& beam, const model::Printer& printer);
 
 /// A virtual projector's light, or the chief rays of a real one.
 using Beam = std::variant<ParallelBeam, VialSetup>;

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"
+#include "model/light_width.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
 
@@ -27,6 +28,8 @@ VialSetup on_the_bench(const model::Printer& printer, const optics::AxisAlignmen
   setup.absorption_per_mm = printer.resin.absorption_per_mm;
   setup.grid = grid;
   setup.z_scale = model::vertical_magnification(printer);
+  setup.half_angle_rad = setup.rows_half_angle_rad = printer.projector.half_angle_deg.value_or(0) * rad_per_deg;
+  setup.focus_mm = printer.projector.focus_mm.value_or(0);
   return setup;
 }
 
@@ -46,9 +49,14 @@ void require_slices_of(const model::Grid& grid, const model::StackInfo& info) {
 
 }  // namespace
 
+double hold_rad(const model::Printer& printer, double step_rad) {
+  return model::light_width(printer, step_rad * deg_per_rad).hold_deg * rad_per_deg;
+}
+
 VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles, double radius_mm) {
   VialSetup setup = on_the_bench(printer, {}, grid);
   setup.turn = {angles, 0, 2 * std::numbers::pi / angles};
+  setup.hold_rad = hold_rad(printer, setup.turn.step_rad);
   setup.radius_mm = radius_mm;
   const model::Projector& p = printer.projector;
   setup.lowest_mm = model::z_mm(p, p.rows - 1);
@@ -83,6 +91,7 @@ VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment&
   require_columns_of(setup.projector, info);
   require_slices_of(grid, info);
   setup.turn = optics::turn_of(info);
+  setup.hold_rad = hold_rad(printer, setup.turn.step_rad);
   setup.poses = info.poses;
   setup.rows = info.count;
   setup.first_row_mm = info.z_start_mm;

@@ -53,6 +53,9 @@ void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& 
 [[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment& alignment,
                                    const model::StackInfo& info, const model::Grid& grid);
 
+/// Width of the box of stage angles over which a frame of projections that are so far apart is shown.
+[[nodiscard]] double hold_rad(const model::Printer& printer, double step_rad);
+
 /// The setup with numbers for what 0 stands for. Throws Fault::data unless the rows are one turn.
 [[nodiscard]] VialSetup completed(VialSetup setup);
 
