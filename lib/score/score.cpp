@@ -249,6 +249,7 @@ verdict::Verdict Score::verdict() const {
   verdict::set_pieces(verdict, pieces_);
   if (std::isfinite(duration_s) && !options_.threshold) verdict.seconds = duration_s;  // else that of another print
   verdict.threshold = options_.threshold;
+  verdict.light = options_.light;
   return verdict;
 }
 

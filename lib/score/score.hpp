@@ -10,6 +10,7 @@
 #include "model/circle.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/dose/outside.hpp"
+#include "model/light_width.hpp"
 #include "model/printer.hpp"
 #include "score/exposure_plan.hpp"
 #include "verdict/print_pieces.hpp"
@@ -33,6 +34,7 @@ struct ScoreOptions {
   double trim = 0.02;                   // alpha: extremes are also given at the alpha/2 percentiles
   std::optional<double> threshold;      // the critical dose, in the dose's unit; none: that of the planned exposure
   std::optional<double> aimed_at;       // the threshold that its light was made for, in the dose's unit
+  model::LightWidth light;              // of the dose, as it states it
   std::optional<Exposure> exposure;     // known when the dose is in mJ/cm3
   std::optional<model::VoxelBox> part;  // its box; none: what lies outside it is not told
   std::optional<model::VoxelisedSurface> own_surface;  // of the part; none: it is not known

@@ -12,6 +12,7 @@
 #include "io/vdb/covered.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/grid_size.hpp"
+#include "model/light_width.hpp"
 #include "model/metadata.hpp"
 #include "optics/writable_radius.hpp"
 #include "session/volumes.hpp"
@@ -73,6 +74,7 @@ void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, co
                       const model::Printer& printer) {
   how.circle = scoring_circle(target, printer);
   how.voxel_mm = target.grid().voxel_mm;
+  how.light = model::stated_width(dose.metadata);
   how.aimed_at = model::threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
   how.own_surface = own_surface(target);

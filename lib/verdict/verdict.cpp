@@ -162,6 +162,7 @@ std::string words(const Verdict& verdict, const std::string& instead) {
   }
   if (judged > Answer::no && verdict.pieces && !words(*verdict.pieces).empty()) line += "; " + words(*verdict.pieces);
   line += unjudged(verdict.unresolved);
+  if (verdict.light != model::LightWidth{}) line += "; by " + model::words(verdict.light);
   if (verdict.seconds) line += "; duration " + format_number(*verdict.seconds, 4) + " s";
   return line;
 }

@@ -9,6 +9,7 @@
 
 #include "base/text/json_fwd.hpp"
 #include "model/dose/dose_metrics.hpp"
+#include "model/light_width.hpp"
 #include "verdict/print_pieces.hpp"
 #include "verdict/unresolved.hpp"
 
@@ -22,6 +23,7 @@ struct Verdict {
   std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
   Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
   std::optional<PrintPieces> pieces = std::nullopt;  // none: not counted
+  model::LightWidth light = {};                      // that the doses are of
 };
 
 enum class Answer {

@@ -53,6 +53,22 @@ is "seconds" "$(json flat.json duration_to_critical_max_s)" 108.0
 ok "half the intensity at full scale 1" vam-dose flat.exr $flat --size 0.065 --full-scale 1 -o half.vdb --report half.json
 holds "gives half the dose" "($(json half.json dose_per_turn_max_mj_cm3) / $(json flat.json dose_per_turn_max_mj_cm3) - 0.5)^2 < 1e-10"
 
+# Width: frames that are held while the stage turns, and the aperture of the lens
+for width in '' 'stage.motion=held' 'projector.half_angle_deg=1.5' 'stage.motion=interpolated projector.half_angle_deg=1.5'; do
+  set --; for key in $width; do set -- "$@" --set $key; done
+  vam-dose frames.exr --like part.vdb "$@" | vam-score --target part.vdb --report wide.json >/dev/null
+  printf '%s %s\n' "$(json wide.json pw)" "$(json wide.json verdict | sed 's/.*; by //')"
+done >widths
+holds "every width takes some of the process window" \
+  "$(awk 'NR == 1 { first = $1 } NR > 1 && !($1 < first) { bad = 1 } END { print bad + 0 }' widths) == 0"
+is "the verdict states the width" "$(sed -n 4p widths | cut -d' ' -f2-)" \
+  "light of half angle 1.5 deg, each frame over 1.55 deg of the stage"
+holds "a virtual projector's light has it, too" \
+  "$(vam-dose virtual.exr --like part.vdb --set stage.motion=held | vam-score --target part.vdb | awk '/^pw/ { print $2 }') != $(vam-score parallel.vdb --target part.vdb | awk '/^pw/ { print $2 }')"
+fails 64 'half_angle_deg' vam-dose frames.exr --like part.vdb --set projector.half_angle_deg=-1 -o out.vdb
+fails 64 'half_angle_deg' vam-dose frames.exr --like part.vdb --set projector.half_angle_deg=6 -o out.vdb
+fails 64 'motion' vam-dose frames.exr --like part.vdb --set stage.motion=fast -o out.vdb
+
 # An exposure: whole turns, and the critical dose in the middle of the process window
 resin="--set resin.absorption_per_mm=0.01 --set resin.critical_dose_mj_cm3=100"
 ok "a turn at full intensity" vam-dose frames.exr --like part.vdb $resin -o turn.vdb --report turn.json

@@ -11,6 +11,7 @@
 #include "light/grids/lit_grid.hpp"
 #include "light/grids/poses.hpp"
 #include "model/dose/dose_metrics.hpp"
+#include "model/light_width.hpp"
 #include "optics/writable_radius.hpp"
 #include "session/volumes.hpp"
 
@@ -80,6 +81,7 @@ io::SparseVolume empty_volume(const cli::App& app, const Place& place, const mod
   volume.metadata = info.extra;
   if (place.like != nullptr) volume.metadata.insert(place.like->metadata.begin(), place.like->metadata.end());
   volume.metadata["vam:printer"] = io::printer_settings(printer);
+  model::state_width(volume.metadata, model::light_width(printer, info.angle_step_deg));
   volume.history = info.history;
   volume.history.push_back(app.history());
   return volume;

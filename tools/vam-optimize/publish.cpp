@@ -15,6 +15,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
+#include "model/light_width.hpp"
 #include "model/magnification.hpp"
 #include "model/metadata.hpp"
 #include "optimize/run/limited_by.hpp"
@@ -136,6 +137,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     if (outcome.all_cut) verdict.whole.part = 0;
     if (plan) verdict.seconds = plan->seconds;
     verdict.threshold = fixed_threshold(options);
+    verdict.light = model::light_width(printer, info.angle_step_deg);
     verdict.unresolved = session::sub_voxel_features(target);
     set_pieces(verdict, outcome.pieces);
     if (verdict.pieces) verdict.pieces->set_places(scene.grid, model::stretch_z(target.metadata));

@@ -9,6 +9,7 @@
 #include "base/text/text.hpp"
 #include "model/coarser.hpp"
 #include "model/dose/outside.hpp"
+#include "model/light_width.hpp"
 #include "optics/writable_radius.hpp"
 #include "optimize/run/preview.hpp"
 #include "resin/absolute_dose.hpp"
@@ -70,6 +71,7 @@ optimize::Preview preview_of(const Level& level, const model::Projector& project
 /// What the voxels of the print lose is lost whatever these show.
 verdict::Verdict verdict_of(const Level& level, const EstimateTask& task, const optimize::VolumeOutcome& outcome) {
   verdict::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
+  verdict.light = model::light_width(level.printer, 360.0 / optimize::PreviewTask{}.angles);
   verdict.unresolved = is_lost(task.unresolved) ? task.unresolved : level.unresolved();
   set_pieces(verdict, outcome.pieces);
   return verdict;
