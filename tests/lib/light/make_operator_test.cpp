@@ -3,6 +3,7 @@
 
 #include <variant>
 
+#include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
@@ -88,4 +89,44 @@ TEST_CASE("the light of a virtual sinogram is that of its columns, in voxels of 
   CHECK(fault_of([&] { (void)of(); }) == Fault::data);
   info.space = model::Space::camera;
   CHECK(fault_of([&] { (void)of(); }) == Fault::data);
+}
+
+TEST_CASE("frames of a virtual projector that are held light what parallel light does at the angles between") {
+  constexpr int size = 64, angles = 45, parts_of_step = 16;
+  ParallelBeam beam{parts::turn(size, angles), 0.01, 40};
+  const double step = beam.turn.angle_step_rad;
+  const auto dose_of = [](const ParallelBeam& light) {
+    const auto how = make_operator(light);
+    Slab image(how->image().width, how->image().height), g(how->sinogram().width, how->sinogram().height);
+    for (int a = 0; a < image.height; ++a) {
+      for (int c = 0; c < image.width; ++c) *image.at(c, a) = static_cast<float>(1 + std::sin(0.8 * c + 2.3 * a));
+    }
+    how->collapse(image, g);
+    return parts::dose_of(*how, g);
+  };
+  ParallelBeam held = beam;
+  held.hold_rad = std::abs(step);
+  CHECK(is<VialOperator>(make_operator(held)));
+  const Slab dose = dose_of(held);
+  std::vector<double> mean(dose.values.size());
+  for (int part = 0; part < parts_of_step; ++part) {
+    ParallelBeam turned = beam;
+    turned.turn.angle_start_rad += step * ((part + 0.5) / parts_of_step - 0.5);
+    const Slab here = dose_of(turned);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += static_cast<double>(here.values[i]) / parts_of_step;
+  }
+  const Slab thin = dose_of(beam);
+  double worst = 0, without = 0;
+  for (int j = 0; j < size; ++j) {
+    for (int i = 0; i < size; ++i) {
+      if (std::hypot(i - 31.5, j - 31.5) > 28) continue;
+      const double want = mean[static_cast<std::size_t>(dose.at(i, j) - dose.values.data())];
+      worst = std::max(worst, std::abs(static_cast<double>(*dose.at(i, j)) - want));
+      without = std::max(without, std::abs(static_cast<double>(*thin.at(i, j)) - want));
+    }
+  }
+  CHECK(worst < 0.02);  // of some 6
+  CHECK(without > 0.1);
+  held.integrals = LineIntegrals::fourier;
+  CHECK(fault_of([&] { (void)make_operator(held); }) == Fault::usage);
 }
