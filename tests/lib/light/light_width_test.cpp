@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "base/error.hpp"
-#include "fault_of.hpp"
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "oracle/lens_dose.hpp"
+#include "testing.hpp"
 
 using namespace vam;
 using namespace vam::light;
