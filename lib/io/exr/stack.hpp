@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "model/metadata.hpp"
 #include "model/stack.hpp"
 
 namespace vam::io {
@@ -15,6 +16,7 @@ namespace vam::io {
 struct StackOptions {
   bool half = false;                // store 16-bit floats
   std::string compression = "rle";  // none, rle, zip, zips, piz, pxr24; a pipe is always uncompressed
+  bool late = false;                // facts of the stack come after its images: state()
 };
 
 /// Reads a stack front to back. "-" is stdin; file or pipe, seekable or not, in constant memory.
@@ -58,6 +60,8 @@ class StackWriter {
   /// Facts that come only with the image. Images of one stack all have a measured angle (time), or none has. As they
   /// stand before the pixels, a pipe then receives the stack at commit(), out of a temporary file in $TMPDIR or /tmp.
   void write(const Image& image, const model::ImageInfo& about);
+  /// Facts in place of others of the same names and lengths; on a pipe with StackOptions::late only, as above.
+  void state(const model::Metadata& facts);
   void commit();
 
  private:

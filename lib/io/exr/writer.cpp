@@ -89,7 +89,8 @@ struct StackWriter::State {
   std::uint64_t position = 0;  // of the next chunk
   std::size_t head_bytes = 0;
   std::vector<Digest> seals;  // of the values, a part
-  bool trailing = false;      // they follow the pixels
+  bool late = false;          // some facts of the stack come after its images
+  bool trailing = false;      // the seals follow the pixels
   bool settled = false;       // the first image has decided what the headers hold
   std::vector<Image> waiting;
   std::size_t done = 0;  // images taken in
@@ -102,7 +103,8 @@ StackWriter::State::State(const std::string& path, const StackInfo& stack, std::
       info(stack),
       about(std::move(facts)),
       type(options.half ? Imf::HALF : Imf::FLOAT),
-      compression(compression_named(options.compression)) {
+      compression(compression_named(options.compression)),
+      late(options.late) {
   info.extra[version_name] = FormatKind("stack").version();
   if (out.is_stream()) compression = Imf::NO_COMPRESSION;
   const bool sane = info.width > 0 && info.height > 0 && info.count > 0 && info.width <= exr::max_side &&
@@ -170,7 +172,7 @@ std::uint64_t StackWriter::State::offset(std::size_t chunk) const {
 // be rewritten.
 void StackWriter::State::settle(const ImageInfo& own) {
   settled = true;
-  const bool late_facts = !same(own, about.front());
+  const bool late_facts = late || !same(own, about.front());
   for (ImageInfo& each : about) {
     each.has_angle = own.has_angle;
     each.has_time = own.has_time;
@@ -283,6 +285,9 @@ void StackWriter::write(const Image& image) {
   write(image, about[std::min(state_->done, about.size() - 1)]);
 }
 void StackWriter::write(const Image& image, const ImageInfo& about) { state_->put(image, about); }
+void StackWriter::state(const model::Metadata& facts) {
+  for (const auto& [name, value] : facts) state_->info.extra.at(name) = value;
+}
 void StackWriter::commit() { state_->finish(); }
 
 }  // namespace vam::io
