@@ -45,15 +45,14 @@ void declare(cli::App& app, Options& o) {
 }
 
 void run(const cli::App& app, Options& o) {
-  const model::Printer printer = session::load_printer(o.printer);
-  if (session::print_printer(o.printer, printer, o.output)) return;
+  if (session::print_printer(o.printer, o.output)) return;
   if (o.files.empty()) throw Error{Fault::usage, "FILE: give the files of a print, or their folder"};
   if (o.title.empty()) o.title = report_tool::file_name(o.files.front());
   plot::Page page;
   page.title = o.title;
   page.style = report_tool::page_style;
   page.script = report_tool::page_script;
-  page.body = report_tool::content(report_tool::gather(o.files), printer,
+  page.body = report_tool::content(report_tool::gather(o.files), o.printer,
                                    {o.title, app.history(), o.sections, o.projections, o.grey});
   io::write_text(o.output, plot::html(page));
 }

@@ -56,7 +56,9 @@ score::ScoreOptions judged(const Options& options, Companions& shown) {
   session::warn_of_grey(target, shown.file(), grey_remedy);
   score::ScoreOptions how;
   how.threshold = options.threshold;
-  session::resolve_exposure(how, shown.volume(), target, session::load_printer(options.printer));
+  session::resolve_exposure(
+      how, shown.volume(), target,
+      session::printer_of(options.printer, shown.volume().metadata, io::input_name(options.input)));
   return how;
 }
 

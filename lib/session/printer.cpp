@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/printer.hpp"
 
+#include <vector>
+
+#include "base/log/log.hpp"
+#include "base/printer_path.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/printer_match.hpp"
 #include "io/settings/response_file.hpp"
 #include "io/stream/stream.hpp"
 
@@ -9,13 +15,36 @@ namespace vam::session {
 
 model::Printer load_printer(const cli::PrinterOptions& options) { return io::load_printer(options.file, options.sets); }
 
+model::Printer printer_of(const cli::PrinterOptions& options, const model::Metadata& facts, const std::string& name,
+                          Role role) {
+  const auto stated = facts.find("vam:printer");
+  const std::string file = printer_path(options.file);
+  if (stated == facts.end() || (role == Role::instrument && !file.empty())) return load_printer(options);
+  const auto own = io::parse_settings(stated->second, name + ": vam:printer", options.sets);
+  if (file.empty()) return own;
+  const model::Printer other = load_printer(options);
+  std::vector<std::string> differences = io::dose_differences(own, other);
+  const auto critical = [](const model::Printer& printer) {
+    const auto& dose = printer.resin.critical_dose_mj_cm3;
+    return dose ? format_number(*dose) : std::string("not set");
+  };
+  if (critical(own) != critical(other))
+    differences.push_back("resin.critical_dose_mj_cm3 " + critical(own) + ", now " + critical(other));
+  const bool given = !options.file.empty();
+  if (!differences.empty()) {
+    warn(name + ": made for another printer than " + file + ": " + join(differences, "; ") +
+         (given ? "; the one given counts" : "; its own counts; --printer " + file + " judges by that"));
+  }
+  return given ? other : own;
+}
+
 bool print_printer(const cli::PrinterOptions& options, const model::Printer& printer, const std::string& output) {
   if (options.print) io::write_text(output, io::printer_toml(printer));
   return options.print;
 }
 
-bool print_printer(const cli::PrinterOptions& options) {
-  return options.print && print_printer(options, load_printer(options), "-");
+bool print_printer(const cli::PrinterOptions& options, const std::string& output) {
+  return options.print && print_printer(options, load_printer(options), output);
 }
 
 resin::Response response_of(const model::Projector& projector) {

@@ -23,8 +23,8 @@ constexpr double most_spread = 0.2;      // of the dose
 }  // namespace
 
 void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& options) {
-  const model::Printer printer = session::load_printer(options.printer);
   const io::SparseVolume sparse = session::read_dose(options.dose);
+  const model::Printer printer = session::printer_of(options.printer, sparse.metadata, options.dose);
   const bool total = model::stated_number(sparse.metadata, "vam:full_intensity_turns").has_value();
   if (!total && !options.turns) {
     throw Error{Fault::data,

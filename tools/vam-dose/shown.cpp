@@ -89,16 +89,8 @@ double intensity_of(const std::string& run, bool first, const model::Printer& no
   const std::string file = settings_of(run);
   if (file.empty()) return 1;
   const model::Printer then = io::load_printer(file, {}, io::Records::ignore);
-  std::vector<std::string> differences = io::light_differences(then, now);
-  const auto compare = [&](const char* key, double was, double is) {
-    constexpr double same = 1e-6;
-    if (std::abs(was - is) <= same * was) return;
-    differences.push_back(std::string(key) + " " + format_number(was) + ", now " + format_number(is));
-  };
-  const double full_mw_cm2 = then.projector.max_intensity_mw_cm2;
-  if (first) compare("stage.speed_deg_s", then.stage.speed_deg_s, now.stage.speed_deg_s);
-  if (first) compare("projector.max_intensity_mw_cm2", full_mw_cm2, now.projector.max_intensity_mw_cm2);
-  if (differences.empty()) return full_mw_cm2 / now.projector.max_intensity_mw_cm2;
+  const auto differences = first ? io::dose_differences(then, now) : io::light_differences(then, now);
+  if (differences.empty()) return then.projector.max_intensity_mw_cm2 / now.projector.max_intensity_mw_cm2;
   throw Error{Fault::data, run + ": was printed with other settings: " + join(differences, "; ") +
                                "; omit --printer and --set, or give --printer " + file};
 }

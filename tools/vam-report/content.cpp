@@ -13,6 +13,7 @@
 #include "plot/page.hpp"
 #include "session/dose_score.hpp"
 #include "session/grey_target.hpp"
+#include "session/printer.hpp"
 #include "vam-report/body.hpp"
 #include "vam-report/inspection.hpp"
 #include "vam-report/light.hpp"
@@ -26,12 +27,13 @@ namespace vam::report_tool {
 namespace {
 
 /// Of a grey target.
-std::optional<score::GreyScore> judge_grey(const Volumes& volumes, const model::Printer& printer,
+std::optional<score::GreyScore> judge_grey(const Volumes& volumes, const cli::PrinterOptions& printer,
                                            const session::GreyChoice& grey) {
   const io::SparseVolume* dose = volumes.find("dose");
   const io::SparseVolume* target = volumes.find("target");
   if (dose == nullptr || target == nullptr) return std::nullopt;
-  return session::score_grey(*dose, *target, grey, volumes.find("tolerance"), printer, "dose");
+  const model::Printer own = session::printer_of(printer, dose->metadata, "dose");
+  return session::score_grey(*dose, *target, grey, volumes.find("tolerance"), own, "dose");
 }
 
 /// A dose with its target, and what it is worth.
@@ -40,13 +42,13 @@ struct Judged {
   score::Score score;
 };
 
-std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printer) {
+std::optional<Judged> judge(const Volumes& volumes, const cli::PrinterOptions& printer) {
   const io::SparseVolume* dose = volumes.find("dose");
   const io::SparseVolume* target = volumes.find("target");
   if (dose == nullptr || target == nullptr) return std::nullopt;
   session::warn_of_grey(*target, target->name());
   score::ScoreOptions how;
-  session::resolve_exposure(how, *dose, *target, printer);
+  session::resolve_exposure(how, *dose, *target, session::printer_of(printer, dose->metadata, "dose"));
   return Judged{how, session::score_print(*dose, *target, how)};
 }
 
@@ -107,7 +109,7 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
 
 }  // namespace
 
-std::string content(const Sources& sources, const model::Printer& printer, const Wanted& wanted) {
+std::string content(const Sources& sources, const cli::PrinterOptions& printer, const Wanted& wanted) {
   const bool is_grey = wanted.grey.is_target;
   const Volumes volumes = read_volumes(sources.volumes, is_grey ? io::TargetKind::grey : io::TargetKind::coverage);
   const std::optional<Judged> judged = is_grey ? std::nullopt : judge(volumes, printer);

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "model/printer.hpp"
+#include "cli/common.hpp"
 #include "session/grey_target.hpp"
 #include "vam-report/sources.hpp"
 
@@ -19,6 +19,6 @@ struct Wanted {
 };
 
 /// HTML of the body. Throws what the readers of its files throw.
-[[nodiscard]] std::string content(const Sources& sources, const model::Printer& printer, const Wanted& wanted);
+[[nodiscard]] std::string content(const Sources& sources, const cli::PrinterOptions& printer, const Wanted& wanted);
 
 }  // namespace vam::report_tool

@@ -292,10 +292,11 @@ bool has_printer_section(std::string_view text) {
                      [&](const std::string& name) { return lines.find("\n[" + name + "]") != std::string::npos; });
 }
 
-Printer parse_printer(std::string_view toml, const std::string& subject) {
+Printer parse_printer(std::string_view toml, const std::string& subject, const std::vector<std::string>& sets) {
   Printer printer = read_settings(toml, subject);
+  for (const auto& set : sets) override_one(printer, set);
   centre_axis(printer);
-  check(printer, Fault::data, subject);
+  check(printer, sets.empty() ? Fault::data : Fault::usage, subject);
   return printer;
 }
 

@@ -23,8 +23,10 @@ enum class Records { apply, ignore };
 [[nodiscard]] model::Printer load_printer(const std::string& file, const std::vector<std::string>& sets,
                                           Records records = Records::apply);
 
-/// Settings from TOML text, absent ones at their defaults. `subject` begins every message. Throws Fault::data.
-[[nodiscard]] model::Printer parse_printer(std::string_view toml, const std::string& subject);
+/// Settings from TOML text, absent ones at their defaults, then each of `sets`. `subject` begins every message. Throws
+/// Fault::data, and Fault::usage for an impossible one of `sets`.
+[[nodiscard]] model::Printer parse_printer(std::string_view toml, const std::string& subject,
+                                           const std::vector<std::string>& sets = {});
 
 /// Whether a text has the heading of one of its sections, right or wrong as the rest may be.
 [[nodiscard]] bool has_printer_section(std::string_view text);

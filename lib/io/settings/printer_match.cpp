@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
@@ -50,10 +51,25 @@ constexpr MatchedKey keys[] = {
     {"stage.direction", [](const Printer& p) { return 1.0 * p.stage.direction; }, 0},
 };
 
+constexpr MatchedKey dose_keys[] = {
+    {"stage.speed_deg_s", [](const Printer& p) { return p.stage.speed_deg_s; }, 0, 1e-6},
+    {"projector.max_intensity_mw_cm2", [](const Printer& p) { return p.projector.max_intensity_mw_cm2; }, 0, 1e-6},
+};
+
 bool alike(const MatchedKey& key, double a, double b) {
   if (a == b) return true;
   constexpr double rounding = 1 + 1e-9;
   return std::abs(a - b) <= rounding * std::max(key.within, key.share * std::max(std::abs(a), std::abs(b)));
+}
+
+void add_differences(std::span<const MatchedKey> all, const Printer& computed_for, const Printer& now,
+                     std::vector<std::string>& differences) {
+  for (const MatchedKey& key : all) {
+    const double then = key.value(computed_for);
+    const double here = key.value(now);
+    if (alike(key, then, here)) continue;
+    differences.push_back(std::string(key.name) + " " + format_number(then) + ", now " + format_number(here));
+  }
 }
 
 /// "a.b=1 c.d=\"two words\"" at its blanks; a text in quotes holds its own.
@@ -85,22 +101,23 @@ bool known(const std::string& setting) {
 
 }  // namespace
 
-Printer parse_settings(const std::string& text, const std::string& subject) {
+Printer parse_settings(const std::string& text, const std::string& subject, const std::vector<std::string>& sets) {
   std::string toml;
   for (const std::string& setting : settings_in(text)) {
     if (known(setting)) toml += setting + "\n";
   }
-  return parse_printer(toml, subject);
+  return parse_printer(toml, subject, sets);
 }
 
 std::vector<std::string> light_differences(const Printer& computed_for, const Printer& now) {
   std::vector<std::string> differences;
-  for (const MatchedKey& key : keys) {
-    const double then = key.value(computed_for);
-    const double here = key.value(now);
-    if (alike(key, then, here)) continue;
-    differences.push_back(std::string(key.name) + " " + format_number(then) + ", now " + format_number(here));
-  }
+  add_differences(keys, computed_for, now, differences);
+  return differences;
+}
+
+std::vector<std::string> dose_differences(const Printer& computed_for, const Printer& now) {
+  std::vector<std::string> differences = light_differences(computed_for, now);
+  add_differences(dose_keys, computed_for, now, differences);
   return differences;
 }
 
