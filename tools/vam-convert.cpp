@@ -17,8 +17,7 @@ using convert_tool::Options;
 
 /// Native file -> array, array -> volume, array or images -> projections.
 void run(const cli::App& app, const Options& options) {
-  const model::Printer printer = session::load_printer(options.printer);
-  if (session::print_printer(options.printer, printer, options.output)) return;
+  if (session::print_printer(options.printer, options.output)) return;
   const auto type = io::known_file_type(options.input);
   if (type == io::FileType::volume || type == io::FileType::stack) {
     const bool volume = type == io::FileType::volume;
@@ -29,8 +28,8 @@ void run(const cli::App& app, const Options& options) {
   if (options.input != "-") io::require_content(options.input);  // a socket cannot be looked at
   app.require_for(type ? "images" : "arrays", io::input_name(options.input));
   check_import(options);
-  if (options.voxel_mm) return convert_tool::make_volume(app, options, type, printer);
-  convert_tool::make_projections(app, options, type, printer);
+  if (options.voxel_mm) return convert_tool::make_volume(app, options, type, session::load_printer(options.printer));
+  convert_tool::make_projections(app, options, type);
 }
 
 }  // namespace

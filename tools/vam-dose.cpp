@@ -5,6 +5,7 @@
 #include "base/text/json.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
@@ -24,15 +25,20 @@ using dose_tool::Options;
 
 /// Options -> light and voxels -> doses of a turn, slice by slice -> one unit for all -> volume and report.
 void run(const cli::App& app, Options& options) {
-  const model::Printer printer = session::load_printer(printer_of(options));
-  if (session::print_printer(options.printer, printer, options.output)) return;
-  settle(options, printer);
+  options.printer = printer_of(options);
+  if (session::print_printer(options.printer, options.output)) return;
   take_sinogram(app, options);
-  take_full_scale(options);
 
   io::StackReader in(options.inputs.front());
   io::require(options.inputs.front(), in.info(), model::Kind::sinogram);
-  if (!options.full_scale) options.full_scale = model::full_scale(in.info().extra);
+  const bool bound = options.shown.empty() &&  // a print has settings of its own
+                     (in.info().space == model::Space::projector || model::shown_turns(in.info().extra));
+  const model::Printer printer = session::printer_of(options.printer, bound ? in.info().extra : model::Metadata{},
+                                                     io::input_name(options.inputs.front()));
+  settle(options, printer);
+  take_full_scale(options);
+  const bool planned_anew = options.exposure_plan && model::shown_turns(in.info().extra);
+  if (!options.full_scale && !planned_anew) options.full_scale = model::full_scale(in.info().extra);
   const model::StackInfo info = posed(app, in.info(), options);
   const dose_tool::Place place = place_of(options, printer, info);
   io::SparseVolume volume = empty_volume(app, place, printer, info);

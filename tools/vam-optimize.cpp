@@ -15,6 +15,7 @@
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/grid_size.hpp"
+#include "model/metadata.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/shown.hpp"
@@ -71,7 +72,10 @@ void run(const cli::App& app, Options& options) {
   session::warn_of(scene, in.target.front(), options);
   const model::StackInfo whole = stack_info(scene, in.target.front(), app, options);
   const std::optional<model::ImageRange> slices = slices_of(whole, options);
-  const model::StackInfo info = written_info(whole, slices, app, options);
+  model::StackInfo info = written_info(whole, slices, app, options);
+  const bool planned = states_exposure(info, printer, options);
+  if (planned) model::state_exposure(info.extra, 0, 0);  // until it is known
+  options.stack.late = planned;
   optimize::VolumeTask task = make_task(scene, in, options);
   task.slices = slices;
   task.count_pieces = !options.bits;  // else those of the frames
@@ -107,8 +111,14 @@ void run(const cli::App& app, Options& options) {
   }
   std::optional<optimize::Trials> trials;
   if (options.printer_tolerances) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
+  const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, scene.printer, info, options);
+  if (planned && plan) {
+    model::state_exposure(info.extra, plan->turns,
+                          options.full_scale.value_or(outcome.peak_intensity) / plan->multiplier);
+    sink.state(info.extra);
+  }
   sink.commit();  // hours of work, which no figure or report shall undo
-  publish(task, outcome, trials, scene, in.target.front(), info, options);
+  publish(task, outcome, trials, scene, in.target.front(), plan, info, options);
   beginning.remove();
 }
 

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-project: projector frames from sinograms, for files or a screen; one frame per time step of the turning stage.
+#include <filesystem>
+
+#include "base/index.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/frame_sink.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
+#include "model/metadata.hpp"
+#include "resin/absolute_dose.hpp"
+#include "session/exposure.hpp"
 #include "session/printer.hpp"
 #include "vam-project/files.hpp"
 #include "vam-project/match.hpp"
@@ -13,21 +20,37 @@
 #include "vam-project/plan.hpp"
 #include "vam-project/print.hpp"
 #include "vam-project/slices.hpp"
+#include "vam-project/turn.hpp"
 
 namespace {
 
 using namespace vam;
 using project::Options;
 
-void freeze(const Options& options, const model::Printer& printer) {
-  const io::StackReader reader(options.input);
+void freeze(const Options& options, model::Printer printer) {
+  io::StackReader reader(options.input);
   project::require_whole(options.input, reader.info());
   require_printer(options, reader.info(), printer);
+  if (reader.info().kind == model::Kind::sinogram) {
+    const bool by_light = !model::shown_turns(reader.info().extra) && resin::dose_per_radian_mj_cm3(printer);
+    const double peak = by_light ? read_light(options, reader, printer.projector).peak : 0;
+    const session::Exposure planned = session::exposure_of(reader.info(), printer, peak, {});
+    if (planned.share) printer.stage.turns = ceil_int(planned.turns);
+  }
   project::write_frozen(options.freeze, printer);
 }
 
+/// Of a projector's sinogram, where it can be read twice.
+model::Metadata facts_of(const Options& options) {
+  if (!options.pattern.plan.name.empty() || !std::filesystem::is_regular_file(options.input)) return {};
+  const io::StackReader reader(options.input);
+  const bool of_projector =
+      reader.info().kind == model::Kind::sinogram && reader.info().space == model::Space::projector;
+  return of_projector ? reader.info().extra : model::Metadata{};
+}
+
 void run(const cli::App& app, Options& options) {
-  const model::Printer printer = settle(options);
+  const model::Printer printer = settle(options, facts_of(options));
   if (session::print_printer(options.printer, printer, options.output)) return;
   if (!options.freeze.empty()) return freeze(options, printer);
   const bool live = project::is_live(app, options.output);

@@ -19,6 +19,7 @@
 #include "model/metadata.hpp"
 #include "score/score.hpp"
 #include "session/dose_score.hpp"
+#include "session/exposure.hpp"
 #include "session/grey_target.hpp"
 #include "session/printer.hpp"
 #include "session/volumes.hpp"
@@ -89,10 +90,10 @@ std::vector<model::Condition> conditions_of(const Options& options) {
                                  options.grey.is_target ? score::GreyScore::names() : score::Score::names());
 }
 
-void score_grey(const Options& options, const model::Printer& printer,
-                const std::vector<model::Condition>& conditions) {
+void score_grey(const Options& options, const std::vector<model::Condition>& conditions) {
   session::Companions in(options.input, options.target, io::TargetKind::grey);
   const io::SparseVolume& dose = in.choose(options.grid);
+  const model::Printer printer = session::printer_of(options.printer, dose.metadata, io::input_name(options.input));
   const score::GreyScore result =
       session::score_grey(dose, in.target_around(), options.grey, in.tolerance(), printer, options.input);
   io::write_report(options.report, "vam-score-grey", result.figures());
@@ -102,13 +103,13 @@ void score_grey(const Options& options, const model::Printer& printer,
 
 void run(const cli::App& app, Options& options) {
   const std::vector<model::Condition> conditions = conditions_of(options);
-  const model::Printer printer = session::load_printer(options.printer);
-  if (session::print_printer(options.printer, printer, "-")) return;
-  if (options.grey.is_target) return score_grey(options, printer, conditions);
+  if (session::print_printer(options.printer)) return;
+  if (options.grey.is_target) return score_grey(options, conditions);
   require_files_for_outputs(options);
   session::Companions in(options.input, options.target, io::TargetKind::coverage);
   const io::SparseVolume& dose = in.choose(options.grid);
   const io::SparseVolume& target = in.target_around();
+  const model::Printer printer = session::printer_of(options.printer, dose.metadata, io::input_name(options.input));
   const bool is_grey = session::warn_of_grey(target, in.file());
   options.how.target = io::input_name(in.file());
   session::resolve_exposure(options.how, dose, target, printer);
@@ -120,7 +121,11 @@ void run(const cli::App& app, Options& options) {
   if (!options.lit_fraction.empty()) score_tool::write_lit_fraction(options.lit_fraction, target.grid(), printer, app);
   if (!options.print.empty()) write_print(options, dose, options.print_at.value_or(result.print_threshold()));
   io::write_report(options.report, "vam-score", figures);
-  if (options.report != "-") io::write_text("-", result.table());
+  if (options.report != "-") {
+    const std::string sinogram = options.sinogram.empty() ? "SINOGRAM" : options.sinogram;
+    const bool planned = options.how.exposure.has_value();
+    io::write_text("-", result.table(options.grid == "dose" ? session::how_to_show(planned, sinogram) : ""));
+  }
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }
 

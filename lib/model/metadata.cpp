@@ -42,10 +42,20 @@ int stated_count(const Metadata& metadata, const std::string& name) {
   return number >= 0 && number <= most ? static_cast<int>(number) : 0;
 }
 
+constexpr const char* unknown = "unknown";
+
+std::string late_text(double value) {
+  constexpr std::size_t length = 16;
+  std::string text = value > 0 ? format_number(value, 9) : unknown;
+  return text.append(length - text.size(), ' ');
+}
+
 std::optional<double> stated_positive(const Metadata& metadata, const std::string& name) {
   const auto found = metadata.find(name);
   if (found == metadata.end()) return std::nullopt;
-  const auto value = parse_number(found->second);
+  const std::string text = trimmed(found->second);
+  if (text == unknown) return std::nullopt;
+  const auto value = parse_number(text);
   constexpr double most = 1e6;
   if (value && *value > 0 && *value <= most) return value;
   throw Error{Fault::data, "the projections state " + name + " " + excerpt(found->second) +
@@ -102,5 +112,10 @@ std::optional<double> dose_unit_mj_cm3(const Metadata& metadata) {
 std::optional<double> full_scale(const Metadata& metadata) { return stated_positive(metadata, "vam:full_scale"); }
 
 std::optional<double> shown_turns(const Metadata& metadata) { return stated_positive(metadata, "vam:shown_turns"); }
+
+void state_exposure(Metadata& metadata, double turns, double full_scale) {
+  metadata["vam:shown_turns"] = late_text(turns);
+  metadata["vam:full_scale"] = late_text(full_scale);
+}
 
 }  // namespace vam::model

@@ -13,7 +13,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "model/dose/dose_metrics.hpp"
-#include "score/exposure_plan.hpp"
+#include "score/exposure.hpp"
 
 namespace vam::score {
 
@@ -248,6 +248,7 @@ verdict::Verdict Score::verdict() const {
   verdict.unresolved = unresolved();
   verdict::set_pieces(verdict, pieces_);
   if (std::isfinite(duration_s) && !options_.threshold) verdict.seconds = duration_s;  // else that of another print
+  if (options_.threshold && options_.exposure) verdict.seconds = options_.exposure->seconds;
   verdict.threshold = options_.threshold;
   verdict.light = options_.light;
   return verdict;
@@ -259,7 +260,7 @@ std::optional<double> Score::judged_radius_mm() const {
   return rim_px_ * options_.voxel_mm;
 }
 
-std::string Score::table() const {
+std::string Score::table(const std::string& ending) const {
   const Json values = figures();
   std::string text;
   for (const auto& [name, meaning, value] : figure_list()) {
@@ -274,7 +275,7 @@ std::string Score::table() const {
             " mm of the axis; the volume ends before " + "the writable radius of " +
             format_number(options_.circle.radius * options_.voxel_mm, 3) + " mm\n";
   }
-  return text + "verdict      " + words(verdict()) + "\n";
+  return text + "verdict      " + words(verdict()) + ending + "\n";
 }
 
 }  // namespace vam::score

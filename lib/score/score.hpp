@@ -12,7 +12,7 @@
 #include "model/dose/outside.hpp"
 #include "model/light_width.hpp"
 #include "model/printer.hpp"
-#include "score/exposure_plan.hpp"
+#include "score/exposure.hpp"
 #include "verdict/print_pieces.hpp"
 #include "verdict/unresolved.hpp"
 #include "verdict/verdict.hpp"
@@ -23,6 +23,7 @@ namespace vam::score {
 struct Exposure {
   model::Printer printer;                      // with a critical dose
   std::optional<double> full_intensity_turns;  // that gave the dose of a print; none: the dose is that of one turn
+  std::optional<double> seconds = {};          // of that print
 };
 
 struct ScoreOptions {
@@ -71,7 +72,8 @@ class Score {
   /// Of the relative figures, whatever the options say.
   [[nodiscard]] verdict::Verdict verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
-  [[nodiscard]] std::string table() const;
+  /// `ending`: behind the verdict.
+  [[nodiscard]] std::string table(const std::string& ending = "") const;
 
  private:
   struct Figure;

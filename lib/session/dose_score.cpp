@@ -79,7 +79,8 @@ void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, co
   how.part = io::covered_box(target, model::coverage_rounding);
   how.own_surface = own_surface(target);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
-  how.exposure = {printer, model::stated_number(dose.metadata, "vam:full_intensity_turns")};
+  how.exposure = {printer, model::stated_number(dose.metadata, "vam:full_intensity_turns"),
+                  model::stated_number(dose.metadata, "vam:print_s")};
   if (!how.threshold && how.exposure->full_intensity_turns) how.threshold = printer.resin.critical_dose_mj_cm3;
 }
 

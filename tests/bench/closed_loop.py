@@ -95,7 +95,7 @@ class Plan:
         run("vam-dose", "whole.exr", "--like", "part.vdb", "--exposure-plan", "-o", "plan.vdb", "--report", "plan.json",
             folder=folder)
         plan = load(folder + "/plan.json")
-        self.turns = plan["turns"] * plan["multiplier"]
+        self.turns = plan["turns"]
         self.curve = curve or self.working_curve(int(plan["turns_to_critical_all"]))
 
     def working_curve(self, lit):
@@ -195,8 +195,8 @@ def closed_loop(plan, folder, truth, fault="", fault_turn=0):
         first = first or folder + "/ost/scatter-0000.vdb"
         with open(folder + "/ost.jsonl", "a") as log:
             print(json.dumps({"turns": turn + 1, "time_s": 18 * turn + 18}), file=log)
-        run("vam-correct", "renew", ".", "--target", plan.folder + "/part.vdb", "--curve", plan.curve, "--turns",
-            plan.turns, "--axis-sigma", axis, "--once", number, *(["--lead", "1.5"] if failing == "late" else []),
+        run("vam-correct", "renew", ".", "--target", plan.folder + "/part.vdb", "--curve", plan.curve, "--axis-sigma",
+            axis, "--once", number, *(["--lead", "1.5"] if failing == "late" else []),
             folder=folder, good=(0, 1))
     one.end()
     return found

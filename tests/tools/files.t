@@ -2,10 +2,10 @@
 # Files that are not there, cannot be written or are the input are refused alike by every tool, under their names.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
+tiny_print light.exr
 vam-slice --shape cylinder:diameter=4,height=1 --voxel 0.25 -o part.vdb
 vam-sinogram part.vdb --angles 12 --filter ram-lak --negative clip -o sino.exr
 vam-score part.vdb --grid target --mesh part.ply >table
-tiny_print light.exr
 while read -r input output command; do
   tool=${command%% *} ending=${output##*.}
   run() {  # run INPUT OUTPUT TOOL: the command with them

@@ -203,14 +203,15 @@ vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o film.mkv
 vam-project projector.exr $set --turns 2 --fps 12 --speed 12 --orientation rotate-180 -o turned
 ok 'frames of the projector' vam-convert frames --geometry vial --like part.vdb $set -o back.exr
 quiet 'a video is the same' vam-convert film.mkv --view-step 1 --geometry vial --like part.vdb $set -o film.exr
-vam-convert film.mkv --geometry vial --like part.vdb $set -o turn.exr 2>err
+ffmpeg -v error -i film.mkv -map_metadata -1 -c copy bare.mkv
+vam-convert bare.mkv --geometry vial --like part.vdb $set -o turn.exr 2>err
 vam-dose film.exr --like part.vdb $set --report film.json -o film.vdb
 is 'whose full grey is the full light' "$(json film.json full_scale)" 1.0
 quiet 'and two turns of turned frames' vam-convert turned --geometry vial --orientation rotate-180 --like part.vdb $set -o turned.exr
 for name in projector back film turned; do vam-dose $name.exr --like part.vdb $set | vam-convert >$name.npy; done
 same 'video and folder' film.npy back.npy
 is 'the step that is assumed of a video is told' "$(cat err)" \
-  'vam-convert: warning: film.mkv: 360 frames are taken as one turn, 1 degrees each; give --view-step otherwise'
+  'vam-convert: warning: bare.mkv: 360 frames are taken as one turn, 1 degrees each; give --view-step otherwise'
 ffmpeg -v error -i film.mkv -c:v ffv1 -vf transpose=clock side.mkv
 ffmpeg -v error -i film.mkv -c:v ffv1 -vf transpose=cclock other.mkv
 for side in 'side 90' 'other 270'; do

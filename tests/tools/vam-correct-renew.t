@@ -13,7 +13,7 @@ bench='voxel=0.2 columns=66 rows=46 views=60 resin.critical_dose_mj_cm3=60'
 vam-slice --shape gyroid:cell=6,sheet=1.2,diameter=7,height=5 --voxel 0.2 -o part.vdb
 vam-optimize --angles 60 part.vdb -o whole.exr
 vam-dose whole.exr --like part.vdb --exposure-plan -o plan.vdb --report plan.json
-planned=$(awk "BEGIN { print $(json plan.json turns) * $(json plan.json multiplier) }")
+planned=$(json plan.json turns)
 
 # The record of the resin, of a print as planned that is stopped when about half of it scatters: what comes then, in the
 # dark, tells the critical dose from the delay.
@@ -66,7 +66,7 @@ for turn in $(seq 0 29); do
   number=$(find closed/ost -name '*.vdb' | wc -l)
   mv of_turn/scatter-0000.vdb closed/ost/scatter-$(printf %04d $number).vdb
   echo "{\"turns\":$((turn + 1)),\"time_s\":$((18 * turn + 18))}" >>closed/ost.jsonl
-  vam-correct renew closed --target part.vdb --curve curve.json --turns "$planned" --axis-sigma 1 --once $number || held=$((held + 1))
+  vam-correct renew closed --target part.vdb --curve curve.json --axis-sigma 1 --once $number || held=$((held + 1))
 done
 closed=$(deviation closed)
 exec 3>&- 4<&-
@@ -81,7 +81,7 @@ of_the_past=$(find closed/ost -name '*.vdb' | sort | tail -n 1)
 number=$(find closed/ost -name '*.vdb' | wc -l)
 cp "$of_the_past" closed/ost/scatter-$(printf %04d $number).vdb
 echo "{\"turns\":30,\"time_s\":540}" >>closed/ost.jsonl
-vam-correct renew closed --target part.vdb --curve curve.json --turns "$planned" --axis-sigma 1 --once $number
+vam-correct renew closed --target part.vdb --curve curve.json --axis-sigma 1 --once $number
 is 'from a volume that comes again there is no new light' $? 1
 is 'for the reason that is told' "$(grep -c "\"event\":\"hold\".*is the volume ${of_the_past##*/} again" closed/renewed.jsonl)" 1
 echo "# open at its best $best mm, closed $closed mm"

@@ -15,7 +15,7 @@ is "its model is back-projection" "$(json parallel.json model)" parallel
 a=$(json level.json part_dose_per_turn_mean_relative); b=$(json parallel.json part_dose_per_turn_mean_relative)
 holds "the corrected print receives the parallel dose" "($a / $b - 1)^2 < 0.02^2"
 ok "the simulated print matches the part" vam-score dose.vdb --target part.vdb --require 'iou>=0.95'
-vam-resample virtual.exr --set projector.telecentric=true | vam-dose --like part.vdb -o wrong.vdb
+vam-resample virtual.exr --set projector.telecentric=true | vam-dose --set projector.telecentric=false --like part.vdb -o wrong.vdb
 fails 1 iou vam-score wrong.vdb --target part.vdb --require 'iou>=0.95'
 
 # Grey levels: black and white, each pixel to the nearer one or with errors that cancel.

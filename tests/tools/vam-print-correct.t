@@ -88,6 +88,6 @@ sed 's/^/# /' lost.err
 is 'without its camera it is completed in open loop' "$status $(json lost/summary.json outcome)" '1 complete, in open loop'
 ok 'which it says at once, and at the end' sh -c 'grep -q "warning: .*; the print goes on in open loop from turn [1-9].*, as planned, to turn" lost.err && grep -q "nothing was measured after turn" lost.err'
 holds 'and in the summary' "$(json lost/summary.json correction.open_loop_from) >= 1"
-planned=$(awk -F'[:,]' '/"turns"/ { t = $2 } /"multiplier"/ { m = $2 } END { n = int(t * m); print n < t * m ? n + 1 : n }' lost/plan.json)
+planned=$(json lost/plan.json turns)
 holds 'for the turns of the plan' "$(json lost/summary.json reached.turns) >= $planned - 0.1 && $(json lost/summary.json reached.turns) <= $planned + 0.1"
 done_testing

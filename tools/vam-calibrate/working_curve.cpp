@@ -31,7 +31,7 @@ struct TurnDose {
 TurnDose read_dose(const std::string& path) {
   const io::SparseVolume sparse = session::read_dose(path);
   TurnDose dose{io::dense_volume(sparse), model::stretch_z(sparse.metadata),
-                model::stated_number(sparse.metadata, "vam:full_intensity_turns")};
+                model::stated_number(sparse.metadata, "vam:print_turns")};
   if (!dose.turns) return dose;
   for (float& value : dose.volume.values) value /= static_cast<float>(*dose.turns);
   return dose;

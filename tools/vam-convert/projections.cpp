@@ -21,6 +21,7 @@
 #include "light/grids/lit_grid.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "optics/writable_radius.hpp"
+#include "session/printer.hpp"
 #include "session/volumes.hpp"
 #include "vam-convert/images.hpp"
 #include "vam-convert/resliced.hpp"
@@ -166,8 +167,9 @@ Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
 }
 
 model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Plan& plan,
-                         const Heights& heights, bool grey) {
+                         const Heights& heights, bool grey, const model::Metadata& stated) {
   model::StackInfo info;
+  info.extra = stated;
   const bool projector = options.in_vial();
   info.space = projector ? model::Space::projector : model::Space::virtual_;
   info.width = plan.columns;
@@ -287,9 +289,12 @@ void warn_of_colour(const Options& options, double peak) {
 
 }  // namespace
 
-void make_projections(const cli::App& app, const Options& options, std::optional<io::FileType> type,
-                      const model::Printer& printer) {
+void make_projections(const cli::App& app, Options options, std::optional<io::FileType> type) {
   auto images = open_source(options, type, "zax");
+  const model::Metadata stated = images->stated() != nullptr ? images->stated()->extra : model::Metadata{};
+  const model::Printer printer = session::printer_of(options.printer, stated, io::input_name(options.input));
+  if (!app.given("--orientation") && stated.contains("vam:printer"))
+    options.orientation = printer.projector.orientation;
   const bool frames = images->are_frames();
   const bool grey = images->are_grey();
   Slices slices(std::move(images), options, printer);
@@ -305,7 +310,7 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   if (like) warn_of_dark(options, own, like->grid());
   Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
   const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
-  io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, grey), options.stack);
+  io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, grey, stated), options.stack);
   Image slice;
   float least = 0;
   Progress progress("converting", heights.count);

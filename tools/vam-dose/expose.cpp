@@ -21,6 +21,7 @@
 #include "light/simulation/simulation.hpp"
 #include "model/dose/dose_spread.hpp"
 #include "model/grid_size.hpp"
+#include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "session/volumes.hpp"
 #include "vam-dose/insert.hpp"
@@ -116,7 +117,8 @@ void expose_volume(Light& light, int count, const light::Simulation& simulation,
 double blur_mm(const Options& options, const model::Printer& printer, const model::StackInfo& info,
                double shown_turns) {
   if (options.no_blur) return 0;
-  const double usual = model::repeat(info.poses) ? printer.stage.turns : optics::turns_of(info);
+  const double usual =
+      model::repeat(info.poses) ? model::shown_turns(info.extra).value_or(printer.stage.turns) : optics::turns_of(info);
   const double turns = options.shown.empty() ? usual : shown_turns;
   const double seconds = options.diffusion_time_s.value_or(model::seconds_of(printer.stage, turns));
   model::warn_of_diffusion(printer.resin, seconds);

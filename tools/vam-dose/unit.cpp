@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-dose/unit.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -8,10 +9,12 @@
 #include "base/log/log.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
+#include "io/stream/input_name.hpp"
 #include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
+#include "session/exposure.hpp"
 #include "vam-dose/sink.hpp"
 
 namespace vam::dose_tool {
@@ -37,30 +40,45 @@ score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const
 Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer,
              const model::StackInfo& light) {
   const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
-  const double full = options.full_scale ? 1.0 : exposed.light.peak;
-  Unit unit{per_radian.has_value(),
-            per_radian && full > 0 ? *per_radian / full : 1.0,
-            exposed.shown_turns,
-            model::seconds_of(printer.stage, exposed.shown_turns),
-            {}};
-  if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);
+  const double peak = exposed.light.peak;
+  const double full_scale = options.full_scale.value_or(peak);
+  Unit unit;
+  unit.absolute = per_radian && full_scale > 0;
+  if (unit.absolute) unit.turn = *per_radian / (options.full_scale ? 1.0 : peak);
+  if (options.exposure_plan) {
+    unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);
+    unit.print_turns = unit.plan->turns;
+    unit.full_turns = unit.showings = unit.plan->turns * unit.plan->multiplier;
+  } else if (!options.shown.empty()) {
+    unit.print_turns = unit.full_turns = exposed.shown_turns;
+  } else if (unit.absolute) {
+    const auto shown = session::exposure_of(light, printer, peak, {.full_scale = options.full_scale});
+    if (shown.share) {
+      session::require_dose(shown, true, io::input_name(options.inputs.front()));
+      unit.print_turns = shown.turns;
+      unit.full_turns = shown.turns * std::min(1.0, peak / shown.full_scale);
+      unit.showings = shown.turns * full_scale / shown.full_scale;
+    }
+  }
+  unit.print_s = model::seconds_of(printer.stage, unit.print_turns);
+  if (unit.absolute)
+    unit.relative = *per_radian / full_scale * (options.shown.empty() ? unit.showings : unit.full_turns);
   return unit;
 }
 
 void convert(io::SparseVolume& volume, const Unit& unit) {
-  const bool of_run = unit.shown_turns > 0;
-  const double turns = unit.plan ? unit.plan->turns * unit.plan->multiplier : of_run ? unit.shown_turns : 1.0;
+  for (const char* of_light : {"vam:full_scale", "vam:shown_turns"}) volume.metadata.erase(of_light);
   if (unit.absolute) {
-    scale(volume, unit.turn * (of_run ? 1.0 : turns));  // that of a run is of its turns already
+    scale(volume, unit.turn * unit.showings);
     volume.units = "mJ/cm3";
-    volume.metadata["vam:dose_unit_mj_cm3"] = format_number(unit.turn * turns, 9);
+    volume.metadata["vam:dose_unit_mj_cm3"] = format_number(unit.relative, 9);
     const auto threshold = model::threshold_dose(volume.metadata);
-    if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.turn * turns, 9);
+    if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.relative, 9);
   }
-  if (!unit.plan && !of_run) return;
-  volume.metadata["vam:full_intensity_turns"] = format_number(turns, 9);
-  volume.metadata["vam:print_turns"] = format_number(unit.plan ? unit.plan->turns : unit.shown_turns, 9);
-  volume.metadata["vam:print_s"] = format_number(unit.plan ? unit.plan->seconds : unit.shown_s, 9);
+  if (unit.print_turns == 0) return;
+  volume.metadata["vam:full_intensity_turns"] = format_number(unit.full_turns, 9);
+  volume.metadata["vam:print_turns"] = format_number(unit.print_turns, 9);
+  volume.metadata["vam:print_s"] = format_number(unit.print_s, 9);
 }
 
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,
@@ -82,15 +100,23 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
     report["planned_full_scale"] = options.full_scale.value_or(seen.peak) / unit.plan->multiplier;
   } else {
     report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
+    if (unit.print_turns > 0 && !of_run) {
+      const double multiplier = unit.full_turns / unit.print_turns;
+      report["turns"] = unit.print_turns;
+      report["duration_s"] = unit.print_s;
+      report["multiplier"] = multiplier;
+      report["peak_intensity_mw_cm2"] = multiplier * printer.projector.max_intensity_mw_cm2;
+    }
   }
   report["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
   if (exposed.dark_part_voxels) report["dark_part_voxels"] = *exposed.dark_part_voxels;
   if (exposed.outside) {
-    const bool of_print = of_run && unit.absolute;
+    const bool of_print = unit.absolute && unit.print_turns > 0 && !unit.plan;
+    const double whole = unit.turn * (of_print ? unit.showings : 1.0);
     model::Outside outside =
-        exposed.outside->at(of_print ? *printer.resin.critical_dose_mj_cm3 / unit.turn
+        exposed.outside->at(of_print ? *printer.resin.critical_dose_mj_cm3 / whole
                                      : score::aimed_dose(exposed.metrics, model::threshold_dose(light.extra)));
-    outside.max_dose *= unit.turn;
+    outside.max_dose *= whole;
     add_to(report, outside);
   }
   report["blur_sigma_mm"] = exposed.blur_mm;

@@ -7,7 +7,7 @@
 #include "base/text/json_fwd.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
-#include "score/exposure_plan.hpp"
+#include "score/exposure.hpp"
 #include "vam-dose/expose.hpp"
 #include "vam-dose/options.hpp"
 
@@ -15,14 +15,18 @@ namespace vam::dose_tool {
 
 struct Unit {
   bool absolute = false;
-  double turn = 1;                          // multiplies the dose of one turn
-  double shown_turns = 0;                   // of the run whose dose it is; 0: of none
-  double shown_s = 0;                       // which they take at the speed of the stage
-  std::optional<score::ExposurePlan> plan;  // of the print
+  double turn = 1;         // multiplies the dose of one turn
+  double showings = 1;     // and that of the whole print
+  double relative = 1;     // what a relative dose of 1 becomes
+  double print_turns = 0;  // of the print whose dose it is; 0: it is the dose of a turn
+  double full_turns = 0;   // of full intensity
+  double print_s = 0;
+  std::optional<score::ExposurePlan> plan;  // of --exposure-plan
 };
 
-/// Absolute when the resin has a critical dose. Throws Fault::data when an exposure is to be planned for a target
-/// without part or void; warns when there is no process window.
+/// Absolute when the resin has a critical dose, and then of the print that the light was planned for. Throws
+/// Fault::data when an exposure is to be planned for a target without part or void; warns when there is no process
+/// window.
 [[nodiscard]] Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer,
                            const model::StackInfo& light);
 

@@ -26,8 +26,14 @@ std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, 
   model::DoseMetrics exact;
   exact.iou_threshold = threshold;
   const model::DoseMetrics& aim = fixed_threshold(options) ? exact : doses;
-  if (!(full_scale > 0) || !(score::window_middle(aim) > 0)) return std::nullopt;
+  const double middle = *per_radian / full_scale * score::window_middle(aim);
+  if (!(full_scale > 0) || !(*printer.resin.critical_dose_mj_cm3 <= score::most_turns * middle)) return std::nullopt;
   return score::plan_exposure(aim, *per_radian / full_scale, printer, optics::turns_of(info), threshold);
+}
+
+bool states_exposure(const model::StackInfo& info, const model::Printer& printer, const Options& options) {
+  return options.slices.empty() && !(options.turns && !options.delivered.empty()) && model::repeat(info.poses) &&
+         resin::dose_per_radian_mj_cm3(printer).has_value();
 }
 
 }  // namespace vam::optimize_tool

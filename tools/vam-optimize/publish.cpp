@@ -19,8 +19,8 @@
 #include "model/magnification.hpp"
 #include "model/metadata.hpp"
 #include "optimize/run/limited_by.hpp"
-#include "score/exposure_plan.hpp"
 #include "session/dose_score.hpp"
+#include "session/exposure.hpp"
 #include "session/volumes.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
@@ -110,7 +110,7 @@ void report_delivered(Json& report, const optimize::VolumeSource& source, const 
 
 void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
              const std::optional<optimize::Trials>& trials, const session::Scene& scene, const io::SparseVolume& target,
-             const model::StackInfo& info, const Options& options) {
+             const std::optional<score::ExposurePlan>& plan, const model::StackInfo& info, const Options& options) {
   const model::Printer& printer = scene.printer;
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
@@ -125,7 +125,6 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
   }
   report_delivered(report, task.source, scene, options);
   if (const auto full = model::full_scale(info.extra)) report["full_scale"] = *full;
-  const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, printer, info, options);
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
     for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
@@ -142,7 +141,8 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     set_pieces(verdict, outcome.pieces);
     if (verdict.pieces) verdict.pieces->set_places(scene.grid, model::stretch_z(target.metadata));
     add_to(report, verdict);
-    note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
+    note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict) +
+         session::how_to_show(plan.has_value(), options.output == "-" ? "SINOGRAM" : options.output));
     report["limited_by"] = optimize::limited_by(
         outcome.demands, [&](int k) { return model::vertical_magnification(printer) * scene.grid.z_mm(k); });
     add_blurred_faces(report, outcome, scene, target, options);

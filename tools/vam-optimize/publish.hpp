@@ -8,6 +8,7 @@
 #include "model/stack.hpp"
 #include "optimize/run/volume.hpp"
 #include "optimize/run/yield.hpp"
+#include "score/exposure.hpp"
 #include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 
@@ -16,6 +17,6 @@ namespace vam::optimize_tool {
 /// Warnings on stderr; the files of --trace and --report where they are requested.
 void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
              const std::optional<optimize::Trials>& trials, const session::Scene& scene, const io::SparseVolume& target,
-             const model::StackInfo& info, const Options& options);
+             const std::optional<score::ExposurePlan>& plan, const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -27,6 +27,7 @@ class Sink {
   /// After finish(), for light with that peak: throws Fault::data where all of it rounds to grey level 0, warns where
   /// full grey is below it.
   void require_light(double peak) const;
+  void state(const model::Metadata& facts) { out_.state(facts); }
   void commit() { out_.commit(); }
   /// All that was written, in order, if it was to be kept.
   [[nodiscard]] const std::vector<Image>& kept() const { return kept_; }

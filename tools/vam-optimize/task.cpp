@@ -46,10 +46,10 @@ model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume&
   info.poses = scene.poses;
   info.pixel_mm = info.row_mm = scene.grid.voxel_mm;
   info.extra = target.metadata;
+  model::Printer stated = scene.printer;  // frames know nothing of the offset
+  stated.projector.axis_column -= options.column_offset_px;
+  info.extra["vam:printer"] = io::printer_settings(stated);
   if (options.in_vial()) {
-    model::Printer stated = scene.printer;  // frames know nothing of the offset
-    stated.projector.axis_column -= options.column_offset_px;
-    info.extra["vam:printer"] = io::printer_settings(stated);
     info.space = model::Space::projector;
     info.width = scene.printer.projector.columns;
     info.pixel_mm = scene.printer.projector.pixel_mm;

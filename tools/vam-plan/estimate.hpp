@@ -9,7 +9,7 @@
 
 #include "model/printer.hpp"
 #include "optimize/run/yield.hpp"
-#include "score/exposure_plan.hpp"
+#include "score/exposure.hpp"
 #include "solid/voxel/part.hpp"
 #include "verdict/verdict.hpp"
 

@@ -2,10 +2,12 @@
 #include "vam-project/files.hpp"
 
 #include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/image/frame_sink.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
+#include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/show.hpp"
@@ -16,24 +18,33 @@ namespace vam::project {
 void write_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader) {
   app.require_for("sinograms", io::input_name(options.input));
   const model::Projector& projector = printer.projector;
-  const double turns = optics::turns_to_show(reader.info(), options.turns, printer.stage.turns);
   const auto differences = require_printer(options, reader.info(), printer);
-  const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
   const Light light = read_light(options, reader, projector);
-  const double peak = options.full_scale.value_or(light.full_scale());
+  const session::Exposure exposure = exposure_of(options, reader.info(), light, printer);
+  const double turns = exposure.turns;
+  const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
 
   const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
   io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
                              projector.bits, options.stack};
   facts.info.units = "fraction of full intensity";
-  facts.info.extra["vam:printer"] = io::printer_settings(printer);
+  model::Printer shown = printer;  // with the axis where the frames have it
+  shown.projector.axis_column += options.column_offset;
+  shown.projector.axis_row += options.row_offset;
+  facts.info.extra["vam:printer"] = io::printer_settings(shown);
+  if (exposure.share) {  // of fractions of full intensity
+    model::state_exposure(facts.info.extra, turns, 1);
+    if (const auto threshold = model::threshold_dose(facts.info.extra))
+      facts.info.extra["vam:threshold_dose"] = format_number(*threshold / exposure.full_scale, 9);
+  }
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
   const Dithering dithering = dithering_of(options, 360 / schedule.step_deg, turns);
   const Frames frames = frames_of(light, schedule, dithering);
   const auto tally =
-      show(frames, static_cast<float>(options.multiplier / peak), projector, app.given("--bits"), dithering, *sink);
-  Json report = figures(frames, projector.bits, peak, tally);
+      show(frames, static_cast<float>(1 / exposure.full_scale), projector, app.given("--bits"), dithering, *sink);
+  Json report = figures(frames, projector.bits, exposure.full_scale * options.multiplier, tally);
+  if (exposure.share) report["share_of_planned_dose"] = *exposure.share;
   if (!differences.empty()) report["printer_differences"] = differences;
   io::write_report(options.report, "vam-project", report);
 }

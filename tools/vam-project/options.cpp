@@ -10,6 +10,7 @@
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
 #include "io/image/frame_sink.hpp"
+#include "io/stream/input_name.hpp"
 #include "session/printer.hpp"
 
 namespace vam::project {
@@ -28,7 +29,7 @@ void add_time(cli::App& app, Options& options) {
       .default_is("stage.speed_deg_s")
       .not_for({"slices"});
   app.option("--turns", "N", options.turns, cli::positive, "Turns of the print; not necessarily a whole number.")
-      .default_is("stage.turns")
+      .default_is("as planned for the resin, else stage.turns")
       .not_for({"slices"});
 }
 
@@ -53,7 +54,7 @@ void add_grey(cli::App& app, Options& options) {
   app.option("--bits", "N", options.bits, {1, 16}, "Bits per pixel: 1, 2, 4, 8, 10 or 16.")
       .default_is("projector.bits");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Sinogram value shown at full intensity.")
-      .default_is("maximum of the stack, for slices 1");
+      .default_is("as planned for the resin, else the maximum of the stack, for slices 1");
   app.option("--multiplier", "FACTOR", options.multiplier, cli::positive,
              "Factor on the intensity; values above full intensity are clipped.");
   app.option(
@@ -120,7 +121,7 @@ void add_patterns(cli::App& app, PatternOptions& options) {
       .form()
       .excludes({"--turns", "--speed", "--print-speed", "--full-scale", "--multiplier", "--dither", "--flatland",
                  "--column-offset", "--row-offset", "--frames-per-turn", "--from", "--frames-from", "--accept-printer",
-                 "--freeze", "--report"});
+                 "--accept-dose", "--freeze", "--report"});
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.")
       .only_with({"--pattern"})
@@ -154,9 +155,12 @@ void declare(cli::App& app, Options& options) {
   cli::add_printer(app, options.printer);
   app.flag("--accept-printer", options.accept_printer,
            "Accept a sinogram that was computed for another printer, with a warning that names the differences.");
+  app.flag("--accept-dose", options.accept_dose,
+           "Show less than 0.9 or more than 1.1 of the dose that was planned for the resin, with a warning.")
+      .not_for({"slices"});
   app.option("--freeze", "FILE", options.freeze,
              "Check the sinogram against the printer, write the settings in force to FILE, including calibration "
-             "records and with absolute paths, and exit; used by vam-print.");
+             "records, planned turns and with absolute paths, and exit; used by vam-print.");
   app.group("Stack", {}, {"displays", "folders", "videos"});
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   app.group("Output and performance");
@@ -192,9 +196,10 @@ bool is_live(const cli::App& app, const std::string& output) {
   return live;
 }
 
-model::Printer settle(Options& options) {
+model::Printer settle(Options& options, const model::Metadata& facts) {
   optics::set_lines(options.pattern.plan, options.pattern.pitch_px, options.pattern.width_px);
-  model::Printer printer = session::load_printer(options.printer);
+  model::Printer printer =
+      session::printer_of(options.printer, facts, io::input_name(options.input), session::Role::instrument);
   printer.projector.fps = options.fps.value_or(printer.projector.fps);
   printer.projector.bits = options.bits.value_or(printer.projector.bits);
   printer.stage.speed_deg_s = options.speed_deg_s.value_or(printer.stage.speed_deg_s);

@@ -49,6 +49,7 @@ struct Options {
   std::optional<int> dither_turns;
   cli::PrinterOptions printer;
   bool accept_printer = false;
+  bool accept_dose = false;
   bool only_plan = false;
   std::string freeze;
   io::StackOptions stack;
@@ -62,7 +63,8 @@ struct Options {
 [[nodiscard]] bool is_live(const cli::App& app, const std::string& output);
 
 void declare(cli::App& app, Options& options);
-/// The printer as options change it, and what options take from it. Throws Fault::usage for a depth no projector has.
-[[nodiscard]] model::Printer settle(Options& options);
+/// The printer as options change it, that of a stack with these facts, and what options take from it. Throws
+/// Fault::usage for a depth no projector has.
+[[nodiscard]] model::Printer settle(Options& options, const model::Metadata& facts);
 
 }  // namespace vam::project

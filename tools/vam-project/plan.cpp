@@ -2,7 +2,6 @@
 #include "vam-project/plan.hpp"
 
 #include <cmath>
-#include <optional>
 #include <string>
 
 #include "base/error.hpp"
@@ -14,7 +13,6 @@
 #include "device/os/clock.hpp"
 #include "device/port/lines.hpp"
 #include "io/exr/stack.hpp"
-#include "resin/absolute_dose.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/print.hpp"
 #include "vam-project/slices.hpp"
@@ -35,20 +33,12 @@ double memory_mb(const model::StackInfo& info, const model::Projector& projector
   return 1e-6 * (sinogram + (frames + 2 * 4.0) * projector.columns * projector.rows);
 }
 
-std::optional<double> stated_threshold(const model::StackInfo& info) {
-  const auto stated = info.extra.find("vam:threshold_dose");
-  return stated == info.extra.end() ? std::nullopt : parse_number(stated->second);
-}
-
-std::string dose_text(const model::StackInfo& info, const model::Printer& printer, double turns, double full_scale) {
-  if (!stated_threshold(info)) return "unknown: the sinogram states no threshold; see vam-dose --exposure-plan";
-  const auto reached = dose_at_threshold_mj_cm3(info, printer, turns, full_scale);
-  if (!reached) return "unknown; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
-  const double dose = *reached;
-  const double critical = *printer.resin.critical_dose_mj_cm3;
-  return format_number(dose, 4) + " mJ/cm3 at the threshold of the sinogram, " + format_number(dose / critical, 3) +
-         " of the critical dose of " + format_number(critical) + ", which is reached after " +
-         format_number(turns * critical / dose, 4) + " turns";
+std::string dose_text(const session::Exposure& exposure, double turns) {
+  if (!exposure.share) return "relative; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm for vam-optimize";
+  const double share = *exposure.share * turns / exposure.turns;
+  return format_number(share, 3) +
+         " of the planned dose, the critical one at the threshold of the sinogram, which is " + "reached after " +
+         format_number(turns / share, 4) + " turns";
 }
 
 std::string identity_text(const Json& identity) {
@@ -61,24 +51,14 @@ std::string identity_text(const Json& identity) {
 
 }  // namespace
 
-std::optional<double> dose_at_threshold_mj_cm3(const model::StackInfo& info, const model::Printer& printer,
-                                               double turns, double full_scale) {
-  const auto threshold = stated_threshold(info);
-  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
-  if (!threshold || !per_radian) return std::nullopt;
-  return turns * *per_radian / full_scale * *threshold;
-}
-
 void print_plan(const cli::App& app, const Options& options, const model::Printer& printer) {
   if (is_folder(options.input)) app.require_for("slices", options.input);
   io::StackReader reader(options.input);
   const model::StackInfo info = reader.info();
   app.require_for(info.kind == model::Kind::frames ? "slices" : "sinograms", options.input);
   require_printer(options, info, printer);
-  const int whole = turns_to_show(options, info, printer);
-  const double turns = whole - options.live.from_deg / 360;  // with light
-  const double full_scale =
-      options.full_scale.value_or(read_light(options, reader, printer.projector).full_scale()) / options.multiplier;
+  const auto exposure = whole_exposure(options, info, read_light(options, reader, printer.projector), printer);
+  const double turns = exposure.turns - options.live.from_deg / 360;  // with light
   const int frames = options.live.frames_per_turn.value_or(info.height);
   const model::Projector& projector = printer.projector;
   say("frames", std::to_string(frames) + " per turn, " + std::to_string(projector.columns) + " x " +
@@ -91,8 +71,8 @@ void print_plan(const cli::App& app, const Options& options, const model::Printe
                       format_number(printer.stage.speed_deg_s) +
                       " deg/s: " + format_number(model::seconds_of(printer.stage, turns), 4) + " s of light");
   say("intensity", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for the sinogram value " +
-                       format_number(full_scale, 4));
-  say("dose", dose_text(info, printer, turns, full_scale));
+                       format_number(exposure.full_scale, 4));
+  say("dose", dose_text(exposure, turns));
   print_devices(options, printer);
 }
 

@@ -16,10 +16,10 @@
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
+#include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-project/live.hpp"
 #include "vam-project/match.hpp"
-#include "vam-project/plan.hpp"
 #include "vam-project/renewal.hpp"
 #include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"
@@ -56,19 +56,6 @@ void require_repeating_poses(const Options& options, const model::StackInfo& inf
                                 "--turns 1 to show a single turn"};
 }
 
-// Half the critical dose cures nothing, and twice as much cures far too much.
-void warn_of_dose(const Options& options, const io::StackReader& reader, const model::Printer& printer, int turns,
-                  double full_scale) {
-  if (options.live.from_deg > 0) return;  // the rest of a print
-  const auto dose = dose_at_threshold_mj_cm3(reader.info(), printer, turns, full_scale);
-  if (!dose) return;
-  const double reached = *dose / *printer.resin.critical_dose_mj_cm3;
-  if (reached >= 0.5 && reached <= 2) return;
-  warn(options.input + ": " + std::to_string(turns) + (turns == 1 ? " turn gives " : " turns give ") +
-       format_number(reached, 3) + " of the resin's critical dose, which is reached after " +
-       format_number(turns / reached, 4) + " turns (--turns)");
-}
-
 std::string size_text(const model::StackInfo& info) {
   return std::to_string(info.width) + " columns x " + std::to_string(info.height) + " angles from " +
          format_number(info.angle_start_deg) + " deg in steps of " + format_number(info.angle_step_deg) + " deg, " +
@@ -77,10 +64,9 @@ std::string size_text(const model::StackInfo& info) {
 
 /// The light of a sinogram that is to take the place of another. Throws Fault::data unless it has the same columns,
 /// angles and poses and is for the same printer.
-Light read_renewed(const std::string& path, Options options, const model::StackInfo& shown,
+Light read_renewed(const std::string& path, Options options, io::StackReader& reader, const model::StackInfo& shown,
                    const model::Printer& printer) {
   options.input = path;
-  io::StackReader reader(path);
   const model::StackInfo& info = reader.info();
   if (info.width != shown.width || info.height != shown.height || info.angle_start_deg != shown.angle_start_deg ||
       info.angle_step_deg != shown.angle_step_deg || info.poses != shown.poses) {
@@ -115,27 +101,28 @@ std::string hash_of(const std::string& path) { return path == "-" ? "" : io::sha
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader,
                 Live& live) {
   app.require_for("sinograms", io::input_name(options.input));
-  const int turns = turns_to_show(options, reader.info(), printer);
   const auto differences = require_printer(options, reader.info(), printer);
   const Light light = read_light(options, reader, printer.projector);
-  const double peak = options.full_scale.value_or(light.full_scale());
-  warn_of_dose(options, reader, printer, turns, peak / options.multiplier);
+  const session::Exposure exposure = whole_exposure(options, reader.info(), light, printer);
+  const int turns = round_int(exposure.turns);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
   const Dithering dithering = dithering_of(options, frames, turns);
   const auto schedule = optics::frame_schedule(frames, 360, std::max(1, dithering.turns));
-  const auto scale = static_cast<float>(options.multiplier / peak);
-  const double full_scale = peak / options.multiplier;
+  const double full_scale = exposure.full_scale;
+  const auto scale = static_cast<float>(1 / full_scale);
   const auto renew = [&](const std::string& path, const std::atomic<bool>& ended) {
     const std::string hash = hash_of(path);
-    const Light renewed = read_renewed(path, options, reader.info(), printer);
+    io::StackReader its(path);
+    const Light renewed = read_renewed(path, options, its, reader.info(), printer);
     if (hash_of(path) != hash) throw Error{Fault::data, path + ": was changed while it was read; rename whole files"};
     ScreenSink screen(live.mode(), ended);
-    const double its_full = renewed.stated_full_scale ? *renewed.stated_full_scale / options.multiplier : full_scale;
+    const auto stated = model::full_scale(its.info().extra);
+    const double its_full = stated ? *stated / options.multiplier : full_scale;
     const auto seen = show(frames_of(renewed, schedule, dithering), static_cast<float>(1 / its_full), printer.projector,
                            false, dithering, screen);
     Json facts = facts_of(path, hash, its_full);
     facts["clipped"] = seen.clipped;
-    const int its_turns = round_int(std::ceil(renewed.stated_turns.value_or(0)));
+    const int its_turns = round_int(std::ceil(model::shown_turns(its.info().extra).value_or(0)));
     if (its_turns > 0) facts["turns"] = its_turns;
     live.offer({std::move(screen.bytes), facts, turn_named(path), its_turns});
   };
@@ -152,7 +139,8 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   });
   const Frames shown = frames_of(light, schedule, dithering);
   const auto tally = show(shown, scale, printer.projector, app.given("--bits"), dithering, sink);
-  Json report = figures(shown, printer.projector.bits, peak, tally);
+  Json report = figures(shown, printer.projector.bits, full_scale * options.multiplier, tally);
+  if (exposure.share) report["share_of_planned_dose"] = *exposure.share;
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
   if (!differences.empty()) report["printer_differences"] = differences;
   report.erase("fps");
@@ -161,8 +149,11 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
 
 }  // namespace
 
-int turns_to_show(const Options& options, const model::StackInfo& info, const model::Printer& printer) {
-  const double turns = options.turns.value_or(printer.stage.turns);
+session::Exposure whole_exposure(const Options& options, const model::StackInfo& info, const Light& light,
+                                 const model::Printer& printer) {
+  require_repeating_poses(options, info, options.turns.value_or(optics::turns_of(info)));
+  const session::Exposure exposure = exposure_of(options, info, light, printer);
+  const double turns = exposure.turns;
   if (turns != std::floor(turns)) {
     throw Error{Fault::usage, "--turns: " + format_number(turns) + " is not a whole number, as a live print requires"};
   }
@@ -170,8 +161,7 @@ int turns_to_show(const Options& options, const model::StackInfo& info, const mo
     throw Error{Fault::usage, "--from: " + format_number(options.live.from_deg) + " degrees is beyond the " +
                                   format_number(turns) + " turns of the print; give a smaller angle"};
   }
-  require_repeating_poses(options, info, turns);
-  return static_cast<int>(turns);
+  return exposure;
 }
 
 void print_live(const cli::App& app, const Options& options, const model::Printer& printer) {

@@ -5,15 +5,18 @@
 #include "cli/app.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
+#include "session/exposure.hpp"
 #include "vam-project/options.hpp"
+#include "vam-project/turn.hpp"
 
 namespace vam::project {
 
-/// Whole turns of a live print, by --turns or the printer's stage. Throws Fault::usage when they are not whole, when
+/// Of a live print, of whole turns. Throws Fault::usage when they are not whole, when
 /// the print would begin after them (--from), or when the poses of the stack are not those of one turn that repeats.
-[[nodiscard]] int turns_to_show(const Options& options, const model::StackInfo& info, const model::Printer& printer);
+[[nodiscard]] session::Exposure whole_exposure(const Options& options, const model::StackInfo& info, const Light& light,
+                                               const model::Printer& printer);
 
-/// A sinogram by the stage's angle, or slices by time. Throws as turns_to_show().
+/// A sinogram by the stage's angle, or slices by time. Throws as whole_exposure().
 void print_live(const cli::App& app, const Options& options, const model::Printer& printer);
 
 }  // namespace vam::project

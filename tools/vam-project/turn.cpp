@@ -12,7 +12,7 @@
 #include "base/log/log.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
-#include "model/metadata.hpp"
+#include "io/stream/input_name.hpp"
 #include "optics/flatland_movie.hpp"
 #include "vam-project/match.hpp"
 
@@ -73,11 +73,16 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   return {[composer](double angle, double span, const PixelRect& part, Image reused) {
             return composer->frame(angle, span, part, std::move(reused));
           },
-          static_cast<double>(composer->peak()),
-          composer->lit(),
-          whole,
-          model::full_scale(info.extra),
-          model::shown_turns(info.extra)};
+          static_cast<double>(composer->peak()), composer->lit(), whole};
+}
+
+session::Exposure exposure_of(const Options& options, const model::StackInfo& info, const Light& light,
+                              const model::Printer& printer) {
+  const session::GivenExposure given{options.turns, options.full_scale, options.multiplier};
+  const auto exposure = session::exposure_of(info, printer, light.peak, given);
+  const bool whole = options.live.from_deg == 0 && options.live.frames_from.empty();  // neither a rest nor renewed
+  if (whole) session::require_dose(exposure, options.accept_dose, io::input_name(options.input));
+  return exposure;
 }
 
 Dithering dithering_of(const Options& options, double frames_per_turn, double turns) {

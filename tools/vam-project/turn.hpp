@@ -8,6 +8,7 @@
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"
 #include "optics/projector_frames.hpp"
+#include "session/exposure.hpp"
 #include "vam-project/options.hpp"
 #include "vam-project/show.hpp"
 
@@ -17,17 +18,17 @@ namespace vam::project {
 struct Light {
   std::function<Image(double angle_deg, double span_deg, const PixelRect& part, Image reused)> frame;
   double peak = 0;
-  PixelRect lit;                                 // what is beside it is always dark
-  PixelRect whole;                               // frame
-  std::optional<double> stated_full_scale = {};  // of the stack
-  std::optional<double> stated_turns = {};       // for which it is to be shown
-  /// The value shown at full intensity, where no option says otherwise.
-  [[nodiscard]] double full_scale() const { return stated_full_scale.value_or(peak); }
+  PixelRect lit;    // what is beside it is always dark
+  PixelRect whole;  // frame
 };
 
 /// Reads the whole stack: a projector's, or with --flatland one slice of a virtual one. Throws Fault::data for another
 /// kind of stack, and for light beside the projector.
 [[nodiscard]] Light read_light(const Options& options, io::StackReader& reader, const model::Projector& projector);
+
+/// Turns and full scale, by the plan of the stack or options. Throws as session::require_dose() does.
+[[nodiscard]] session::Exposure exposure_of(const Options& options, const model::StackInfo& info, const Light& light,
+                                            const model::Printer& printer);
 
 /// As --dither says. Throws Fault::usage where several turns differ that have no whole number of frames, or do not
 /// divide the turns of the print.

@@ -14,6 +14,7 @@
 #include "base/text/text.hpp"
 #include "io/exr/single_image.hpp"
 #include "io/image/capture_folder.hpp"
+#include "io/image/frame_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/video.hpp"
 #include "io/stream/log_lines.hpp"
@@ -58,6 +59,7 @@ class VideoSource : public ImageSource {
  public:
   explicit VideoSource(const std::string& path) : reader_(path) {
     info_ = frames_of(reader_.format().width, reader_.format().height, count_video_frames(path));
+    take_frame_facts(reader_.format().facts, info_, path);
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return about_; }
@@ -148,10 +150,13 @@ class FolderSource : public ImageSource {
 
  protected:
   FolderSource(const std::string& path, FolderOf of)
-      : folder_(path, false, of), index_(read_frame_index(path, folder_)) {}
+      : folder_(path, false, of), facts_(path + "/facts.txt"), index_(read_frame_index(path, folder_)) {}
   /// Those of the first image, which all must have.
   void set_size(int width, int height) {
     info_ = frames_of(width, height, folder_.count());
+    if (has_regular_file(facts_)) {
+      take_frame_facts(read_all(facts_, Content::text, std::uint64_t{1} << 20), info_, facts_);
+    }
     if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
   }
   virtual Image read(int i) = 0;
@@ -160,6 +165,7 @@ class FolderSource : public ImageSource {
   model::StackInfo info_;
 
  private:
+  std::string facts_;
   std::vector<model::ImageInfo> index_;
   int taken_ = 0;
 };

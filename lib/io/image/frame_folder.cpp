@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image/frame_folder.hpp"
 
+#include <cmath>
 #include <cstdio>
 
+#include "base/error.hpp"
+#include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 
 namespace vam::io {
@@ -10,11 +13,13 @@ namespace vam::io {
 namespace {
 
 constexpr const char* index_name = "frames.csv";
+constexpr const char* facts_name = "facts.txt";
+constexpr const char* step_name = "vam:angle_step_deg";
 
 bool is_frame(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   const bool digits = !stem.empty() && stem.find_first_not_of("0123456789") == std::string::npos;
-  return file.filename() == index_name || (digits && file.extension() == ".png");
+  return file.filename() == index_name || file.filename() == facts_name || (digits && file.extension() == ".png");
 }
 
 std::string number_name(int number) {
@@ -25,19 +30,44 @@ std::string number_name(int number) {
 
 }  // namespace
 
+std::string frame_facts(const model::StackInfo& info) {
+  std::string text;
+  for (const auto& [name, value] : info.extra) {
+    if (name.starts_with("vam:") && value.find('\n') == std::string::npos) text += name + " " + trimmed(value) + "\n";
+  }
+  return text + step_name + " " + format_number(info.angle_step_deg, 12) + "\n";
+}
+
+void take_frame_facts(const std::string& text, model::StackInfo& info, const std::string& name) {
+  for (const std::string& line : split(text, '\n')) {
+    const std::size_t blank = line.find(' ');
+    if (!line.starts_with("vam:") || blank == std::string::npos) continue;
+    const std::string value = trimmed(line.substr(blank));
+    info.extra[line.substr(0, blank)] = value;
+    if (line.substr(0, blank) != step_name) continue;
+    info.extra.erase(step_name);
+    const auto step = parse_number(value);
+    if (!step || !(std::abs(*step) <= 360))
+      throw Error{Fault::data,
+                  name + ": states " + step_name + " " + excerpt(value) + ", not an angle; write it again"};
+    info.angle_step_deg = *step;
+  }
+}
+
 FrameFolder::FrameFolder(const std::string& path) : folder_(path, is_frame) {}
 
 void FrameFolder::write(int number, const GreyImage& frame, const ImageText& text) const {
   folder_.write(number_name(number), encode_png(frame, text));
 }
 
-void FrameFolder::commit(std::span<const model::ImageInfo> frames) {
+void FrameFolder::commit(std::span<const model::ImageInfo> frames, const std::string& facts) {
   std::string index = "file,time_s,angle_deg\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     index += number_name(static_cast<int>(i)) + "," + format_number(frames[i].time_s, 9) + "," +
              format_number(frames[i].angle_deg, 9) + "\n";
   }
   folder_.write(index_name, index);
+  if (!facts.empty()) folder_.write(facts_name, facts);
   folder_.commit();
 }
 

@@ -12,15 +12,21 @@
 
 namespace vam::io {
 
-/// 00000.png, 00001.png, ... and frames.csv (file,time_s,angle_deg). An older folder is replaced when it is empty or
-/// holds nothing but such frames. Throws as OutputFolder does.
+/// What frames state beside their pixels, where a format has no attributes: those of the stack and its
+/// vam:angle_step_deg, a line each, "vam:printer ...".
+[[nodiscard]] std::string frame_facts(const model::StackInfo& info);
+/// Takes them into `info`. Throws Fault::data, beginning with `name`, for a step that is no angle.
+void take_frame_facts(const std::string& text, model::StackInfo& info, const std::string& name);
+
+/// 00000.png, 00001.png, ..., frames.csv (file,time_s,angle_deg) and facts.txt (frame_facts()). An older folder is
+/// replaced when it is empty or holds nothing but such frames. Throws as OutputFolder does.
 class FrameFolder {
  public:
   explicit FrameFolder(const std::string& path);
   /// Frame `number` from 0, in any order, from any thread.
   void write(int number, const GreyImage& frame, const ImageText& text) const;
   /// After all: when and at which angle frame i is shown.
-  void commit(std::span<const model::ImageInfo> frames);
+  void commit(std::span<const model::ImageInfo> frames, const std::string& facts = "");
 
  private:
   OutputFolder folder_;

@@ -27,14 +27,17 @@ model::ImageInfo about(const ProjectorFrame& frame) {
 class FolderSink : public FrameSink {
  public:
   FolderSink(const std::string& path, const FrameSinkOptions& options)
-      : folder_(path), fps_(format_number(options.fps, 9)), history_(join(options.info.history, "\n")) {}
+      : folder_(path),
+        fps_(format_number(options.fps, 9)),
+        history_(join(options.info.history, "\n")),
+        facts_(frame_facts(options.info)) {}
 
   void write(std::span<const ProjectorFrame> frames) override {
     const int first = count_of(shown_);
     parallel_for(count_of(frames), [&](int i) { folder_.write(first + i, frames[i].levels, text(frames[i])); });
     for (const auto& frame : frames) shown_.push_back(about(frame));
   }
-  void commit() override { folder_.commit(shown_); }
+  void commit() override { folder_.commit(shown_, facts_); }
 
  private:
   [[nodiscard]] ImageText text(const ProjectorFrame& frame) const {
@@ -42,7 +45,7 @@ class FolderSink : public FrameSink {
   }
 
   FrameFolder folder_;
-  std::string fps_, history_;
+  std::string fps_, history_, facts_;
   std::vector<model::ImageInfo> shown_;
 };
 
@@ -69,8 +72,12 @@ class StackSink : public FrameSink {
 class VideoSink : public FrameSink {
  public:
   VideoSink(const std::string& path, const FrameSinkOptions& options)
-      : writer_(path, {options.info.width, options.info.height, options.bits, options.fps,
-                       join(options.info.history, "\n")}) {}
+      : writer_(path, {.width = options.info.width,
+                       .height = options.info.height,
+                       .bits = options.bits,
+                       .fps = options.fps,
+                       .comment = join(options.info.history, "\n"),
+                       .facts = frame_facts(options.info)}) {}
 
   void write(std::span<const ProjectorFrame> frames) override {
     writer_.write(count_of(frames), [&](int i) -> const GreyImage& { return frames[i].levels; });

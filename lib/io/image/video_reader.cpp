@@ -130,6 +130,8 @@ struct VideoReader::State {
     }
     if (const AVDictionaryEntry* entry = av::api().av_dict_get(container->metadata, "comment", nullptr, 0))
       format.comment = entry->value;
+    if (const auto* stated = av::api().av_dict_get(container->metadata, video_facts, nullptr, 0))
+      format.facts = stated->value;
   }
 
   // The next packet of the stream; false at the end.

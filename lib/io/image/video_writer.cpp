@@ -147,6 +147,7 @@ struct VideoWriter::State {
     container->pb = io;
     container->flags |= AVFMT_FLAG_BITEXACT;  // no library version, no random identifiers
     av::api().av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);
+    if (!format.facts.empty()) av::api().av_dict_set(&container->metadata, video_facts, format.facts.c_str(), 0);
     if (lossless) av::api().av_dict_set(&container->metadata, video_version, FormatKind("video").version().c_str(), 0);
   }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "score/exposure_plan.hpp"
-
 #include "light/simulation/simulation.hpp"
 #include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"

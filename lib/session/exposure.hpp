@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long and how bright a sinogram is shown, and what of the planned dose that gives.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "model/printer.hpp"
+#include "model/stack.hpp"
+
+namespace vam::session {
+
+struct Exposure {
+  double turns = 1;
+  double full_scale = 0;             // the sinogram's value at full intensity
+  std::optional<double> share = {};  // of the planned dose; none: the resin is not known
+};
+
+/// What options say instead of the plan.
+struct GivenExposure {
+  std::optional<double> turns = {}, full_scale = {};
+  double multiplier = 1;  // of the intensity
+};
+
+/// The plan that the stack states (vam:shown_turns, vam:full_scale); where it states its threshold alone, as joined
+/// pieces do, the fewest turns in which the printer reaches the resin's critical dose there; where the resin is not
+/// known, stage.turns with `peak`, the largest value, at full intensity. Throws Fault::data for a plan that is none.
+[[nodiscard]] Exposure exposure_of(const model::StackInfo& info, const model::Printer& printer, double peak,
+                                   const GivenExposure& given);
+
+/// Throws Fault::data for less than 0.9 or more than 1.1 of the planned dose, which `accepted` makes a warning; says
+/// so of what else differs. `name` begins the message.
+void require_dose(const Exposure& exposure, bool accepted, const std::string& name);
+
+/// Behind a verdict: the command that shows `sinogram` as planned, or what is required for a plan.
+[[nodiscard]] std::string how_to_show(bool planned, const std::string& sinogram);
+
+}  // namespace vam::session

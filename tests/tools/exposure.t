@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# ctest: RESOURCE_LOCK devices COST 60
+# The exposure travels with the light: what vam-optimize planned is what video, images, screen and print give, and the
+# printer travels with it, whatever the folder.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+PATH=$VAM_SOURCE/scripts:$PATH; export PATH
+cat >printer.toml <<'TOML'
+[projector]
+columns = 64
+rows = 48
+pixel_mm = 0.26
+axis_column = 31.5
+axis_row = 23.5
+fps = 30
+max_intensity_mw_cm2 = 40
+[vial]
+radius_mm = 7
+[resin]
+absorption_per_mm = 0.05
+critical_dose_mj_cm3 = 100
+[stage]
+device = "sim:"
+speed_deg_s = 90
+# end of the settings
+TOML
+mkdir else
+vam-slice --shape half-cylinder:diameter=5,height=4 --voxel 0.26 -o part.vdb
+vam-optimize part.vdb --angles 60 --verbose -o light.exr --report light.json 2>said
+attr() { python3 "$VAM_SOURCE/tests/tools/exr.py" attr "$1" "$2" | tr -d ' '; }
+turns=$(json light.json turns)
+holds 'a print of several turns' "$turns > 1"
+is 'which the stack states' "$(attr light.exr vam:shown_turns)" "$turns"
+ok 'the verdict ends with the command' grep -q '; to show it: vam-project light.exr -o print.mkv$' said
+vam-optimize part.vdb --angles 60 2>said >piped.exr
+is 'a pipe states the same' "$(attr piped.exr vam:shown_turns) $(attr piped.exr vam:full_scale)" "$turns $(attr light.exr vam:full_scale)"
+quiet 'the dose of the print' vam-dose light.exr --like part.vdb -o planned.vdb --report planned.json
+holds 'of these turns' "$(json planned.json turns) == $turns"
+vam-score planned.vdb --target part.vdb --report planned.score.json >here.txt
+holds 'cures the part at the critical dose' "$(json planned.score.json critical_dose) == 100 && $(json planned.score.json cured_part) == 1"
+ok 'in the time of the verdict' grep -q "duration $(awk "BEGIN { print 4 * $turns }") s" here.txt
+
+# cures NAME FILE: the dose of what was shown is the planned one, to 2 %, by its file alone.
+cures() {
+  (cd else && vam-score "../$2" --target ../part.vdb --report "../$2.json" >"../$2.txt")
+  holds "$1: the planned dose" "($(json "$2.json" mean_part) / $(json planned.score.json mean_part) - 1) ^ 2 < 0.02 ^ 2"
+  holds "$1: cures the part" "$(json "$2.json" critical_dose) == 100 && $(json "$2.json" cured_part) > 0.99 && $(json "$2.json" cured_void) < 0.01"
+}
+shown() { (cd else && vam-convert "../$2" --geometry vial -o shown.exr && vam-dose shown.exr --like ../part.vdb -o "../$1.vdb") 2>/dev/null; cures "$1" "$1.vdb"; }
+quiet 'a video' vam-project light.exr -o print.mkv
+shown video print.mkv
+quiet 'images' vam-project light.exr -o frames/
+shown images frames
+mkdir card card/dri; touch card/dri/card0
+FAKE_DRM=$PWD/card LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card.so vam-project light.exr -o drm:HDMI-A-1 --max-missed 1 --max-missed-lit 1 --log flips 2>errors
+is 'a screen' "$? $(cat errors)" '0 '
+vam-dose light.exr --like part.vdb --shown flips -o screen.vdb
+cures screen screen.vdb
+ok 'vam-print' vam-print light.exr --display null: --uncalibrated --max-missed 1 --max-missed-lit 1 --run run
+vam-dose light.exr --like part.vdb --shown run -o print.vdb
+cures vam-print print.vdb
+
+# From another folder the same verdict; what differs there is named.
+(cd else && vam-score ../planned.vdb --target ../part.vdb) >there.txt
+same 'the verdict is that of any folder' here.txt there.txt
+sed 's/= 7$/= 9/; s/= 100$/= 130/' printer.toml >else/printer.toml
+(cd else && vam-score ../planned.vdb --target ../part.vdb) >there.txt 2>errors
+same 'with another printer in it, too' here.txt there.txt
+ok 'which is named' grep -q 'planned.vdb: made for another printer than printer.toml: .*vial.radius_mm 7, now 9; .*critical_dose_mj_cm3 100, now 130; its own counts' errors
+(cd else && vam-dose ../light.exr --like ../part.vdb --report other.json -o other.vdb) 2>/dev/null
+holds 'the dose is that of its printer' "$(json else/other.json critical_dose_mj_cm3) == 100"
+fails 65 'vial.radius_mm 7, now 9' vam-project light.exr --printer else/printer.toml -o x.mkv
+rm else/printer.toml
+
+# Another exposure than the planned one.
+fails 65 'light.exr: 1 turn gives 0[.][0-9]* of the planned dose, which .* turns reach; .*--accept-dose' vam-project light.exr --turns 1 -o x.mkv
+fails 65 'of the planned dose' vam-print light.exr --display null: --uncalibrated --turns 1 --run short
+fails 65 'of the planned dose' vam-project light.exr --speed 45 -o x.mkv
+ok 'is accepted on request' vam-project light.exr --turns 1 --accept-dose -o short.mkv --report short.json
+holds 'and told in the report' "($(json short.json share_of_planned_dose) * $turns - 1) ^ 2 < 1e-6"
+vam-project light.exr --multiplier 0.95 -o x.mkv 2>said
+ok 'a little less is said' grep -q 'warning: light.exr: .* 0.95 of the planned dose' said
+
+# Pieces know no plan of the whole; joined, they have that of their threshold.
+vam-optimize part.vdb --geometry parallel --angles 60 -o flat.exr --report flat.json 2>/dev/null
+is 'a piece states no exposure' "$(vam-optimize part.vdb --geometry parallel --angles 60 --slices 1/1 -o piece.exr 2>/dev/null; attr piece.exr vam:shown_turns)" ''
+vam-dose piece.exr --like part.vdb --report piece.json -o piece.vdb
+holds 'of which the turns follow from its light' "$(json piece.json turns) == $(json flat.json turns)"
+
+vam-optimize part.vdb --angles 60 --iterations 2 --set resin.absorption_per_mm=0 --verbose -o x.exr 2>said
+ok 'without a known resin dose and time are relative' grep -q 'dose and time are relative: vam-calibrate critical-dose measures' said
+
+done_testing
