@@ -27,7 +27,7 @@ for name in 'a b' 'x`id>pwned`' 'q"$HOME;touch pwned;' "it's" '$(shell touch pwn
   cp ../box.off "./$name.off"
 done
 cp ../box.off plain.off
-all=$(make -n VOXEL=0.5 all | grep -c '^vam-slice ')
+all=$(make -n VOXEL=0.5 all | grep -c '^vam-slice .*off ')
 is 'every mesh is a part' "$all" 9
 targets='plain.vdb a+20b.vdb x+60id+3Epwned+60.vdb q+22+24HOME+3Btouch+20pwned+3B.vdb it+27s.vdb
   +24+28shell+20touch+20pwned+29.vdb p+25c+23d+3Ae+3Df+2Bg.vdb +2Do.vdb n+0Al.vdb'
@@ -37,7 +37,7 @@ is 'nothing is made twice' "$(make VOXEL=0.5 $targets | grep -c '^vam-slice')" 0
 touch 'a b.off'
 is 'a changed mesh is' "$(make VOXEL=0.5 $targets | grep '^vam-slice')" 'vam-slice .parts/a+20b.off --voxel 0.5  -o a+20b.vdb'
 make clean >/dev/null
-is 'clean leaves the meshes' "$(ls -A | grep -vc 'off$')" 3
+is 'clean leaves the meshes' "$(ls -A | grep -vc 'off$')" 4
 cp plain.off plain.stl && mkdir .parts
 fails 2 'plain.stl plain.off: each would make plain.vdb; rename all but one' make all
 mv plain.stl 'a b.stl'
