@@ -52,11 +52,12 @@ echo '{"utc":"2026-01-01T00:00:00.000Z","t_monotonic_s":1,"event":"display","sch
 echo '{"utc":"2026-01-01T00:00:00.000Z","t_monotonic_s":1,"event":"armed","turns":1,"from_deg":0,"schema":"vam-print/1"}' >run/events.jsonl
 echo '{"schema": "vam-print/1", "outcome": "done", "status": 0, "turns": 1}' >summary.json
 timeout --preserve-status -s INT 1 vam-optimize part.vdb $printer --angles 24 --iterations 100000 --patience 0 --checkpoint run.state -o no.exr 2>.log/err
-newer part.vdb dose.vdb light.exr sino.exr print.mkv part.nrrd printer.toml slice.json run1.json resin.json curve.json flips.jsonl summary.json
-newer run.state
-python3 edit.py newer records/current-latency.json new.records/current-latency.json
-python3 edit.py newer views/manifest.jsonl new.views/manifest.jsonl
-python3 edit.py newer run/events.jsonl new.run/events.jsonl
+newer part.vdb dose.vdb light.exr sino.exr print.mkv part.nrrd printer.toml slice.json run1.json resin.json curve.json flips.jsonl summary.json run.state
+for file in records/current-latency.json views/manifest.jsonl run/events.jsonl; do python3 edit.py newer $file new.$file; done
+for file in log:flips.jsonl log:stage.jsonl angles:angles.jsonl project:project.json; do
+  mkdir "run.${file#*:}"; cp run/events.jsonl summary.json "run.${file#*:}"
+  (cd "run.${file#*:}" && echo '{"t_monotonic_s":1,"schema":"vam-'"${file%:*}"'/2"}' >"${file#*:}" && sha256sum -- * >SHA256SUMS)
+done
 mv new.summary.json new.sum/summary.json; cp run/events.jsonl new.sum
 : >new.sum/flips.jsonl
 
@@ -110,6 +111,11 @@ vam-print|1|vam-status new.run
 vam-print|1|vam-status new.sum
 vam-print|1|vam-check new.run
 vam-print|1|vam-check new.sum
+vam-log|1|vam-check --fast run.flips.jsonl
+vam-log|1|vam-check run.stage.jsonl
+vam-angles|1|vam-check run.angles.jsonl
+vam-log|1|vam-check new.flips.jsonl
+vam-project|1|vam-check run.project.json
 vam-print|1|vam-print light.exr --display null: --resume new.run
 END
 fails 65 "states '-1' as the version of its format .vam-slice., which is no whole number from 1 on; write it again" sh -c 'sed "s|vam-slice/1|vam-slice/-1|" slice.json | vam-check'

@@ -42,20 +42,11 @@ plot::ImageFigure section_of(const io::SparseVolume& volume) {
   return figure;
 }
 
-Json last_line(const std::string& path) {
-  io::LogLines log(path);
-  Json last;
-  for (std::string text; log.next(text);) {
-    Json line = parse_distinct(text, path);
-    if (line.is_object()) last = std::move(line);
-  }
-  return last;
-}
-
 }  // namespace
 
 std::string correction_text(const RunFolder& run) {
-  const Json line = last_line(run.file("renewed.jsonl"));
+  Json line;
+  for (io::LogLines log(run.file("renewed.jsonl")); log.next(line);) continue;
   if (!line.is_object()) return "";
   if (text_at(line, "event") == "hold") return "as before: " + text_at(line, "reason");
   const double turns = number_at(line, "turns");

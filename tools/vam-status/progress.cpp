@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <limits>
 
 #include "base/error.hpp"
@@ -34,15 +33,6 @@ namespace fs = std::filesystem;
 constexpr double silence_s = 5;               // longer than any pause of a stage that turns
 constexpr double loading_s = 600;             // and than it takes to load frames and to find a reference
 constexpr std::streamoff tail_bytes = 65536;  // holds many entries
-
-// The whole lines at the end of a log, or of all of it.
-void each_line(const std::string& file, bool only_tail, const std::function<void(const Json&)>& take) {
-  io::LogLines lines(file, only_tail ? tail_bytes : 0);
-  for (std::string text; lines.next(text);) {
-    const Json line = parse_distinct(text, file);
-    if (line.is_object()) take(line);
-  }
-}
 
 // vam-print keeps a lock on its events until the last tool has ended.
 bool is_locked(const std::string& file) {
@@ -104,9 +94,10 @@ void RunFolder::read() {
   look_for_end();
   progress_.resumed_by = io::resumed_by(path_);
   read_records();
-  each_line(file("ost.jsonl"), true, [&](const Json& line) {
+  io::LogLines figures(file("ost.jsonl"), tail_bytes);
+  for (Json line; figures.next(line);) {
     if (line.contains("missing_percent")) progress_.missing_percent = number_at(line, "missing_percent", 0);
-  });
+  }
 }
 
 void RunFolder::read_events() {
@@ -121,7 +112,8 @@ void RunFolder::read_events() {
     const std::chrono::duration<double> age = fs::file_time_type::clock::now() - written;
     progress_.silent_s = std::min(progress_.silent_s, std::max(0.0, age.count()));
   }
-  each_line(file("events.jsonl"), false, [&](const Json& line) {
+  io::LogLines events(file("events.jsonl"));
+  for (Json line; events.next(line);) {
     if (line.value("event", Json()) == "armed") {
       progress_.turns = number_at(line, "turns", 0);
       progress_.from_deg = number_at(line, "from_deg", 0);
@@ -129,7 +121,7 @@ void RunFolder::read_events() {
       progress_.outcome = text_at(line, "outcome");
       progress_.status = static_cast<int>(number_at(line, "status", 0));
     }
-  });
+  }
   if (!progress_.outcome) read_summary();
   progress_.simulated.clear();
   const auto look = [&](const char* log, const char* event, const char* what) {
@@ -162,8 +154,8 @@ void RunFolder::read_summary() {
 }
 
 void RunFolder::read_angle() {
-  each_line(file("angles.jsonl"), true,
-            [&](const Json& line) { progress_.angle_deg = number_at(line, "angle_deg", progress_.angle_deg); });
+  io::LogLines angles(file("angles.jsonl"), tail_bytes);
+  for (Json line; angles.next(line);) progress_.angle_deg = number_at(line, "angle_deg", progress_.angle_deg);
 }
 
 void RunFolder::read_flips() {

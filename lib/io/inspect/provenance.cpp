@@ -98,6 +98,7 @@ std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
 
 // A print that has ended left a list of hashes, and one of its flips in the summary.
 std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
+  require_run_versions(path);
   const auto stated = stated_flips(path);
   if (has_run_sums(path)) {
     const RunSums sums = read_run_sums(path);
@@ -125,12 +126,6 @@ std::vector<ProvenanceEntry> inspect_folder(const std::string& path, bool fast) 
   return is_capture_folder(path) ? inspect_capture(path, fast) : inspect_images(path, FileType::images, fast);
 }
 
-// The manifest of a capture stands for its folder: it says nothing without the images.
-bool is_manifest(const std::string& path, const std::string& text) {
-  if (std::filesystem::path(path).filename() != "manifest.jsonl") return false;
-  return is_of(parse_json(text.substr(0, text.find('\n'))), "vam-capture");
-}
-
 // What the tools that use a record of a calibration would refuse.
 void require_record_size(const Json& json, const std::string& text, const std::string& name) {
   const bool is_record = is_of(json, "vam-calibration") || is_of(json, "vam-resin") || is_of(json, "vam-working-curve");
@@ -153,8 +148,9 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   }
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
-  if (is_manifest(path, text)) {
-    const std::string folder = std::filesystem::path(path).parent_path().string();
+  const Json head = parse_distinct(text.substr(0, text.find('\n')), name);  // a log states its version
+  if (file.filename() == "manifest.jsonl" && is_of(head, "vam-capture")) {  // it says nothing without the images
+    const std::string folder = file.parent_path().string();
     return inspect_capture(folder.empty() ? "." : folder, fast);
   }
   const Json json = parse_distinct(text, name);

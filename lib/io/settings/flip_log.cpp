@@ -24,12 +24,9 @@ constexpr double last_run_up_deg = -360;  // from this angle on missed blanks ar
 // SHA-256 of the sinogram of a run folder; empty where it is not known.
 std::string armed_sinogram(const std::string& run) {
   if (!std::filesystem::is_directory(run)) return "";
-  const std::string path = (std::filesystem::path(run) / "events.jsonl").string();
-  LogLines events(path);
-  for (std::string text; events.next(text);) {
-    const Json event = parse_distinct(text, path);
-    if (!event.is_object() || !event.contains("sinogram_sha256")) continue;
-    if (event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
+  LogLines events((std::filesystem::path(run) / "events.jsonl").string());
+  for (Json event; events.next(event);) {
+    if (event.contains("sinogram_sha256") && event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
   }
   return "";
 }
@@ -209,12 +206,10 @@ std::optional<FlipSummary> stated_flips(const std::string& run) {
 }
 
 std::optional<std::string> logged_outcome(const std::string& run) {
-  const std::string path = (std::filesystem::path(run) / "events.jsonl").string();
   std::optional<std::string> outcome;
-  LogLines events(path);
-  for (std::string text; events.next(text);) {
-    const Json event = parse_distinct(text, path);
-    if (event.is_object() && text_at(event, "event") == "end") outcome = text_at(event, "outcome", "unknown");
+  LogLines events((std::filesystem::path(run) / "events.jsonl").string());
+  for (Json event; events.next(event);) {
+    if (text_at(event, "event") == "end") outcome = text_at(event, "outcome", "unknown");
   }
   return outcome;
 }

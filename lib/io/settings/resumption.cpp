@@ -31,11 +31,8 @@ struct RunLinks {
 
 RunLinks links_of(const std::string& run) {
   RunLinks links;
-  const std::string path = (fs::path(run) / "events.jsonl").string();
-  LogLines events(path);
-  for (std::string text; events.next(text);) {
-    const Json event = parse_distinct(text, path);
-    if (!event.is_object()) continue;
+  LogLines events((fs::path(run) / "events.jsonl").string());
+  for (Json event; events.next(event);) {
     const std::string name = text_at(event, "event");
     if (name == "armed") {
       links.armed_utc = text_at(event, "utc");

@@ -174,6 +174,16 @@ void require_run_settings(const std::string& folder) {
                                "restore it"};
 }
 
+void require_run_versions(const std::string& folder) {
+  for (const std::string& name : entries_of(folder)) {
+    const std::string path = path_in(folder, name);
+    if (!fs::is_regular_file(fs::symlink_status(path))) continue;
+    std::string first;
+    if (name.ends_with(".jsonl")) LogLines(path).next(first);
+    if (name.ends_with(".json")) (void)parse_distinct(read_all(path, Content::text, std::uint64_t{64} << 20), path);
+  }
+}
+
 std::string sum_problem(const std::string& folder, const RunSums::value_type& file) {
   const auto& [name, hash] = file;
   if (std::string problem = gone(folder, name); !problem.empty()) return problem;

@@ -27,6 +27,9 @@ void require_run_logs(const std::string& folder);
 /// events.
 void require_run_settings(const std::string& folder);
 
+/// Throws Fault::data where a log, record or report states a version that is not read.
+void require_run_versions(const std::string& folder);
+
 /// What is wrong with a file of the list, as a line; empty: nothing.
 [[nodiscard]] std::string sum_problem(const std::string& folder, const RunSums::value_type& file);
 

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/system_error.hpp"
@@ -34,9 +35,7 @@ LogLines::LogLines(const std::string& path, std::streamoff tail_bytes) : path_(p
   if (!has_regular_file(path)) return;
   stream_.open(path);
   if (!stream_.is_open()) throw system_error(Fault::no_input, path + ": cannot open", errno);
-  if (tail_bytes == 0) return;
-  std::string first;  // it states the version
-  if (next(first)) (void)parse_distinct(first, path);
+  if (std::string first; tail_bytes == 0 || !next(first)) return;
   stream_.seekg(0, std::ios::end);
   const std::streamoff size = stream_.tellg();
   stream_.seekg(size > tail_bytes ? size - tail_bytes : 0);
@@ -50,7 +49,10 @@ bool LogLines::next(std::string& line) {
   std::streambuf& bytes = *stream_.rdbuf();
   constexpr int end_of_file = std::char_traits<char>::eof();
   for (int byte = bytes.sbumpc(); byte != end_of_file; byte = bytes.sbumpc()) {
-    if (byte == '\n') return true;
+    if (byte == '\n') {
+      if (begin == 0) (void)parse_distinct(line, path_);
+      return true;
+    }
     if (line.size() == most_bytes) {
       throw Error{Fault::data,
                   path_ + ": has a line of more than 1 MiB, from byte " + std::to_string(begin) + " on; it is damaged"};
@@ -59,6 +61,16 @@ bool LogLines::next(std::string& line) {
   }
   stream_.clear();
   stream_.seekg(begin);
+  return false;
+}
+
+bool LogLines::next(Json& entry) {
+  for (std::string line; next(line);) {
+    Json whole = parse_distinct(line, path_);
+    if (!whole.is_object()) continue;
+    entry = std::move(whole);
+    return true;
+  }
   return false;
 }
 

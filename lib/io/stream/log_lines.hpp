@@ -5,6 +5,8 @@
 #include <fstream>
 #include <string>
 
+#include "base/text/json_fwd.hpp"
+
 namespace vam::io {
 
 /// Whether a file of that name is there. Throws Fault::no_input where a link leads nowhere, or the name cannot be
@@ -18,8 +20,11 @@ class LogLines {
   /// Fault::no_input.
   explicit LogLines(const std::string& path, std::streamoff tail_bytes = 0);
   /// The next whole line, without its end; false when there is none yet. What is not whole is read again by the next
-  /// call: its writer goes on, or is dead. Throws Fault::data for a line of more than 1 MiB.
+  /// call: its writer goes on, or is dead. Throws Fault::data for a line of more than 1 MiB, and where the first states
+  /// a version that is not read.
   bool next(std::string& line);
+  /// The next that is an entry, which is kept when there is none yet; throws as parse_distinct() does, too.
+  bool next(Json& entry);
 
  private:
   std::string path_;
