@@ -27,14 +27,8 @@ solid::FillMode fill_mode(const Options& options) {
 solid::Part image_part(const Options& options) {
   const auto folder = std::make_shared<io::ImageFolder>(options.input);
   const GreyImage first = folder->read(0);
-  solid::ImageStack stack{first.width, first.height, folder->count(), [folder](int index) {
-                            const GreyImage grey = folder->read(index);
-                            Image image(grey.width, grey.height);
-                            for (std::size_t i = 0; i < image.size(); ++i) {
-                              image.values[i] = static_cast<float>(grey.values[i]) / static_cast<float>(grey.full());
-                            }
-                            return image;
-                          }};
+  solid::ImageStack stack{first.width, first.height, folder->count(),
+                          [folder](int index) { return io::fractions(folder->read(index)); }};
   return solid::image_part(std::move(stack), options.input, options.voxel_mm.value(), options.placement.stretch_z);
 }
 

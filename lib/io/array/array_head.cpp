@@ -4,17 +4,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "io/hdf5/hdf5_array.hpp"
+
 namespace vam::io::arrays {
 
-namespace {
-
-std::string shape_text(const std::vector<std::uint64_t>& shape) {
-  std::string text;
-  for (const std::uint64_t size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
-  return text;
-}
-
-}  // namespace
+using hdf5::shape_text;
 
 void set_shape(const std::vector<std::uint64_t>& shape, Head& head) {
   if (shape.size() != 2 && shape.size() != 3) {

@@ -8,8 +8,14 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "io/hdf5/stated_views.hpp"
+
+/// "2 x 3 x 4"
+namespace vam::io::hdf5 {
+[[nodiscard]] std::string shape_text(const std::vector<std::uint64_t>& shape);
+}
 
 namespace vam::io {
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "io/hdf5/hdf5_array.hpp"
 #include "io/hdf5/private/hdf5_tree.hpp"
 
 namespace vam::io::hdf5 {

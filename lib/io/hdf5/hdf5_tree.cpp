@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "io/hdf5/hdf5_array.hpp"
 
 namespace vam::io::hdf5 {
 

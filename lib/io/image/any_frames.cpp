@@ -24,14 +24,6 @@ namespace vam::io {
 
 namespace {
 
-Image fractions(const GreyImage& grey) {
-  Image image(grey.width, grey.height);
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    image.values[i] = static_cast<float>(grey.values[i]) / static_cast<float>(grey.full());
-  }
-  return image;
-}
-
 model::StackInfo frames_of(int width, int height, int count) {
   model::StackInfo info;
   info.kind = model::Kind::frames;

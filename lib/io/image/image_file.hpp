@@ -8,10 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "base/image.hpp"
 #include "base/index.hpp"
 #include "base/pixels.hpp"
 
 namespace vam::io {
+
+/// Of full grey, 0...1.
+[[nodiscard]] Image fractions(const GreyImage& grey);
 
 /// Reads PNG or TIFF, recognised by their content, as 8 or 16 grey bits; colours become their luma, transparency is
 /// ignored, fewer bits are spread over 8. "-" is stdin.

@@ -18,25 +18,14 @@ namespace vam::io {
 
 namespace {
 
-Image to_image(const GreyImage& grey) {
-  Image image(grey.width, grey.height);
-  const float scale = 1.0F / static_cast<float>(grey.full());
-  for (std::size_t i = 0; i < image.size(); ++i) image.values[i] = scale * static_cast<float>(grey.values[i]);
-  return image;
-}
-
-bool ends_in(const std::string& path, const std::string& ending) {
-  return path.size() >= ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 bool is_video(const std::string& path) {
-  return ends_in(path, ".mkv") || ends_in(path, ".mp4") || ends_in(path, ".avi");
+  return path.ends_with(".mkv") || path.ends_with(".mp4") || path.ends_with(".avi");
 }
 
 }  // namespace
 
 bool is_image_file(const std::string& path) {
-  return ends_in(path, ".png") || ends_in(path, ".tif") || ends_in(path, ".tiff");
+  return path.ends_with(".png") || path.ends_with(".tif") || path.ends_with(".tiff");
 }
 
 struct ViewSource::State {
@@ -74,7 +63,7 @@ struct ViewSource::State {
     if (recorded == capture->frames.end()) return false;
     const CaptureRecord& record = recorded++->second;
     frame.name = path + "/" + capture_file_name(record.place);
-    frame.image = to_image(read_captured(path, record));
+    frame.image = fractions(read_captured(path, record));
     frame.time_s = record.t_monotonic_s;
     frame.time_sigma_s = record.time_sigma_s.value_or(0);
     frame.angle_deg = record.angle_deg ? *record.angle_deg : static_cast<double>(record.place) * needed_step();
@@ -129,12 +118,12 @@ bool ViewSource::next(CameraFrame& frame) {
   } else if (s.folder) {
     if (s.index >= s.folder->count()) return false;
     frame.name = s.folder->path(s.index);
-    frame.image = to_image(s.folder->read(s.index));
+    frame.image = fractions(s.folder->read(s.index));
     frame.angle_deg = static_cast<double>(s.folder->place(s.index)) * s.step_deg;
   } else {
     GreyImage grey;
     if (!s.video->next(grey)) return false;
-    frame.image = to_image(grey);
+    frame.image = fractions(grey);
     frame.angle_deg = s.index * s.step_deg;
   }
   ++s.index;
@@ -151,7 +140,7 @@ std::vector<std::string> ViewSource::history() const {
 }
 
 Image read_field(const std::string& path) {
-  if (is_image_file(path)) return to_image(read_image(path));
+  if (is_image_file(path)) return fractions(read_image(path));
   StackReader reader(path);
   Image sum;
   Image image;

@@ -19,9 +19,6 @@ struct Dataset {
   bool is_lost = false;       // a link to what is not in the file
 };
 
-/// "2 x 3 x 4"
-[[nodiscard]] std::string shape_text(const std::vector<std::uint64_t>& shape);
-
 /// In the order of their names, at most 4096 links; those that lead nowhere, or to other files, are lost ones.
 [[nodiscard]] std::vector<Dataset> datasets_of(hid_t file);
 
