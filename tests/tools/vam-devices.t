@@ -118,6 +118,16 @@ kill -STOP $user
 ok 'one that does not answer is killed' off
 wait $user 2>/dev/null
 is 'by that' $? 137
+stage_down
+for frozen in guardian 'tool with its guardian'; do
+  spin gcs
+  kill -STOP $guardian; [ "$frozen" = guardian ] && kill -9 $user || kill -STOP $user
+  start=$(date +%s%N)
+  is "a $frozen that is frozen is killed, and the stage stopped" "$(off) $(stood; echo $?)" "stage    $where  stopped 0"
+  holds 'in time' "$(date +%s%N) - $start < 6e9"
+  wait $user 2>/dev/null
+  stage_down
+done
 for pause in 0 0.1 0.2 0.3; do
   spin gcs --reply-delay 60
   kill -9 $guardian $user; wait $user 2>/dev/null

@@ -53,20 +53,21 @@ std::unique_ptr<DeviceLock> take_turn() {
 }
 
 // Again and again, as who was killed may have left half a conversation, whose end comes in the next one. A guardian
-// holds the lock until the device is safe: it is not disturbed.
+// holds the lock until the device is safe: it hears no SIGTERM, and has the same time before it counts as frozen.
 void insist(const std::function<void()>& act) {
-  const double begin_s = real_clock().now_s();
+  double begin_s = real_clock().now_s();
   int asked = 0;
   for (;; wait_a_moment()) {
     try {
       return act();
     } catch (const InUse& used) {
-      const double spent_s = real_clock().now_s() - begin_s;
-      if (used.holder != 0) {
-        if (used.holder != asked) kill(used.holder, SIGTERM);
+      if (used.holder != 0 && used.holder != asked) {
         asked = used.holder;
-        if (spent_s > patience_s) kill(asked, SIGKILL);
+        kill(asked, SIGTERM);
+        begin_s = real_clock().now_s();
       }
+      const double spent_s = real_clock().now_s() - begin_s;
+      if (used.holder != 0 && spent_s > patience_s) kill(asked, SIGKILL);
       if (spent_s > (asked != 0 ? attempts_s : hidden_s)) throw;
     } catch (const Error& error) {
       if (error.fault == Fault::absent || real_clock().now_s() - begin_s > attempts_s) throw;

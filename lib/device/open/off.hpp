@@ -22,9 +22,9 @@ struct Switched {
 
 /// Stops stages, puts light engines into standby, opens relays, all read back, and ends what shows an image. All at
 /// once, each in a process of its own, at most 6 s: none keeps the others from it. A tool that uses a device is asked
-/// to end (SIGTERM), and killed after 2 s; a guardian, and another call of this (6 s), is waited for. Simulators inside
-/// a tool (sim:) end with it. Fills in state or problem; never throws what a device throws. For a process without
-/// threads.
+/// to end (SIGTERM), and killed after 2 s, as its guardian is; another call of this is waited for (6 s). Simulators
+/// inside a tool (sim:) end with it. Fills in state or problem; never throws what a device throws. For a process
+/// without threads.
 void switch_off(std::vector<Switched>& devices);
 
 }  // namespace vam::device

@@ -12,10 +12,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include "base/error.hpp"
 #include "base/system_error.hpp"
+#include "device/os/process_name.hpp"
 
 namespace vam::device {
 
@@ -53,6 +55,18 @@ bool has_open(const std::string& pid, int fd) {
   return false;
 }
 
+// The guardian that has it still, when who took it has ended; 0: none that is seen.
+int guardian_of(int fd) {
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", none)) {
+    std::string name;
+    std::ifstream file(entry.path() / "comm");
+    const std::string pid = entry.path().filename();
+    if (std::getline(file, name) && name == guardian_name && has_open(pid, fd)) return std::atoi(pid.c_str());
+  }
+  return 0;
+}
+
 // Who has the lock; 0: nobody who is seen to, nullopt: this process, from now on. A holder writes its number just after
 // it has the lock, and who only asks whether it is free (locked_names) has it for a moment: so not at once.
 std::optional<int> lock(int fd, std::string& pid) {
@@ -60,7 +74,7 @@ std::optional<int> lock(int fd, std::string& pid) {
     std::array<char, 32> text{};
     if (pread(fd, text.data(), text.size() - 1, 0) > 0) pid.assign(text.data(), strcspn(text.data(), "\n"));
     if (has_open(pid, fd)) return std::atoi(pid.c_str());
-    if (attempt == 20) return 0;
+    if (attempt == 20) return guardian_of(fd);
     usleep(5000);
   }
   return std::nullopt;

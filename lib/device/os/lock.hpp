@@ -12,7 +12,7 @@ namespace vam::device {
 /// Fault::busy: another process holds the lock.
 struct InUse : Error {
   InUse(const std::string& line, int process) : Error(Fault::busy, line), holder(process) {}
-  int holder;  // seen to hold it; 0: its guardian does, or a process of another user
+  int holder;  // seen to hold it, itself or as its guardian; 0: a process of another user
 };
 
 /// Holds the device of that name for this process and, through handle(), for its guardian until the device is safe.

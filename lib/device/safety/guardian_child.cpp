@@ -125,7 +125,7 @@ std::string carry_all_out(const std::map<int, Action>& actions) {
 
 void guard(int socket, int parent, double stall_s) {
   detach(socket);
-  name_process("vam-guardian");  // pkill spares it, with whatever name or words the tool is killed by
+  name_process(guardian_name);
   const sigset_t waiting = hear_of_the_end();
   hurry(Urgency::guardian);
   std::map<int, Action> actions;
