@@ -407,19 +407,17 @@ def mesh_of(path):
 
 
 def arrays_of(path):
-    """Those of an archive of NumPy, an MRC file of floats, a TIFF of our own (make.py): (name, record)."""
+    """Those of an archive of NumPy, a TIFF of our own (make.py): (name, record)."""
     ending = os.path.splitext(path)[1]
     if ending == ".npz":
         with zipfile.ZipFile(path) as archive:
             return [(name, numpy_of(archive.read(name))) for name in sorted(archive.namelist())]
     with open(path, "rb") as file:
         data = file.read()
-    if ending == ".mrc":
-        return [("", {"is": {"sizes": list(struct.unpack_from("<3i", data))}, **values_of(array.array("f", data[1024:]))})]
     return [("", {"is": {"bytes": len(data)}, **values_of(array.array("B", data))})]
 
 
-BINARY = {".vdb": volumes_of, ".npz": arrays_of, ".mrc": arrays_of, ".tif": arrays_of,
+BINARY = {".vdb": volumes_of, ".npz": arrays_of, ".tif": arrays_of,
           **dict.fromkeys((".mkv", ".mp4"), lambda path: [("", video_of(path))]),
           **dict.fromkeys((".ply", ".stl", ".3mf", ".obj"), lambda path: [("", mesh_of(path))]),
           ".exr": lambda path: [("", stack_of(path))]}

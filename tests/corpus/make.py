@@ -4,7 +4,7 @@
     make.py mesh KIND FILE               a test mesh by the ending of FILE (.stl .off .obj .ply .3mf); KIND: see MESHES
     make.py part KIND MM FILE.off        a part near the edge of printing; KIND: see PARTS
     make.py array KIND FILE NZ NY NX     a ball's coverage, a dose and what scatters of it, ...; KIND: see KINDS; as .npy
-                                         .npz .nrrd .mrc .tif by the ending of FILE
+                                         .npz .nrrd .tif by the ending of FILE
     make.py images FOLDER COUNT ROWS COLUMNS ENDING   numbered grey images (.png, .tif) of a bar that turns
     make.py disc FILE.png PIXELS RADIUS  a bright disc beside the middle
     make.py cut FILE SHARE OUT           the first bytes of a file
@@ -189,10 +189,6 @@ def write_array(kind, path, nz, ny, nx):
         if ending == ".nrrd":
             out.write(("NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nendian: little\nsizes: %d %d %d\n"
                        "spacings: 0.25 0.25 0.25\n\n" % (nx, ny, nz)).encode() + raw)
-        elif ending == ".mrc":
-            out.write(struct.pack("<10i", nx, ny, nz, 2, 0, 0, 0, nx, ny, nz) +
-                      struct.pack("<6f", nx, ny, nz, 90, 90, 90) + struct.pack("<3i", 1, 2, 3) +
-                      bytes(132) + b"MAP \x44\x44\0\0" + bytes(808) + raw)
         elif ending == ".tif":
             out.write(tiff([values[k * ny * nx:(k + 1) * ny * nx] for k in range(nz)], ny, nx))
         else:
