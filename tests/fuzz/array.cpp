@@ -5,7 +5,6 @@
 
 #include "fuzz/fuzz.hpp"
 #include "io/array/private/array_parser.hpp"
-#include "io/array/private/mrc_head.hpp"
 #include "io/array/private/npy_head.hpp"
 #include "io/array/private/npz.hpp"
 #include "io/array/private/nrrd_head.hpp"
@@ -30,10 +29,8 @@ void read_bare(const std::string& file) {
     return step;
   };
   Bytes bytes(read, "array");
-  std::vector<double> voxel_mm;
-  const auto head = file.starts_with(io::arrays::nrrd_magic)  ? take_nrrd_head(bytes, voxel_mm)
-                    : file.starts_with(io::arrays::npy_magic) ? take_npy_head(bytes)
-                                                              : take_mrc_head(bytes);
+  double voxel_mm = 0;
+  const auto head = file.starts_with(io::arrays::npy_magic) ? take_npy_head(bytes) : take_nrrd_head(bytes, voxel_mm);
   read_all({head, std::move(bytes), {2, 0, 1}});
 }
 

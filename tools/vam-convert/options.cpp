@@ -74,10 +74,9 @@ void declare_projections(cli::App& app, Options& options) {
 }  // namespace
 
 void declare(cli::App& app, Options& options) {
-  app.positional(
-         "FILE", options.input,
-         "Array (.npy, .npz, HDF5, NRRD, MRC, TIFF of several pages), folder of numbered images (PNG, TIFF, EXR), "
-         "video (MKV, MP4), volume (VDB) or stack (EXR).")
+  app.positional("FILE", options.input,
+                 "Array (.npy, .npz, HDF5, NRRD, TIFF of several pages), folder of numbered images (PNG, TIFF, EXR), "
+                 "video (MKV, MP4), volume (VDB) or stack (EXR).")
       .reads();
   cli::add_output(app, options.output);
   app.group("Arrays", {}, own_files);

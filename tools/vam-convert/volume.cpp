@@ -122,22 +122,16 @@ std::string void_doubt(const Options& options, float most) {
          (options.full_scale ? " and --full-scale" : "");
 }
 
-}  // namespace
-
 /// The doubt about a file that states its voxels, as NRRD does: both sizes, where they differ.
-std::string voxel_doubt(const Options& options, const std::vector<double>& stated_mm) {
+std::string voxel_doubt(const Options& options, double stated_mm) {
   constexpr double least = 1e-3;
-  const double voxel_mm = *options.voxel_mm;
-  const auto differs = [&](double mm) { return std::abs(mm / voxel_mm - 1) > least; };
-  if (std::none_of(stated_mm.begin(), stated_mm.end(), differs)) return "";
-  std::vector<std::string> edges;
-  for (const double mm : stated_mm) edges.push_back(format_number(mm, 4));
-  const bool cubes = stated_mm.front() == stated_mm.back() && stated_mm.front() == stated_mm[stated_mm.size() / 2];
-  return io::input_name(options.input) + ": states voxels of " + (cubes ? edges.front() : join(edges, " x ")) +
-         " mm, and is read with --voxel " + format_number(voxel_mm, 4) +
-         (cubes ? "; give --voxel " + edges.front() + " unless its header is wrong"
-                : "; voxels must be cubes: resample it if its header is right");
+  if (stated_mm == 0 || std::abs(stated_mm / *options.voxel_mm - 1) <= least) return "";
+  const std::string stated = format_number(stated_mm, 4);
+  return io::input_name(options.input) + ": states voxels of " + stated + " mm, and is read with --voxel " +
+         format_number(*options.voxel_mm, 4) + "; give --voxel " + stated + " unless its header is wrong";
 }
+
+}  // namespace
 
 void make_volume(const cli::App& app, const Options& options, std::optional<io::FileType> type,
                  const model::Printer& printer) {

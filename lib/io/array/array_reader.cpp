@@ -11,7 +11,6 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "io/array/private/array_parser.hpp"
-#include "io/array/private/mrc_head.hpp"
 #include "io/array/private/npy_head.hpp"
 #include "io/array/private/npz.hpp"
 #include "io/array/private/nrrd_head.hpp"
@@ -30,9 +29,9 @@ constexpr std::uint64_t most_held = std::uint64_t{16} << 30;  // bytes of a file
 constexpr std::uint64_t most_ratio = 1032;                    // bytes of which deflate makes one
 constexpr std::uint64_t most_angles = 1 << 20;
 
-constexpr const char* known_formats = "an array (NumPy, HDF5, NRRD, MRC, TIFF)";
+constexpr const char* known_formats = "an array (NumPy, HDF5, NRRD, TIFF)";
 
-enum class Format { npy, npz, hdf5, nrrd, mrc, tiff };
+enum class Format { npy, npz, hdf5, nrrd, tiff };
 
 // Behind a block of the writer's own (MATLAB's), too.
 bool is_hdf5(std::string_view head) {
@@ -54,9 +53,7 @@ std::optional<Format> format_of(std::string_view head) {
   if (is_hdf5(head)) return Format::hdf5;
   if (begins(arrays::nrrd_magic)) return Format::nrrd;
   if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return Format::tiff;
-  const bool mrc =
-      head.size() > arrays::mrc_magic_at && head.substr(arrays::mrc_magic_at).starts_with(arrays::mrc_magic);
-  return mrc ? std::optional(Format::mrc) : std::nullopt;
+  return std::nullopt;
 }
 
 // All of a file whose list of contents may be at its end.
@@ -76,6 +73,7 @@ template <class Pass, class Views>
 void pass(const Pass& member, Views& views) {
   member(views.top_first);
   member(views.source);
+  member(views.voxel_mm);
 }
 
 void send(arrays::Parser parser, Sender& out, const StatedViews& views = {}) {
@@ -83,8 +81,6 @@ void send(arrays::Parser parser, Sender& out, const StatedViews& views = {}) {
   pass(Writer{out}, views);
   out.put(std::uint64_t{views.angles_deg.size()});
   for (const double angle : views.angles_deg) out.put(angle);
-  out.put(std::uint64_t{views.voxel_mm.size()});
-  for (const double edge : views.voxel_mm) out.put(edge);
   out.flush();
   Image image;
   for (std::size_t k = 0; k < parser.size()[0]; ++k) {
@@ -109,7 +105,7 @@ struct ArrayReader::State {
     if (held) bytes = whole(file);
     // What repeats packs well: an array may unpack to as much as its bytes can hold, and as there is memory for.
     const std::uint64_t length = held ? bytes.size() : file.size();
-    const bool packed = held || seeks || format == Format::nrrd;
+    const bool packed = held || seeks;
     const std::uint64_t unpacked = packed ? std::min(most_ratio * length, memory_left() / 2) : 0;
     images_memory = memory_left() / 8;
     apart.emplace(Foreign{file.name(), length, file.descriptor(), unpacked},
@@ -147,9 +143,7 @@ struct ArrayReader::State {
     if (format == Format::hdf5) return parse_hdf5(options, out);
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); }, file.name());
     StatedViews stated;
-    const arrays::Head head = format == Format::npy    ? take_npy_head(front)
-                              : format == Format::nrrd ? take_nrrd_head(front, stated.voxel_mm, !options.own_order)
-                                                       : take_mrc_head(front);
+    const arrays::Head head = format == Format::npy ? take_npy_head(front) : take_nrrd_head(front, stated.voxel_mm);
     send({head, std::move(front), options.axes}, out, stated);
   }
 
@@ -174,7 +168,6 @@ struct ArrayReader::State {
     }
     pass(Reader{in}, views);
     for (auto left = in.get_count(most_angles); left > 0; --left) views.angles_deg.push_back(in.get<double>());
-    for (auto left = in.get_count(3); left > 0; --left) views.voxel_mm.push_back(in.get<double>());
   }
 
   InputFile file;

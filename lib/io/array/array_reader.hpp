@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrays of other programs as images one after the other: NumPy's .npy and .npz, HDF5 (DXchange, NXtomo), NRRD and MRC
-// volumes, TIFF of several pages.
+// Arrays of other programs as images one after the other: NumPy's .npy and .npz, HDF5 (DXchange, NXtomo), NRRD as
+// vam-view writes it, TIFF of several pages.
 #pragma once
 
 #include <array>

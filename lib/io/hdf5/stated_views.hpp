@@ -11,7 +11,7 @@ struct StatedViews {
   bool top_first = false;          // the file has its rows from the top; they are read upwards
   std::string source;              // of the angles, a dataset
   std::vector<double> angles_deg;  // of the rows of a sinogram, as measured; none where the file has none
-  std::vector<double> voxel_mm;    // of a volume, along the file's axes, the fastest first; none where it has none
+  double voxel_mm = 0;             // the edge of a volume's voxels; 0: not stated
 };
 
 }  // namespace vam::io

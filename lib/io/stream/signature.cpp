@@ -40,7 +40,7 @@ constexpr Signature signatures[] = {
     {0, "\x89HDF\r\n"sv, "an HDF5 file", by_convert},
     {0, "CDF\x01"sv, "a NetCDF file", by_numpy},
     {0, "NRRD000"sv, "an NRRD volume", by_convert},
-    {208, "MAP "sv, "an MRC volume", by_convert},
+    {208, "MAP "sv, "an MRC volume", by_numpy},
     {128, "DICM"sv, "a DICOM image", by_numpy},
     {344, "n+1\0"sv, "a NIfTI volume", by_numpy},
     {0, "ISO-10303-21"sv, "a STEP model, surfaces without triangles", by_export},

@@ -2,7 +2,7 @@
 #include "io/vdb/nrrd.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 #include <vector>
 
 #include "base/text/format_version.hpp"
@@ -12,80 +12,62 @@
 
 namespace vam::io {
 
-static_assert(std::endian::native == std::endian::little, "the header states little-endian");
-
 namespace {
 
-std::string number(double value) { return format_number(value, 12); }
-
-std::string head(const std::vector<std::string>& history) {
-  std::string text = "NRRD0004\n# http://teem.sourceforge.net/nrrd/format.html\n";
-  for (const auto& line : history) text += "# " + printable(line) + "\n";
-  text += version_name + (":=" + FormatKind("NRRD").version()) + "\n";
-  return text + "type: float\ndimension: 3\nencoding: raw\nendian: little\n";
+std::string triple(double a, double b, double c, const std::string& between) {
+  return format_number(a, 12) + between + format_number(b, 12) + between + format_number(c, 12);
 }
 
-std::string sizes(int a, int b, int c) {
-  return "sizes: " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
-}
-
-void write_floats(OutputFile& file, const std::vector<float>& values) {
-  file.write(values.data(), values.size() * sizeof(float));
-}
-
-std::string stack_axes(const model::StackInfo& info) {
-  const bool sinogram = info.kind == model::Kind::sinogram;
-  const auto spacing = [](double step) { return step == 0 ? std::string("nan") : number(step); };
-  const double second = sinogram ? info.angle_step_deg : info.row_mm;
-  const double third = sinogram ? info.row_mm : info.angle_step_deg;
-  const double second_start = sinogram ? info.angle_start_deg : info.z_start_mm;
-  const double third_start = sinogram ? info.z_start_mm : info.angle_start_deg;
-  return "spacings: " + spacing(info.pixel_mm) + " " + spacing(second) + " " + spacing(third) +
-         "\naxis mins: " + number(-0.5 * (info.width - 1) * info.pixel_mm) + " " + number(second_start) + " " +
-         number(third_start) + "\ncenterings: cell cell cell\n" +
-         (sinogram ? "labels: \"column\" \"angle\" \"slice\"\nunits: \"mm\" \"deg\" \"mm\"\n"
-                   : "labels: \"column\" \"row\" \"frame\"\nunits: \"mm\" \"mm\" \"deg\"\n");
-}
-
-/// What z is to be divided by for mm in the print, as NRRD keeps the keys of others.
-std::string stretch_line(const SparseVolume& volume) {
-  const auto found = volume.metadata.find("vam:stretch_z");
-  return found == volume.metadata.end() ? "" : "vam:stretch_z:=" + printable(found->second) + "\n";
+/// The header up to the axes.
+void begin(OutputFile& file, const std::vector<std::string>& history, int a, int b, int c, const std::string& content) {
+  file.require_space(1.0 * sizeof(float) * a * b * c);
+  file.write("NRRD0004\n# http://teem.sourceforge.net/nrrd/format.html\n");
+  for (const auto& line : history) file.write("# " + printable(line) + "\n");
+  file.write(version_name + (":=" + FormatKind("NRRD").version()) + "\ntype: float\ndimension: 3\nencoding: raw\n" +
+             "endian: little\nsizes: " + triple(a, b, c, " ") + "\ncontent: " + printable(content) + "\n");
 }
 
 }  // namespace
 
 void write_nrrd(const std::string& path, const SparseVolume& volume) {
-  const model::Grid& grid = volume.grid();
-  const std::string v = number(grid.voxel_mm);
-  OutputFile file(path);
-  file.require_space(1.0 * sizeof(float) * grid.nx * grid.ny * grid.nz);
-  file.write(head(volume.history));
-  file.write(sizes(grid.nx, grid.ny, grid.nz) + "content: " + printable(volume.name()) + " (" +
-             printable(volume.units) + ")\n");
-  file.write("space: 3D-right-handed\nspace units: \"mm\" \"mm\" \"mm\"\nspace directions: (" + v + ",0,0) (0," + v +
-             ",0) (0,0," + v + ")\nspace origin: (" + number(grid.origin_mm[0]) + "," + number(grid.origin_mm[1]) +
-             "," + number(grid.origin_mm[2]) + ")\nkinds: domain domain domain\n" + stretch_line(volume) + "\n");
   constexpr int slab = 16;
+  const model::Grid& grid = volume.grid();
+  const auto& [x, y, z] = grid.origin_mm;
+  const std::string v = format_number(grid.voxel_mm, 12);
+  const auto stretch = volume.metadata.find("vam:stretch_z");
+  OutputFile file(path);
+  begin(file, volume.history, grid.nx, grid.ny, grid.nz, volume.name() + " (" + volume.units + ")");
+  file.write("space: 3D-right-handed\nspace units: \"mm\" \"mm\" \"mm\"\nspace directions: (" + v + ",0,0) (0," + v +
+             ",0) (0,0," + v + ")\nspace origin: (" + triple(x, y, z, ",") + ")\nkinds: domain domain domain\n");
+  if (stretch != volume.metadata.end()) file.write("vam:stretch_z:=" + printable(stretch->second) + "\n");
+  file.write("\n");
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
     std::vector<float> slices(grid.slice_size() * static_cast<std::size_t>(count));
     volume.read_slices(k, count, slices.data());
-    write_floats(file, slices);
+    file.write(slices.data(), slices.size() * sizeof(float));
   }
   file.commit();
 }
 
 void write_nrrd(const std::string& path, StackReader& stack) {
   const model::StackInfo& info = stack.info();
+  const bool sinogram = info.kind == model::Kind::sinogram;
+  const double turn = info.angle_step_deg == 0 ? std::nan("") : info.angle_step_deg;
+  const double rise = info.row_mm == 0 ? std::nan("") : info.row_mm;
+  const double left = -0.5 * (info.width - 1) * info.pixel_mm;
   OutputFile file(path);
-  file.require_space(1.0 * sizeof(float) * info.width * info.height * info.count);
-  file.write(head(info.history));
-  file.write(sizes(info.width, info.height, info.count) +
-             "content: " + (info.kind == model::Kind::sinogram ? "sinogram (" : "frames (") + printable(info.units) +
-             ")\n" + stack_axes(info) + "\n");
+  begin(file, info.history, info.width, info.height, info.count,
+        (sinogram ? "sinogram (" : "frames (") + info.units + ")");
+  file.write(sinogram ? "spacings: " + triple(info.pixel_mm, turn, rise, " ") +
+                            "\naxis mins: " + triple(left, info.angle_start_deg, info.z_start_mm, " ") +
+                            "\nlabels: \"column\" \"angle\" \"slice\"\nunits: \"mm\" \"deg\" \"mm\"\n"
+                      : "spacings: " + triple(info.pixel_mm, rise, turn, " ") +
+                            "\naxis mins: " + triple(left, info.z_start_mm, info.angle_start_deg, " ") +
+                            "\nlabels: \"column\" \"row\" \"frame\"\nunits: \"mm\" \"mm\" \"deg\"\n");
+  file.write("centerings: cell cell cell\n\n");
   Image image;
-  for (model::ImageInfo about; stack.next(image, about);) write_floats(file, image.values);
+  for (model::ImageInfo about; stack.next(image, about);) file.write(image.values.data(), image.size() * sizeof(float));
   file.commit();
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes of other programs, put together here by their formats' descriptions: NRRD (teem), MRC2014, TIFF 6.0.
-#include <zlib.h>
-
+// Volumes of other programs, put together here by their formats' descriptions: NRRD (teem), TIFF 6.0.
 #include "io/array/array_reader.hpp"
 #include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
@@ -41,36 +39,8 @@ void check_counted(const std::string& bytes) {
   }
 }
 
-std::string gzipped(const std::string& bytes) {
-  std::string packed(bytes.size() + 1000, '\0');
-  z_stream state{};
-  REQUIRE(deflateInit2(&state, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
-  std::string from = bytes;
-  state.next_in = reinterpret_cast<Bytef*>(from.data());
-  state.avail_in = static_cast<uInt>(from.size());
-  state.next_out = reinterpret_cast<Bytef*>(packed.data());
-  state.avail_out = static_cast<uInt>(packed.size());
-  REQUIRE(deflate(&state, Z_FINISH) == Z_STREAM_END);
-  packed.resize(state.total_out);
-  deflateEnd(&state);
-  return packed;
-}
-
 std::string nrrd(const std::string& fields, const std::string& values) {
   return "NRRD0004\n# of a test\nsizes: 4 3 2\ndimension: 3\nkey:=value\n" + fields + "\n" + values;
-}
-
-std::string mrc(std::int32_t mode, const std::string& values, std::int32_t extended = 0, bool big_endian = false,
-                std::int32_t slowest = 3) {
-  std::vector<std::int32_t> words(256, 0);
-  words[0] = 4, words[1] = 3, words[2] = 2, words[3] = mode;
-  words[16] = 1, words[17] = 2, words[18] = slowest;
-  words[23] = extended;
-  std::string head;
-  for (const std::int32_t word : words) head += big_endian ? big(little(word)) : little(word);
-  head.replace(208, 4, "MAP ");
-  head.replace(212, 2, big_endian ? "\x11\x11" : "\x44\x44");
-  return head + std::string(static_cast<std::size_t>(std::max(extended, 0)), 'x') + values;
 }
 
 // One strip a page; the pages' values begin at byte 8, page after page, their lists follow them.
@@ -105,78 +75,40 @@ std::string tiff(std::uint16_t bits, std::uint16_t format, const std::string& va
 
 }  // namespace
 
-TEST_CASE("NRRD volumes of every type, byte order and packing") {
+TEST_CASE("NRRD volumes as they are written") {
   const std::string raw = "encoding: raw\nendian: little\n";
   check_counted(nrrd("type: float\n" + raw, counted<float>()));
-  check_counted(nrrd("type: double\n" + raw, counted<double>()));
-  check_counted(nrrd("type: uchar\nencoding: raw\n", counted<std::uint8_t>()));
-  check_counted(nrrd("type: unsigned short\n" + raw, counted<std::uint16_t>()));
-  check_counted(nrrd("type: int64\n" + raw, counted<std::int64_t>()));
-  check_counted(nrrd("type: short\nencoding: raw\nendian: big\n", counted<std::int16_t>(true)));
-  check_counted(nrrd("type: float\nencoding: gzip\nendian: little\n", gzipped(counted<float>())));
+  check_counted(nrrd("type: uint8\nencoding: raw\n", counted<std::uint8_t>()));
+  check_counted(nrrd("type: float\nspacings: 0.26 6 nan\nunits: \"mm\" \"deg\" \"mm\"\n" + raw, counted<float>()));
 }
 
-TEST_CASE("NRRD files that are not read are refused with a remedy") {
-  std::string other = nrrd("type: float\nencoding: raw\nendian: little\n", counted<float>());
-  other.replace(other.find("dimension: 3"), 12, "dimension: 99");
-  CHECK(has(array_refusal(other), "its header is damaged: dimension '99', but 3 sizes"));
-  const std::string raw = "encoding: raw\nendian: little\n";
-  CHECK(has(array_refusal(nrrd("type: float\nencoding: ascii\nendian: little\n", "1 2 3")),
-            "raw and gzip are read; write it"));
-  CHECK(has(array_refusal(nrrd("type: float\ndata file: a.raw\n" + raw, "")), "in another file"));
-  CHECK(has(array_refusal(nrrd("type: float\nbyte skip: -1\n" + raw, counted<float>())), "skips bytes"));
-  CHECK(has(array_refusal(nrrd("type: block\n" + raw, "")), "'block'"));
-  CHECK(has(array_refusal(nrrd(raw, counted<float>())), "has no 'type'"));
-  CHECK(has(array_refusal(nrrd("type: float\nencoding: raw\n", counted<float>())), "has no 'endian'"));
-  CHECK(has(array_refusal(nrrd("type: float\n" + raw, counted<float>() + "x")), "has bytes behind its 24 values"));
-  CHECK(has(array_refusal(nrrd("type: float\nsizes: 2 3 4\n" + raw, counted<float>())),
-            "its header states 'sizes' twice, of which only one would count"));
-  CHECK(has(array_refusal(nrrd("nonsense\n" + raw, counted<float>())), "'nonsense' is no field"));
-  CHECK(has(array_refusal("NRRD0004\ntype: float\nsizes: 4 x 2\n" + raw + "\n"), "sizes '4 x 2'"));
-  CHECK(has(array_refusal("NRRD0004\ntype: float\nsizes: 2 4 3 2\n" + raw + "\n"), "has 4 axes (2 x 3 x 4 x 2)"));
-  const std::string packed = nrrd("type: float\nencoding: gzip\nendian: little\n", gzipped(counted<float>()));
-  std::string damaged = packed;
-  damaged[damaged.size() - 20] = static_cast<char>(damaged[damaged.size() - 20] ^ 0x55);
-  CHECK(!array_refusal(damaged).empty());
-}
-
-TEST_CASE("NRRD: members of gzip are read one behind the other, up to the end of the file and its checksums") {
-  const auto packed = [](const std::string& data) {
-    return nrrd("type: float\nencoding: gzip\nendian: little\n", data);
-  };
+TEST_CASE("NRRD volumes of other programs are refused with a remedy") {
   const std::string values = counted<float>();
-  const std::string whole = gzipped(values);
-  for (const std::size_t first : {std::size_t{0}, std::size_t{1}, std::size_t{50}, values.size()}) {
-    CAPTURE(first);
-    check_counted(packed(gzipped(values.substr(0, first)) + gzipped(values.substr(first))));
-  }
-  for (std::size_t left = 1; left <= 8; ++left) {
-    CHECK(
-        has(array_refusal(packed(whole.substr(0, whole.size() - left))), "is cut off before the end of its gzip data"));
-    std::string damaged = whole;
-    damaged[whole.size() - left] = static_cast<char>(damaged[whole.size() - left] ^ 1);
-    CHECK(has(array_refusal(packed(damaged)), "its gzip data is damaged"));
-  }
-  CHECK(has(array_refusal(packed(whole + "junk")), "has bytes behind its gzip data; it is damaged"));
-  CHECK(has(array_refusal(packed(whole + '\0')), "has bytes behind its gzip data; it is damaged"));
-  CHECK(has(array_refusal(packed(whole + "\x1f")), "is cut off before the end of its gzip data"));
-  CHECK(has(array_refusal(packed(whole + whole)), "has bytes behind its 24 values"));
-  CHECK(has(array_refusal(packed(gzipped(values.substr(0, 50)))), "is cut off after"));
-}
-
-TEST_CASE("MRC volumes of the modes that are numbers, with and without an extended header") {
-  check_counted(mrc(2, counted<float>()));
-  check_counted(mrc(2, counted<float>(), 512));
-  check_counted(mrc(0, counted<std::int8_t>()));
-  check_counted(mrc(1, counted<std::int16_t>()));
-  check_counted(mrc(6, counted<std::uint16_t>()));
-  check_counted(mrc(1, counted<std::int16_t>(true), 0, true));
-  CHECK(has(array_refusal(mrc(4, counted<double>())), "MRC mode 4"));
-  CHECK(has(array_refusal(mrc(2, counted<float>(), 0, false, 2)), "axes in another order"));
-  CHECK(has(array_refusal(mrc(2, counted<float>(), -5)), "header is damaged"));
-  std::string negative = mrc(2, counted<float>());
-  negative.replace(0, 4, "\xfc\xff\xff\xff");
-  CHECK(has(array_refusal(negative), "its header is damaged: -4 values along an axis"));
+  const std::string plain = "type: float\nencoding: raw\nendian: little\n";
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    const std::string whole = nrrd(plain, values);
+    const std::string said =
+        array_refusal(whole.substr(0, whole.find(from)) + to + whole.substr(whole.find(from) + from.size()));
+    return said.ends_with("; NRRD is read as vam-view --export writes it: save other volumes as .npy")
+               ? said
+               : "no remedy: " + said;
+  };
+  CHECK(has(refused("dimension: 3", "dimension: 99"), "its header has 'dimension: 99';"));
+  CHECK(has(refused("encoding: raw", "encoding: gzip"), "its header has 'encoding: gzip';"));
+  CHECK(has(refused("endian: little", "endian: big"), "its header has 'endian: big';"));
+  CHECK(has(refused("endian: little", "data file: a.raw"), "its header has 'data file: a.raw';"));
+  CHECK(has(refused("endian: little", "byte skip: -1"), "its header has 'byte skip: -1';"));
+  CHECK(has(refused("endian: little", "nonsense"), "its header has 'nonsense';"));
+  CHECK(has(refused("endian: little\n", ""), "its header has no 'endian';"));
+  CHECK(has(refused("type: float\n", ""), "its header has no 'type';"));
+  CHECK(has(refused("type: float", "type: short"), "has values of type 'short';"));
+  CHECK(has(refused("endian: little", "sizes: 2 3 4"), "its header states 'sizes' twice;"));
+  CHECK(has(refused("sizes: 4 3 2", "sizes: 4 x 2"), "its header has sizes '4 x 2';"));
+  CHECK(has(refused("sizes: 4 3 2", "sizes: 2 4 3 2"), "its header has sizes '2 4 3 2';"));
+  CHECK(has(refused("key:=value", "spacings: 1 1 2"), "has voxels '1 1 2', no cubes along x, y and z;"));
+  CHECK(has(array_refusal(nrrd(plain, values + "x")), "has bytes behind its 24 values"));
+  CHECK(has(array_refusal("NRRD0004\nsizes: -4 3 2\ndimension: 3\n" + plain + "\n"),
+            "values; up to 65536 along an axis"));
 }
 
 TEST_CASE("TIFF files of several pages, whole numbers and floats") {

@@ -34,13 +34,13 @@ TEST_CASE("XML is named by its root element, and models have a remedy") {
 
 TEST_CASE("vam-convert is the remedy for what it reads") {
   const std::string zeros(400, '\0');
-  for (const std::string& head :
-       {"\x93NUMPY" + zeros, "\x89HDF\r\n" + zeros, std::string("II*\0", 4), std::string("MM\0*", 4),
-        std::string("MM\0+", 4), std::string("NRRD0004"), std::string(208, '\0') + "MAP " + zeros}) {
+  for (const std::string& head : {"\x93NUMPY" + zeros, "\x89HDF\r\n" + zeros, std::string("II*\0", 4),
+                                  std::string("MM\0*", 4), std::string("MM\0+", 4), std::string("NRRD0004")}) {
     CAPTURE(foreign_format(head));
     CHECK(names(foreign_remedy(head), "vam-convert makes a volume"));
   }
-  for (const std::string& head : {std::string(128, '\0') + "DICM", std::string(344, '\0') + std::string("n+1\0", 4)}) {
+  for (const std::string& head : {std::string(128, '\0') + "DICM", std::string(344, '\0') + std::string("n+1\0", 4),
+                                  std::string(208, '\0') + "MAP " + zeros}) {
     CAPTURE(foreign_format(head));
     CHECK(names(foreign_remedy(head), "array, which vam-convert reads"));
   }

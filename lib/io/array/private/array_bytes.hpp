@@ -23,10 +23,6 @@ class Bytes {
   /// Up to and without the next line feed, and without a carriage return before it. Throws Fault::data for a line of
   /// more than 64 KiB.
   [[nodiscard]] std::string line();
-  void skip(std::size_t size);
-  /// What follows is packed by gzip, in one member or several. Fault::data, where it is read: it is cut off, its
-  /// checksum or length is wrong, other bytes follow it.
-  void unpack();
   [[nodiscard]] bool ended();
   /// Throws Fault::data: the name, then why.
   [[noreturn]] void fail(const std::string& why) const;
