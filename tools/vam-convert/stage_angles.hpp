@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "io/hdf5/stated_views.hpp"
+#include "io/array/array_reader.hpp"
 
 namespace vam::convert_tool {
 

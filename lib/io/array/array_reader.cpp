@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/array/array_reader.hpp"
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -10,11 +14,12 @@
 #include "base/compute/memory.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/system_error.hpp"
 #include "io/array/private/array_parser.hpp"
+#include "io/array/private/hdf5_array.hpp"
 #include "io/array/private/npy_head.hpp"
 #include "io/array/private/npz.hpp"
 #include "io/array/private/nrrd_head.hpp"
-#include "io/hdf5/hdf5_array.hpp"
 #include "io/image/tiff_pages.hpp"
 #include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/serialisation.hpp"
@@ -69,6 +74,16 @@ std::string whole(InputFile& file) {
   return bytes;
 }
 
+// Those of a file, which take addresses and no memory; the child inherits them.
+std::shared_ptr<const char> mapped_bytes(const InputFile& file) {
+  void* bytes = mmap(nullptr, file.size(), PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
+  if (bytes == MAP_FAILED) {
+    throw system_error(Fault::memory, file.name() + ": cannot map it", errno,
+                       "raise the limit on addresses (ulimit -v)");
+  }
+  return {static_cast<const char*>(bytes), [size = file.size(), bytes](const char*) { munmap(bytes, size); }};
+}
+
 template <class Pass, class Views>
 void pass(const Pass& member, Views& views) {
   member(views.top_first);
@@ -99,13 +114,14 @@ struct ArrayReader::State {
     const auto known = format_of(head);
     if (!known) refuse(head);
     format = *known;
-    if (format == Format::hdf5) load_hdf5();
-    const bool seeks = format == Format::hdf5 && file.size() > 0;
-    const bool held = format == Format::npz || format == Format::tiff || (format == Format::hdf5 && !seeks);
+    if (format == Format::hdf5) arrays::load_hdf5();
+    const bool mapped = format == Format::hdf5 && file.size() > 0;
+    const bool held = format == Format::npz || format == Format::tiff || (format == Format::hdf5 && !mapped);
     if (held) bytes = whole(file);
+    if (mapped) map = mapped_bytes(file);
     // What repeats packs well: an array may unpack to as much as its bytes can hold, and as there is memory for.
     const std::uint64_t length = held ? bytes.size() : file.size();
-    const bool packed = held || seeks;
+    const bool packed = held || mapped;
     const std::uint64_t unpacked = packed ? std::min(most_ratio * length, memory_left() / 2) : 0;
     images_memory = memory_left() / 8;
     apart.emplace(Foreign{file.name(), length, file.descriptor(), unpacked},
@@ -148,14 +164,9 @@ struct ArrayReader::State {
   }
 
   void parse_hdf5(const ArrayOptions& options, Sender& out) {
-    Hdf5Bytes all{nullptr, file.descriptor(), file.size()};
-    if (!bytes.empty()) all = {bytes.data(), -1, bytes.size()};
-    Hdf5Array array(all, {options.name, options.axes, options.projections, options.own_order, images_memory},
-                    file.name());
-    arrays::Bytes values([&](void* to, std::size_t wanted) { return array.read(to, wanted); }, file.name());
-    arrays::Head head;  // floats of this machine
-    set_shape(values, {array.size().begin(), array.size().end()}, head);
-    send({head, std::move(values), {0, 1, 2}}, out, array.views());
+    const std::string_view all = map == nullptr ? std::string_view(bytes) : std::string_view(map.get(), file.size());
+    arrays::Hdf5Images array = arrays::open_hdf5(all, options, images_memory, file.name());
+    send({array.head, arrays::Bytes(std::move(array.read), file.name()), {0, 1, 2}}, out, array.views);
   }
 
   // What a child sends is not believed.
@@ -173,6 +184,7 @@ struct ArrayReader::State {
   InputFile file;
   Format format = Format::npy;
   std::string bytes;
+  std::shared_ptr<const char> map;
   std::optional<SandboxedReader> apart;
   std::uint64_t images_memory = 0;  // for those that are held at a time
   ArraySize size;

@@ -6,9 +6,9 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/image.hpp"
-#include "io/hdf5/stated_views.hpp"
 
 namespace vam::io {
 
@@ -17,6 +17,14 @@ struct ArraySize {
   int images = 0;
   int rows = 0;
   int columns = 0;
+};
+
+/// What a file of projections, or of a volume, states about them.
+struct StatedViews {
+  bool top_first = false;          // the file has its rows from the top; they are read upwards
+  std::string source;              // of the angles, a dataset
+  std::vector<double> angles_deg;  // of the rows of a sinogram, as measured; none where the file has none
+  double voxel_mm = 0;             // the edge of a volume's voxels; 0: not stated
 };
 
 struct ArrayOptions {

@@ -66,6 +66,36 @@ class Made {
   void link_out(const std::string& from, const std::string& file, const std::string& to) const {
     REQUIRE(H5Lcreate_external(file.c_str(), to.c_str(), file_, from.c_str(), links_, H5P_DEFAULT) >= 0);
   }
+  /// A Julia BitArray as JLD2 stores the fields of its struct (chunks::Vector{UInt64}, len::Int, dims::NTuple{3,Int}):
+  /// one record with a reference, a number and a record of the numbers "1", "2" and "3".
+  void bits(const std::string& path, const std::vector<std::uint64_t>& words, std::int64_t length,
+            const std::array<std::int64_t, 3>& sizes) const {
+    const hsize_t count = words.size();
+    const hid_t line = H5Screate_simple(1, &count, nullptr);
+    const hid_t chunks =
+        H5Dcreate2(file_, (path + "-chunks").c_str(), H5T_STD_U64LE, line, links_, H5P_DEFAULT, H5P_DEFAULT);
+    REQUIRE(H5Dwrite(chunks, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, words.data()) >= 0);
+    struct {
+      hobj_ref_t chunks;
+      std::int64_t length;
+      std::array<std::int64_t, 3> sizes;
+    } record{0, length, sizes};
+    REQUIRE(H5Rcreate(&record.chunks, file_, (path + "-chunks").c_str(), H5R_OBJECT, -1) >= 0);
+    const hid_t three = H5Tcreate(H5T_COMPOUND, 24);
+    for (const char* name : {"1", "2", "3"})
+      H5Tinsert(three, name, 8 * static_cast<std::size_t>(*name - '1'), H5T_STD_I64LE);
+    const hid_t type = H5Tcreate(H5T_COMPOUND, 40);
+    H5Tinsert(type, "chunks", 0, H5T_STD_REF_OBJ);
+    H5Tinsert(type, "len", 8, H5T_STD_I64LE);
+    H5Tinsert(type, "dims", 16, three);
+    REQUIRE(H5Tcommit2(file_, (path + "-type").c_str(), type, links_, H5P_DEFAULT, H5P_DEFAULT) >= 0);
+    const hid_t one = H5Screate(H5S_SCALAR);
+    const hid_t dataset = H5Dcreate2(file_, path.c_str(), type, one, links_, H5P_DEFAULT, H5P_DEFAULT);
+    REQUIRE(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &record) >= 0);
+    for (const hid_t space : {line, one}) H5Sclose(space);
+    for (const hid_t closed : {chunks, dataset}) H5Dclose(closed);
+    for (const hid_t closed : {three, type}) H5Tclose(closed);
+  }
   void virtual_copy(const std::string& path, const Shape& shape, const std::string& other_file) const {
     const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
     const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
@@ -169,6 +199,50 @@ TEST_CASE("HDF5 axes in every order give the same as NumPy's transpose") {
   }
 }
 
+TEST_CASE("A BitArray of Julia is read as JLD2 stores it, the first dimension the fastest, from the lowest bit up") {
+  const scratch::Folder folder;
+  const std::string path = folder / "target.jld2";
+  const std::array<std::int64_t, 3> sizes{5, 7, 11};
+  const auto is_set = [](std::int64_t i, std::int64_t j, std::int64_t k) {
+    return (7 * i + 5 * j * j + 3 * k) % 4 == 1;
+  };
+  std::vector<std::uint64_t> words(7);
+  std::int64_t l = 0;  // Julia: linear index l + 1, chunk l >> 6 + 1, bit l & 63
+  for (std::int64_t k = 0; k < sizes[2]; ++k) {
+    for (const auto [j, i] : indices(static_cast<int>(sizes[1]), static_cast<int>(sizes[0]))) {
+      if (is_set(i, j, k)) words[static_cast<std::size_t>(l >> 6)] |= std::uint64_t{1} << (l & 63);
+      ++l;
+    }
+  }
+  const auto made = [&](const std::vector<std::uint64_t>& chunks, std::int64_t length,
+                        const std::array<std::int64_t, 3>& stated) {
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_userblock(creation, 512);
+    Made(path, creation).bits("/target", chunks, length, stated);
+    H5Pclose(creation);
+  };
+  made(words, 385, sizes);
+  for (std::array<int, 3> axes{0, 1, 2}; const bool turned : {false, true}) {
+    if (turned) axes = {2, 0, 1};
+    const Read all = read(path, {"", axes});
+    REQUIRE(all.values.size() == 385);
+    CHECK(all.size.columns == (turned ? 7 : 5));
+    std::size_t at = 0;
+    for (int image = 0; image < all.size.images; ++image) {
+      for (const auto [r, c] : indices(all.size.rows, all.size.columns)) {
+        const bool expected = turned ? is_set(image, c, r) : is_set(c, r, image);
+        REQUIRE(all.values[at++] == (expected ? 1 : 0));
+      }
+    }
+  }
+  made(words, 384, sizes);
+  CHECK(has(refusal(path), "/target has another number of bits than its sizes"));
+  made({words.begin(), words.begin() + 6}, 385, sizes);
+  CHECK(has(refusal(path), "/target has another number of bits than its sizes"));
+  made(words, 385, {5, -7, 11});
+  CHECK(has(refusal(path), "values; up to 65536 along an axis"));
+}
+
 TEST_CASE("DXchange projections are read upwards, with their angles") {
   const scratch::Folder folder;
   const std::string path = folder / "scan.h5";
@@ -236,8 +310,8 @@ TEST_CASE("HDF5 files that are not read are refused with what they hold") {
     made.add("/empty", {2, 0, 2}, H5T_STD_I32LE, {});
   }
   // The only one of 3 dimensions is empty.
-  CHECK(has(refusal(path), "/empty has 2 x 0 x 2 values; 1 to 65536 along an axis are read"));
-  CHECK(has(refusal(path, Fault::data, {"/deep"}), "/deep has 4 dimensions (1 x 2 x 3 x 4); 2 or 3 are read"));
+  CHECK(has(refusal(path), "/empty is an empty array (2 x 0 x 2)"));
+  CHECK(has(refusal(path, Fault::data, {"/deep"}), "/deep has 4 axes (1 x 2 x 3 x 4); arrays of 2 or 3 are read"));
   CHECK(has(refusal(path, Fault::data, {"text"}), "/text holds strings, not numbers"));
   CHECK(has(refusal(path, Fault::data, {"/pairs"}), "/pairs holds records of several fields"));
   CHECK(has(refusal(path, Fault::usage, {"/no"}), "/flat (3 x 4), /pairs (records"));

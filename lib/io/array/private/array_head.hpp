@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace vam::io::arrays {
@@ -21,6 +22,9 @@ struct Head {
   std::array<std::uint64_t, 3> shape{};  // a plane is one slice
   [[nodiscard]] std::uint64_t values() const { return shape[0] * shape[1] * shape[2]; }
 };
+
+/// "3 x 4"; "one number" where there are no axes.
+[[nodiscard]] std::string shape_text(const std::vector<std::uint64_t>& shape);
 
 /// Two axes or three, the slowest first. Throws std::runtime_error, to stand behind the file's name: another number of
 /// axes, an empty axis, sizes beyond the limits.
