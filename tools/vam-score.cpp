@@ -115,7 +115,7 @@ void run(const cli::App& app, Options& options) {
   session::resolve_exposure(options.how, dose, target, printer);
   require_known(conditions, options);
   score::Score result = session::score_print(dose, target, options.how);
-  if (!is_grey) warn_of_gaps(result.unresolved(), target, in.file());
+  if (!is_grey) warn_of_gaps(result.verdict().unresolved, target, in.file());
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
   if (!options.lit_fraction.empty()) score_tool::write_lit_fraction(options.lit_fraction, target.grid(), printer, app);

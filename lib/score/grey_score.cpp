@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "base/error.hpp"
@@ -99,12 +98,7 @@ Json GreyScore::figures() const {
 std::string GreyScore::table() const {
   const Json values = figures();
   std::string text;
-  for (const auto& [name, meaning] : figure_list()) {
-    char line[200];
-    std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),
-                  format_figure(values[name].get<double>()).c_str(), meaning.c_str());
-    text += line;
-  }
+  for (const auto& [name, meaning] : figure_list()) text += figure_row(name, values[name].get<double>(), meaning);
   return text + "verdict      " + verdict() + "\n";
 }
 

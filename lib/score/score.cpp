@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <functional>
 #include <limits>
 
 #include "base/compute/parallel.hpp"
@@ -26,84 +26,68 @@ double of(const std::optional<Known>& known, Value Known::*value) {
   return known ? static_cast<double>((*known).*value) : none;
 }
 
+double number(const Json& value) { return value.is_null() ? none : value.get<double>(); }
+
 }  // namespace
 
 struct Score::Figure {
   std::string name;
   std::string meaning;
-  double (*value)(const Score& of);  // NaN where it is not known
+  std::function<Json(const Score& of)> value;  // null or NaN where it is not known
 };
 
 const std::vector<Score::Figure>& Score::figure_list() {
   using model::Outside;
   using model::ThresholdMetrics;
-  using verdict::PrintPieces;
-  static const std::vector<Figure> all{
-      {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels",
-       [](const Score& score) { return score.metrics().ver; }},
-      {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)",
-       [](const Score& score) { return score.metrics().pw; }},
-      {"ipdr", "in-part dose range: maximum - minimum part dose",
-       [](const Score& score) { return score.metrics().ipdr; }},
-      {"cv", "coefficient of variation of the part dose", [](const Score& score) { return score.metrics().cv; }},
-      {"iou", "|print and part| / |print or part| at the best threshold",
-       [](const Score& score) { return score.metrics().iou; }},
-      {"threshold", "best threshold", [](const Score& score) { return score.metrics().iou_threshold; }},
-      {"min_part", "minimum dose in the part", [](const Score& score) { return score.metrics().min_part; }},
-      {"mean_part", "mean dose in the part", [](const Score& score) { return score.metrics().mean_part; }},
-      {"max_part", "maximum dose in the part", [](const Score& score) { return score.metrics().max_part; }},
-      {"max_void", "maximum dose in the void", [](const Score& score) { return score.metrics().max_void; }},
-      {"max_dose", "maximum dose", [](const Score& score) { return score.metrics().max_dose; }},
-      {"outside_voxels", "void voxels outside the box around the part",
-       [](const Score& score) { return of(score.outside(), &Outside::voxels); }},
-      {"outside_gelled_voxels", "void voxels outside the box that gel in the print",
-       [](const Score& score) { return of(score.outside(), &Outside::gelled_voxels); }},
-      {"outside_max_dose", "maximum dose of void voxels outside the box",
-       [](const Score& score) { return of(score.outside(), &Outside::max_dose); }},
-      {"unresolved_part", "fraction of the part in walls of which no voxel is wholly inside; they are not judged",
-       [](const Score& score) { return score.unresolved().part_share(); }},
-      {"unresolved_gaps", "gaps of which no voxel is wholly outside, relative to the part; they are not judged",
-       [](const Score& score) { return score.unresolved().gap_share(); }},
-      {"part_pieces", "separate pieces of the part, thin rods included",
-       [](const Score& score) { return of(score.pieces_, &PrintPieces::part); }},
-      {"part_pieces_at_half", "separate pieces of the part where it is half covered; narrow gaps part them",
-       [](const Score& score) { return of(score.pieces_, &PrintPieces::part_at_half); }},
-      {"print_pieces", "separate pieces of the print; pieces below 8 voxels are not counted",
-       [](const Score& score) { return of(score.pieces_, &PrintPieces::print); }},
-      {"print_pieces_least", "the fewest with up to 2 % less or more dose",
-       [](const Score& score) { return score.pieces_ ? score.pieces_->print_least() : none; }},
-      {"print_pieces_most", "the most with up to 2 % less or more dose",
-       [](const Score& score) { return score.pieces_ ? score.pieces_->print_most() : none; }},
-      {"broken_voxels", "voxels at least half part that do not cure and where walls are cut or missing",
-       [](const Score& score) { return score.pieces_ ? static_cast<double>(score.pieces_->broken.voxels) : none; }},
-      {"shut_voxels", "voxels less than a quarter part that cure and where gaps are shut",
-       [](const Score& score) { return score.pieces_ ? static_cast<double>(score.pieces_->shut.voxels) : none; }},
-      {"holes", "holes of the print, through walls or between bridges over gaps, beyond those of the part",
-       [](const Score& score) { return of(score.pieces_, &PrintPieces::holes); }},
-      {"firm_holes", "of these, those on which 2 % of the dose do not decide",
-       [](const Score& score) { return of(score.pieces_, &PrintPieces::firm_holes); }},
-      {"prints", "1 if the part will print as designed, 0 if it will not or may not",
-       [](const Score& score) { return verdict::answer(score.verdict()) == verdict::Answer::yes ? 1.0 : 0.0; }},
-      {"trimmed_ver", "ver with the extremes trimmed", [](const Score& score) { return score.trimmed().ver; }},
-      {"trimmed_pw", "pw with the extremes trimmed", [](const Score& score) { return score.trimmed().pw; }},
-      {"cured_part", "at the critical dose: fraction of the part that cures",
-       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::part_cured); }},
-      {"cured_void", "at the critical dose: fraction of the void that cures",
-       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::void_cured); }},
-      {"cured_iou", "at the critical dose: |print and part| / |print or part|",
-       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::iou); }},
-      {"cured_wrong", "at the critical dose: fraction of wrong voxels",
-       [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::wrong); }},
-      {"turns", "whole turns that put the critical dose in the middle half of the process window",
-       [](const Score& score) { return of(score.plan(), &ExposurePlan::turns); }},
-      {"duration_s", "duration of these turns",
-       [](const Score& score) { return of(score.plan(), &ExposurePlan::seconds); }},
-      {"multiplier", "fraction of full intensity during these turns",
-       [](const Score& score) { return of(score.plan(), &ExposurePlan::multiplier); }},
-      {"peak_intensity_mw_cm2", "intensity of the brightest pixel during these turns, mW/cm2",
-       [](const Score& score) { return of(score.plan(), &ExposurePlan::peak_intensity_mw_cm2); }},
-      {"efficiency", "mean / maximum of the projections",
-       [](const Score& score) { return score.light_.count > 0 ? score.light_.value() : none; }}};
+  static const std::vector<Figure> all = [] {
+    std::vector<Figure> list{
+        {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels",
+         [](const Score& score) { return score.metrics().ver; }},
+        {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)",
+         [](const Score& score) { return score.metrics().pw; }},
+        {"ipdr", "in-part dose range: maximum - minimum part dose",
+         [](const Score& score) { return score.metrics().ipdr; }},
+        {"cv", "coefficient of variation of the part dose", [](const Score& score) { return score.metrics().cv; }},
+        {"iou", "|print and part| / |print or part| at the best threshold",
+         [](const Score& score) { return score.metrics().iou; }},
+        {"threshold", "best threshold", [](const Score& score) { return score.metrics().iou_threshold; }},
+        {"min_part", "minimum dose in the part", [](const Score& score) { return score.metrics().min_part; }},
+        {"mean_part", "mean dose in the part", [](const Score& score) { return score.metrics().mean_part; }},
+        {"max_part", "maximum dose in the part", [](const Score& score) { return score.metrics().max_part; }},
+        {"max_void", "maximum dose in the void", [](const Score& score) { return score.metrics().max_void; }},
+        {"max_dose", "maximum dose", [](const Score& score) { return score.metrics().max_dose; }},
+        {"outside_voxels", "void voxels outside the box around the part",
+         [](const Score& score) { return of(score.outside(), &Outside::voxels); }},
+        {"outside_gelled_voxels", "void voxels outside the box that gel in the print",
+         [](const Score& score) { return of(score.outside(), &Outside::gelled_voxels); }},
+        {"outside_max_dose", "maximum dose of void voxels outside the box",
+         [](const Score& score) { return of(score.outside(), &Outside::max_dose); }}};
+    for (const verdict::Figure& of : verdict::figures())
+      list.push_back({of.name, of.meaning, [value = of.value](const Score& score) { return value(score.verdict()); }});
+    list.insert(
+        list.end(),
+        {{"trimmed_ver", "ver with the extremes trimmed", [](const Score& score) { return score.trimmed().ver; }},
+         {"trimmed_pw", "pw with the extremes trimmed", [](const Score& score) { return score.trimmed().pw; }},
+         {"cured_part", "at the critical dose: fraction of the part that cures",
+          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::part_cured); }},
+         {"cured_void", "at the critical dose: fraction of the void that cures",
+          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::void_cured); }},
+         {"cured_iou", "at the critical dose: |print and part| / |print or part|",
+          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::iou); }},
+         {"cured_wrong", "at the critical dose: fraction of wrong voxels",
+          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::wrong); }},
+         {"turns", "whole turns that put the critical dose in the middle half of the process window",
+          [](const Score& score) { return of(score.plan(), &ExposurePlan::turns); }},
+         {"duration_s", "duration of these turns",
+          [](const Score& score) { return of(score.plan(), &ExposurePlan::seconds); }},
+         {"multiplier", "fraction of full intensity during these turns",
+          [](const Score& score) { return of(score.plan(), &ExposurePlan::multiplier); }},
+         {"peak_intensity_mw_cm2", "intensity of the brightest pixel during these turns, mW/cm2",
+          [](const Score& score) { return of(score.plan(), &ExposurePlan::peak_intensity_mw_cm2); }},
+         {"efficiency", "mean / maximum of the projections",
+          [](const Score& score) { return score.light_.count > 0 ? score.light_.value() : none; }}});
+    return list;
+  }();
   return all;
 }
 
@@ -112,11 +96,7 @@ bool is_of_exposure(const std::string& figure) {
 }
 
 Score::Score(const ScoreOptions& options, int width, int height)
-    : options_(options),
-      width_(width),
-      whole_(options.threshold),
-      with_cut_(options.threshold),
-      unresolved_(width, height) {
+    : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold) {
   const model::Circle& at = options.circle;
   rim_px_ = 0.5 + std::min({at.axis_x, at.axis_y, width - 1 - at.axis_x, height - 1 - at.axis_y});
   inside_.reserve(width * static_cast<std::size_t>(height));
@@ -159,7 +139,6 @@ void Score::add(const float* dose, const float* target, int count) {
     outside_.merge(outside[s]);
     surface_ += surface[s];
   }
-  unresolved_.add(count, target);
   slices_ += count;
 }
 
@@ -185,7 +164,7 @@ const std::vector<std::string>& Score::names() {
 double Score::figure(const std::string& name) const {
   const auto& all = figure_list();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Figure& figure) { return figure.name == name; });
-  return found != all.end() ? found->value(*this) : none;
+  return found != all.end() ? number(found->value(*this)) : none;
 }
 
 std::optional<ExposurePlan> Score::plan() const {
@@ -222,11 +201,10 @@ Json Score::figures() const {
   json["part_voxels"] = m.part;
   json["void_voxels"] = m.void_;
   json["surface_voxels"] = surface_;
-  for (const auto& figure : figure_list()) {
-    const double value = figure.value(*this);
-    if (std::isfinite(value)) json[figure.name] = value;
+  for (const auto& [name, meaning, value_of] : figure_list()) {
+    if (const Json value = value_of(*this); std::isfinite(number(value))) json[name] = value;
   }
-  add_to(json, verdict());
+  add_findings(json, verdict());
   if (const auto radius_mm = judged_radius_mm()) json["judged_radius_mm"] = *radius_mm;
   json["trim"] = options_.trim;
   if (print_threshold() > 0) json["print_threshold"] = print_threshold();
@@ -236,46 +214,36 @@ Json Score::figures() const {
   return json;
 }
 
-verdict::Unresolved Score::unresolved() const {
-  verdict::Unresolved found = unresolved_.found();
-  found.surface = options_.own_surface;
-  return found;
-}
-
 verdict::Verdict Score::verdict() const {
-  const double duration_s = figure("duration_s");
-  verdict::Verdict verdict{.whole = whole_.metrics(), .with_cut = with_cut_.metrics()};
-  verdict.unresolved = unresolved();
-  verdict::set_pieces(verdict, pieces_);
-  if (std::isfinite(duration_s) && !options_.threshold) verdict.seconds = duration_s;  // else that of another print
-  if (options_.threshold && options_.exposure) verdict.seconds = options_.exposure->seconds;
-  verdict.threshold = options_.threshold;
-  verdict.light = options_.light;
-  return verdict;
+  verdict::GivenPrint print{whole_.metrics(), with_cut_.metrics(), pieces_,
+                            options_.grid,    options_.stretch_z,  options_.light};
+  print.threshold = options_.threshold;
+  if (print.threshold) {
+    if (options_.exposure) print.seconds = options_.exposure->seconds;
+  } else if (const auto plan = this->plan()) {
+    print.seconds = plan->seconds;
+  }
+  return verdict::judge(options_.unresolved, print);
 }
 
 std::optional<double> Score::judged_radius_mm() const {
   constexpr double least_px = 0.5;  // the writable circle's own voxels end within it
-  if (options_.voxel_mm <= 0 || rim_px_ >= options_.circle.radius - least_px) return std::nullopt;
-  return rim_px_ * options_.voxel_mm;
+  if (options_.grid.voxel_mm <= 0 || rim_px_ >= options_.circle.radius - least_px) return std::nullopt;
+  return rim_px_ * options_.grid.voxel_mm;
 }
 
 std::string Score::table(const std::string& ending) const {
   const Json values = figures();
   std::string text;
   for (const auto& [name, meaning, value] : figure_list()) {
-    if (!values.contains(name)) continue;
-    char line[200];
-    std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),
-                  format_figure(values[name].get<double>()).c_str(), meaning.c_str());
-    text += line;
+    if (values.contains(name)) text += figure_row(name, values[name].get<double>(), meaning);
   }
   if (const auto radius_mm = judged_radius_mm()) {
     text += "judged       all void within " + format_number(*radius_mm, 3) +
             " mm of the axis; the volume ends before " + "the writable radius of " +
-            format_number(options_.circle.radius * options_.voxel_mm, 3) + " mm\n";
+            format_number(options_.circle.radius * options_.grid.voxel_mm, 3) + " mm\n";
   }
-  return text + "verdict      " + words(verdict()) + ending + "\n";
+  return text + "verdict      " + verdict().words + ending + "\n";
 }
 
 }  // namespace vam::score

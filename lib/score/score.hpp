@@ -10,11 +10,10 @@
 #include "model/circle.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/dose/outside.hpp"
+#include "model/grid.hpp"
 #include "model/light_width.hpp"
 #include "model/printer.hpp"
 #include "score/exposure.hpp"
-#include "verdict/print_pieces.hpp"
-#include "verdict/unresolved.hpp"
 #include "verdict/verdict.hpp"
 
 namespace vam::score {
@@ -29,7 +28,8 @@ struct Exposure {
 struct ScoreOptions {
   std::string target = "target";        // begins the messages on it
   model::Circle circle;                 // the writable one; void outside it is not judged
-  double voxel_mm = 0;                  // 0: not known
+  model::Grid grid;                     // of dose and target; voxel_mm 0: not known
+  double stretch_z = 1;                 // of that grid
   bool surface = false;                 // surface voxels count too: part when at least half covered, else void
   bool absolute = false;                // PW and IPDR in the dose's unit instead of fractions of the largest dose
   double trim = 0.02;                   // alpha: extremes are also given at the alpha/2 percentiles
@@ -38,7 +38,7 @@ struct ScoreOptions {
   model::LightWidth light;              // of the dose, as it states it
   std::optional<Exposure> exposure;     // known when the dose is in mJ/cm3
   std::optional<model::VoxelBox> part;  // its box; none: what lies outside it is not told
-  std::optional<model::VoxelisedSurface> own_surface;  // of the part; none: it is not known
+  verdict::Unresolved unresolved;       // of the target
 };
 
 /// Of the figures by name those that only an exposure has.
@@ -67,8 +67,6 @@ class Score {
   [[nodiscard]] double print_threshold() const;
   /// None where the exposure is not known, or nothing is lit.
   [[nodiscard]] std::optional<ExposurePlan> plan() const;
-  /// What of the target its voxels are too coarse for.
-  [[nodiscard]] verdict::Unresolved unresolved() const;
   /// Of the relative figures, whatever the options say.
   [[nodiscard]] verdict::Verdict verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
@@ -99,7 +97,6 @@ class Score {
   std::vector<bool> inside_;                // of a slice, whether the circle has it
   model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;
-  verdict::UnresolvedFinder unresolved_;
   std::optional<verdict::PrintPieces> pieces_;
   std::int64_t surface_ = 0;
   int slices_ = 0;               // seen

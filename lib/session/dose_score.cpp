@@ -22,12 +22,6 @@ namespace vam::session {
 
 namespace {
 
-std::optional<model::VoxelisedSurface> own_surface(const io::SparseVolume& target) {
-  const auto places = model::stated_surface(target.metadata);
-  if (!places) return std::nullopt;
-  return model::VoxelisedSurface{*places, target.grid().voxel_mm};
-}
-
 model::Circle scoring_circle(const io::SparseVolume& target, const model::Printer& printer) {
   const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
   return model::judged_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
@@ -54,7 +48,7 @@ void for_each_slab(const io::SparseVolume& dose, const io::SparseVolume& target,
 
 }  // namespace
 
-verdict::Unresolved sub_voxel_features(const io::SparseVolume& target) {
+verdict::Unresolved unresolved(const io::SparseVolume& target) {
   constexpr std::size_t million = 1'000'000;  // voxels at a time
   const model::Grid& grid = target.grid();
   const int slab = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, 16));
@@ -66,18 +60,18 @@ verdict::Unresolved sub_voxel_features(const io::SparseVolume& target) {
     finder.add(count, slices.data());
   }
   verdict::Unresolved found = finder.found();
-  found.surface = own_surface(target);
+  if (const auto places = model::stated_surface(target.metadata)) found.surface = {*places, grid.voxel_mm};
   return found;
 }
 
 void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
                       const model::Printer& printer) {
   how.circle = scoring_circle(target, printer);
-  how.voxel_mm = target.grid().voxel_mm;
+  how.grid = target.grid();
+  how.stretch_z = model::stretch_z(target.metadata);
   how.light = model::stated_width(dose.metadata);
   how.aimed_at = model::threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
-  how.own_surface = own_surface(target);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   how.exposure = {printer, model::stated_number(dose.metadata, "vam:full_intensity_turns"),
                   model::stated_number(dose.metadata, "vam:print_s")};
@@ -92,17 +86,15 @@ score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume&
   return result;
 }
 
-score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target, const score::ScoreOptions& how) {
+score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target, score::ScoreOptions how) {
+  how.unresolved = unresolved(target);
   score::Score result = score_volumes(dose, target, how);
-  const model::Grid& grid = target.grid();
   const double threshold = result.print_threshold();
   if (!(threshold > 0)) return result;  // the part stays dark
-  verdict::PrintPieceCounter counter(grid.nx, grid.ny, threshold, how.circle);
+  verdict::PrintPieceCounter counter(how.grid.nx, how.grid.ny, threshold, how.circle);
   for_each_slab(dose, target, "counting pieces",
                 [&](int, int count, const float* x, const float* f) { counter.add(x, f, count); });
-  verdict::PrintPieces pieces = counter.found();
-  pieces.set_places(grid, model::stretch_z(target.metadata));
-  result.set_pieces(pieces);
+  result.set_pieces(counter.found());
   return result;
 }
 

@@ -14,7 +14,7 @@
 namespace vam::session {
 
 /// Features of a target that are too fine for its voxels, with what it states of its own surface.
-[[nodiscard]] verdict::Unresolved sub_voxel_features(const io::SparseVolume& target);
+[[nodiscard]] verdict::Unresolved unresolved(const io::SparseVolume& target);
 
 /// Fills in the circle that is judged, void outside which is not, the threshold that the light was made for, and for a
 /// dose in mJ/cm3 of a resin with a critical dose the exposure, with that threshold where it is the dose of a whole
@@ -27,7 +27,7 @@ void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, co
                                          const score::ScoreOptions& how);
 /// Against coverage, and by the pieces of the print.
 [[nodiscard]] score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target,
-                                       const score::ScoreOptions& how);
+                                       score::ScoreOptions how);
 
 /// Against a grey target. band: of each voxel, where `grey` names no file of them, that of `grey` around it; null: it
 /// is the same for all. Throws as require_linear() and grey_unit() do, whose messages `file` begins, and Fault::data

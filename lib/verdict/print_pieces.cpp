@@ -19,7 +19,7 @@ namespace vam::verdict {
 
 namespace {
 
-constexpr std::array other_factors{0.98, 0.99, 1.01, 1.02};
+constexpr std::array other_factors{1 - dose_margin, 1 - dose_margin / 2, 1 + dose_margin / 2, 1 + dose_margin};
 
 struct BothDefects {
   DefectSlice broken, shut;

@@ -29,35 +29,24 @@ struct Defects {
   bool operator==(const Defects&) const = default;
 };
 
+/// By how much less or more dose than the nominal one a verdict must stay as it is, relative to it: what of a print
+/// hangs together only within it is in doubt.
+inline constexpr double dose_margin = 0.02;
+
 struct PrintPieces {
   static constexpr std::int64_t least_voxels = 8;  // of a piece: smaller ones are rounded tips and edges
   int part = 0;          // of voxels with a trace of it that share a corner: thin rods hold together
   int part_at_half = 0;  // of the coverage at a half: narrow gaps part it
   int print = 0;         // of the dose at the threshold
-  int print_fewer = 0;   // and by how many it is in fewer or more with 1 and 2 % less and more dose [other_dose]
+  int print_fewer = 0;   // and by how many it is in fewer or more with half and all of dose_margin less and more
   int print_more = 0;
   Defects broken = {};     // of the part
   Defects shut = {};       // of gaps
   std::int64_t holes = 0;  // tunnels of the print, smooth ones [SmoothPrint], beyond those of the part; not less than 0
-  std::int64_t firm_holes = 0;  // of these, on which 2 % of the dose do not decide [firm_dose]
+  std::int64_t firm_holes = 0;  // of these, on which dose_margin does not decide [firm_dose]
   int solids = 0;               // of the part's own surface; 0: not known
   int specks = 0;               // of these, so small that they may not count
-  /// A voxel of the largest break and of the largest shut gap, in mm of the print; set by set_places().
-  std::optional<std::array<double, 3>> broken_at_mm = std::nullopt, shut_at_mm = std::nullopt;
 
-  /// Both were counted on these voxels.
-  void set_places(const model::Grid& grid, double stretch_z) {
-    const auto place = [&](const Defects& found) -> std::optional<std::array<double, 3>> {
-      if (found.voxels == 0) return std::nullopt;
-      return std::array{grid.x_mm(found.at.column), grid.y_mm(found.at.row), grid.z_mm(found.at.slice) / stretch_z};
-    };
-    broken_at_mm = place(broken);
-    shut_at_mm = place(shut);
-  }
-  void set_solids(const model::PartSurface& surface) {
-    solids = surface.solids;
-    specks = surface.specks;
-  }
   [[nodiscard]] bool loses_walls() const { return broken.voxels > 0; }
   [[nodiscard]] bool shuts_gaps() const { return shut.voxels > 0; }
   [[nodiscard]] bool has_holes() const { return firm_holes > 0; }

@@ -7,18 +7,13 @@
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
 #include "model/dose/dose_metrics.hpp"
+#include "verdict/print_pieces.hpp"
 
 namespace vam::verdict {
 
-namespace {
-
-constexpr double rough = 0.02;  // of the dose
-
-}  // namespace
-
 float firm_dose(float coverage, float dose, double threshold) {
-  const auto least = static_cast<float>((1 - rough) * threshold);
-  const auto most = static_cast<float>((1 + rough) * threshold);
+  const auto least = static_cast<float>((1 - dose_margin) * threshold);
+  const auto most = static_cast<float>((1 + dose_margin) * threshold);
   if (dose < least || dose > most) return dose;
   return coverage >= static_cast<float>(model::half_surface) ? most : least;
 }

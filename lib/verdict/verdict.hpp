@@ -1,57 +1,82 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The verdict on a dose in one line: will it print, with what margin, how long, and from how many voxels
-// these are computed.
+// The judge: will a dose print a part? Every program asks it, of a dose on the print's own voxels or on coarser ones.
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/text/json_fwd.hpp"
 #include "model/dose/dose_metrics.hpp"
+#include "model/grid.hpp"
 #include "model/light_width.hpp"
 #include "verdict/print_pieces.hpp"
 #include "verdict/unresolved.hpp"
 
 namespace vam::verdict {
 
-/// Figures are relative (DoseStatistics::metrics(true)).
-struct Verdict {
-  model::DoseMetrics whole;     // of the voxels wholly in part or void
-  model::DoseMetrics with_cut;  // with those that the surface cuts, as part from half coverage on, else as void
-  std::optional<double> seconds = std::nullopt;    // of the print; none: the resin is not known
-  std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
-  Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
+/// A dose on the voxels of a part. Figures are relative (DoseStatistics::metrics(true)).
+struct GivenPrint {
+  model::DoseMetrics whole = {};     // of the voxels wholly in part or void
+  model::DoseMetrics with_cut = {};  // with those that the surface cuts, as part from half coverage on, else as void
   std::optional<PrintPieces> pieces = std::nullopt;  // none: not counted
-  model::LightWidth light = {};                      // that the doses are of
+  model::Grid grid = {};                             // on which they were; voxel_mm 0: not known
+  double stretch_z = 1;                              // of that grid
+  model::LightWidth light = {};                      // that the dose is of
+  std::optional<double> seconds = std::nullopt;      // that it takes; none: the resin is not known
+  std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
+
+  /// A voxel of the largest of these defects, in mm of the print.
+  [[nodiscard]] std::optional<std::array<double, 3>> place_mm(const Defects& found) const {
+    if (found.voxels == 0 || !(grid.voxel_mm > 0)) return std::nullopt;
+    return std::array{grid.x_mm(found.at.column), grid.y_mm(found.at.row), grid.z_mm(found.at.slice) / stretch_z};
+  }
 };
+
+/// Position of a given threshold in the process window, relative to the part's least dose and to the void's largest;
+/// negative outside. None where there is none, or one of these has no dose.
+struct ThresholdMargin {
+  double below_part = 0, above_void = 0;
+};
+[[nodiscard]] std::optional<ThresholdMargin> threshold_margin(const GivenPrint& print);
 
 enum class Answer {
   not_judged,       // no voxel is wholly inside the part
   no,               // neither the threshold, nor any where none is given, prints all voxels wholly in part or void
   not_as_designed,  // walls will be missing, cut off or joined, or gaps shut
   unsure,           // too much is not judged, or neither voxels nor dose tell what hangs together
-  yes
+  yes,
+  left_open,  // of an estimate that cannot tell of the print
 };
-[[nodiscard]] Answer answer(const Verdict& verdict);
 
-/// The pieces of part and print, of which the part's own surface may tell the number.
-void set_pieces(Verdict& verdict, const std::optional<PrintPieces>& pieces);
+struct Verdict {
+  Answer answer = Answer::not_judged;
+  Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
+  GivenPrint print = {};
+  /// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
+  /// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will
+  /// not print", "will not print as designed", "may print" or "will print"; or with why it is left open.
+  std::string words = {};
+};
 
-/// Differences of print and part: pieces, walls, gaps and holes. Empty if none is certain or possible.
-[[nodiscard]] std::string words(const PrintPieces& pieces);
+/// of_part: what its voxels do not resolve. It must hang together at the threshold and within dose_margin of it; where
+/// the part's own surface is known, that tells the number of pieces.
+[[nodiscard]] Verdict judge(const Unresolved& of_part, const GivenPrint& print);
+/// why: "unknown at 0.26 mm; --voxel 0.1 tells".
+[[nodiscard]] Verdict leave_open(Verdict verdict, const std::string& why);
 
-/// The numbers of both.
-void add_to(Json& figures, const PrintPieces& pieces);
-
-/// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
-/// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will not
-/// print", "will not print as designed", "may print" or "will print"; or with what is said in its place.
-[[nodiscard]] std::string words(const Verdict& verdict, const std::string& instead = "");
-
-/// verdict, prints (0 or 1: Answer::yes), with_surface (ver, pw, iou and the number of voxels), threshold_margin where
-/// the threshold is given and both have a dose (below_part and above_void, relative; negative outside the window), and
-/// the pieces, where they are counted.
-void add_to(Json& figures, const Verdict& verdict);
+/// One of a table: its name in reports and conditions, and what it is.
+struct Figure {
+  std::string name, meaning;
+  Json (*value)(const Verdict& verdict);  // null: not known
+};
+/// unresolved_part, unresolved_gaps, those of the pieces, and prints: 1 for Answer::yes.
+[[nodiscard]] const std::vector<Figure>& figures();
+/// Beside these: verdict; with_surface (ver, pw, iou and the number of voxels); threshold_margin (below_part and
+/// above_void); of the pieces solids, broken_at_mm and shut_at_mm.
+void add_findings(Json& report, const Verdict& verdict);
+/// All. What is not known is left out, but for prints, which is null.
+void add_to(Json& report, const Verdict& verdict);
 
 }  // namespace vam::verdict

@@ -132,16 +132,13 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     report["verdict"] = grey_verdict(outcome.metrics);
     note("vam-optimize: " + io::input_name(options.input) + " " + grey_verdict(outcome.metrics));
   } else {
-    verdict::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
-    if (outcome.all_cut) verdict.whole.part = 0;
-    if (plan) verdict.seconds = plan->seconds;
-    verdict.threshold = fixed_threshold(options);
-    verdict.light = model::light_width(printer, info.angle_step_deg);
-    verdict.unresolved = session::sub_voxel_features(target);
-    set_pieces(verdict, outcome.pieces);
-    if (verdict.pieces) verdict.pieces->set_places(scene.grid, model::stretch_z(target.metadata));
+    verdict::GivenPrint print =
+        outcome.print(scene.grid, model::stretch_z(target.metadata), model::light_width(printer, info.angle_step_deg));
+    if (plan) print.seconds = plan->seconds;
+    print.threshold = fixed_threshold(options);
+    const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
     add_to(report, verdict);
-    note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict) +
+    note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words +
          session::how_to_show(plan.has_value(), options.output == "-" ? "SINOGRAM" : options.output));
     report["limited_by"] = optimize::limited_by(
         outcome.demands, [&](int k) { return model::vertical_magnification(printer) * scene.grid.z_mm(k); });

@@ -69,12 +69,11 @@ optimize::Preview preview_of(const Level& level, const model::Projector& project
 }
 
 /// What the voxels of the print lose is lost whatever these show.
-verdict::Verdict verdict_of(const Level& level, const EstimateTask& task, const optimize::VolumeOutcome& outcome) {
-  verdict::Verdict verdict{.whole = outcome.metrics, .with_cut = outcome.with_cut};
-  verdict.light = model::light_width(level.printer, 360.0 / optimize::PreviewTask{}.angles);
-  verdict.unresolved = is_lost(task.unresolved) ? task.unresolved : level.unresolved();
-  set_pieces(verdict, outcome.pieces);
-  return verdict;
+verdict::Verdict verdict_of(const Level& level, const EstimateTask& task, const optimize::Preview& preview,
+                            const optimize::VolumeOutcome& outcome) {
+  const model::LightWidth light = model::light_width(level.printer, 360.0 / optimize::PreviewTask{}.angles);
+  return verdict::judge(is_lost(task.unresolved) ? task.unresolved : level.unresolved(),
+                        outcome.print(preview.grid, task.stretch_z, light));
 }
 
 /// Whether what these voxels show is all of the part: no edge tapers, and no neck is narrower, than they resolve.
@@ -86,18 +85,20 @@ bool may_tell(const Level& level, const EstimateTask& task) {
 /// What the print of these voxels shows of that of the final ones.
 std::optional<bool> prints(const Level& level, const verdict::Verdict& verdict, const EstimateTask& task) {
   const verdict::Unresolved& final = task.unresolved;
-  switch (answer(verdict)) {
+  switch (verdict.answer) {
     case verdict::Answer::no:
-      if (level.is_final() || is_lost(final) || (may_tell(level, task) && verdict.whole.pw < hopeless)) return false;
+      if (level.is_final() || is_lost(final) || (may_tell(level, task) && verdict.print.whole.pw < hopeless))
+        return false;
       break;
     case verdict::Answer::not_as_designed:
       if (level.is_final() || is_lost(final)) return false;
       break;
     case verdict::Answer::yes:
-      if (may_tell(level, task) && !final.leaves_doubt() && verdict.whole.pw >= sure_window) return true;
+      if (may_tell(level, task) && !final.leaves_doubt() && verdict.print.whole.pw >= sure_window) return true;
       break;
     case verdict::Answer::not_judged:
     case verdict::Answer::unsure:
+    case verdict::Answer::left_open:
       break;
   }
   return std::nullopt;
@@ -108,7 +109,8 @@ std::string told_by(const Level& level, const verdict::Verdict& verdict, const E
   const auto voxel = [](double mm) { return "--voxel " + format_number(mm, 2); };
   if (task.unresolved.leaves_doubt()) return voxel(solid::telling_voxel_mm(task.unresolved, task.grid.voxel_mm));
   if (!level.is_final()) return voxel(task.grid.voxel_mm);
-  if (verdict.pieces && !verdict.pieces->knows_pieces()) return voxel(0.5 * task.grid.voxel_mm);
+  const auto& pieces = verdict.print.pieces;
+  if (pieces && !pieces->knows_pieces()) return voxel(0.5 * task.grid.voxel_mm);
   return level.is_judged() ? "vam-optimize" : voxel(solid::resolving_voxel_mm(level.part.content, task.grid));
 }
 
@@ -130,16 +132,24 @@ void expose(Estimate& estimate, const optimize::VolumeOutcome& outcome, const mo
                                            optimize::DoseWindow{}.threshold());
 }
 
+std::string unknown(const Estimate& made, const Level& level, const EstimateTask& task, const std::string& why) {
+  return "unknown at " + format_number(made.voxel_mm, 3) + " mm" + why + "; " + told_by(level, made.verdict, task) +
+         " tells";
+}
+
+/// Where the print of these voxels does not tell, or not within dose_margin, the verdict is left open.
 void judge(Estimate& made, const Level& level, const EstimateTask& task) {
   const optimize::Preview preview = preview_of(level, task.printer.projector);
   made.angles = optimize::PreviewTask{}.angles;
   made.iterations = preview.outcome.iterations;
-  made.verdict = verdict_of(level, task, preview.outcome);
-  if (made.verdict.pieces) made.verdict.pieces->set_places(preview.grid, task.stretch_z);
-  made.prints = prints(level, made.verdict, task);
-  for (const optimize::VolumeOutcome& other : preview.beside)
-    made.dose_decides |= prints(level, verdict_of(level, task, other), task) != made.prints;
-  if (made.dose_decides) made.prints.reset();
+  made.verdict = verdict_of(level, task, preview, preview.outcome);
+  const std::optional<bool> told = prints(level, made.verdict, task);
+  const bool dose_decides = std::any_of(preview.beside.begin(), preview.beside.end(), [&](const auto& other) {
+    return prints(level, verdict_of(level, task, preview, other), task) != told;
+  });
+  const std::string decisive = ", as " + format_number(100 * verdict::dose_margin) + " % of the dose decide";
+  if (!told || dose_decides)
+    made.verdict = leave_open(made.verdict, unknown(made, level, task, dose_decides ? decisive : ""));
   made.wrong = wrong_of(preview, task.stretch_z);
   made.trials = preview.trials;
   expose(made, preview.outcome, task.printer);
@@ -148,10 +158,13 @@ void judge(Estimate& made, const Level& level, const EstimateTask& task) {
 Estimate estimate_on(const Level& level, const EstimateTask& task) {
   Estimate made;
   made.voxel_mm = level.voxel_mm();
-  made.verdict.unresolved = level.unresolved();
-  if (level.is_judged()) judge(made, level, task);
-  made.told_by = told_by(level, made.verdict, task);
-  if (!made.prints && !level.is_final()) {
+  made.verdict = verdict::judge(level.unresolved(), {});
+  if (level.is_judged()) {
+    judge(made, level, task);
+  } else {
+    made.verdict = leave_open(made.verdict, unknown(made, level, task, ""));
+  }
+  if (made.is_unknown() && !level.is_final()) {
     made.too_coarse = solid::resolution_doubts("at " + format_number(made.voxel_mm, 3) + " mm", level.unresolved(),
                                                level.part.volume.grid, task.stretch_z);
   }
@@ -169,19 +182,10 @@ Estimate estimated(const EstimateTask& task) {
     const bool is_last = by == 1 || voxels(by / 2) > most_finer_voxels;
     if (is_last || may_tell(level, task)) {
       Estimate made = estimate_on(level, task);
-      if (is_last || made.prints) return made;
+      if (is_last || !made.is_unknown()) return made;
     }
     by /= 2;
   }
-}
-
-std::string words(const Estimate& estimate) {
-  const std::string why =
-      estimate.dose_decides ? ", as " + format_number(100 * optimize::unsure_dose) + " % of the dose decide" : "";
-  const std::string unknown =
-      "unknown at " + format_number(estimate.voxel_mm, 3) + " mm" + why + "; " + estimate.told_by + " tells";
-  if (estimate.iterations == 0) return unknown + ": no voxel is wholly inside the part";
-  return estimate.prints ? words(estimate.verdict) : words(estimate.verdict, unknown);
 }
 
 }  // namespace vam::plan_tool

@@ -24,16 +24,15 @@ struct WrongHeights {
 
 struct Estimate {
   double voxel_mm = 0;
-  int angles = 0, iterations = 0;  // 0: no voxel is wholly inside the part
-  verdict::Verdict verdict;
-  bool dose_decides = false;            // as far as it may be off: optimize::unsure_dose
-  std::optional<bool> prints;           // none: not known
-  std::string told_by;                  // then: "--voxel 0.1", or the tool
-  std::vector<std::string> too_coarse;  // and what voxels larger than those of the print do not resolve
+  int angles = 0, iterations = 0;       // 0: no voxel is wholly inside the part
+  verdict::Verdict verdict;             // left open: "unknown at 0.26 mm; --voxel 0.1 tells: ..."
+  std::vector<std::string> too_coarse;  // then: what voxels larger than those of the print do not resolve
   std::optional<WrongHeights> wrong;
   optimize::Trials trials;
   bool resin_known = false;
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
+
+  [[nodiscard]] bool is_unknown() const { return verdict.answer == verdict::Answer::left_open; }
 };
 
 /// The part as it is sliced, and its printer.
@@ -51,8 +50,5 @@ struct EstimateTask {
 /// Estimates on voxels four times as large as those of the print, or larger by another power of 2 where the part has
 /// more than 2 million of these; then on smaller ones, while the estimate does not decide and they are few.
 [[nodiscard]] Estimate estimated(const EstimateTask& task);
-
-/// "will print: ...", or "unknown at 0.26 mm; --voxel 0.1 tells: ...".
-[[nodiscard]] std::string words(const Estimate& estimate);
 
 }  // namespace vam::plan_tool

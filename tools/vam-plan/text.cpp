@@ -55,7 +55,7 @@ std::string duration_words(const Estimate& estimate) {
 }
 
 std::string estimate_rows(const Estimate& estimate) {
-  std::string text = row("verdict", words(estimate));
+  std::string text = row("verdict", estimate.verdict.words);
   for (const std::string& doubt : estimate.too_coarse) text += row("  too coarse", doubt);
   if (estimate.iterations == 0) return text;
   text += row("estimate", "voxels of " + number(estimate.voxel_mm) + " mm, " + std::to_string(estimate.angles) +
@@ -71,17 +71,13 @@ std::string estimate_rows(const Estimate& estimate) {
 
 void add_to(Json& json, const Estimate& estimate) {
   json["estimate_voxel_mm"] = estimate.voxel_mm;
-  json["unresolved_part"] = estimate.verdict.unresolved.part_share();
-  json["unresolved_gaps"] = estimate.verdict.unresolved.gap_share();
   if (estimate.iterations > 0) {
     json["iterations"] = estimate.iterations;
     json["angles"] = estimate.angles;
-    json["ver"] = estimate.verdict.whole.ver;
-    json["pw"] = estimate.verdict.whole.pw;
-    add_to(json, estimate.verdict);
+    json["ver"] = estimate.verdict.print.whole.ver;
+    json["pw"] = estimate.verdict.print.whole.pw;
   }
-  json["verdict"] = words(estimate);
-  json["prints"] = estimate.prints ? Json(*estimate.prints ? 1 : 0) : Json(nullptr);
+  add_to(json, estimate.verdict);
   if (const auto& wrong = estimate.wrong)
     json["wrong"] = {{"low_mm", wrong->low_mm}, {"high_mm", wrong->high_mm}, {"worst_mm", wrong->worst_mm}};
   for (const auto& single : estimate.trials.singles) {

@@ -56,11 +56,6 @@ std::string verdict(bool good, const std::string& words) {
   return "<p class=\"verdict " + std::string(good ? "good" : "bad") + "\">" + page_text(words) + "</p>\n";
 }
 
-std::string verdict(const Judged& judged) {
-  const verdict::Verdict verdict = judged.score.verdict();
-  return report_tool::verdict(verdict::answer(verdict) == verdict::Answer::yes, verdict::words(verdict));
-}
-
 std::string images(const std::vector<std::string>& paths) {
   std::string views;
   for (const std::string& path : paths) {
@@ -115,7 +110,10 @@ std::string content(const Sources& sources, const cli::PrinterOptions& printer, 
   const std::optional<Judged> judged = is_grey ? std::nullopt : judge(volumes, printer);
   const std::optional<score::GreyScore> grey = is_grey ? judge_grey(volumes, printer, wanted.grey) : std::nullopt;
   std::string made = "<h1>" + page_text(wanted.title) + "</h1>\n";
-  if (judged) made += verdict(*judged);
+  if (judged) {
+    const verdict::Verdict found = judged->score.verdict();
+    made += verdict(found.answer == verdict::Answer::yes, found.words);
+  }
   if (grey) made += verdict(grey->is_met(), grey->verdict());
   const std::optional<InspectionViews> inspection = inspection_views(sources.reports);
   if (inspection) made += inspection->verdict;

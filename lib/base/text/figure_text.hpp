@@ -9,4 +9,7 @@ namespace vam {
 /// A whole number in full, as counts are, however many digits it has; any other as format_number() has it.
 [[nodiscard]] std::string format_figure(double value, int digits = 6);
 
+/// An aligned line "name value meaning" of a table.
+[[nodiscard]] std::string figure_row(const std::string& name, double value, const std::string& meaning);
+
 }  // namespace vam

@@ -81,7 +81,7 @@ Preview preview(const PreviewTask& wanted) {
   Preview made{lit.grid, optimise(task, *light), {}, {}};
   const double threshold = task.demands.window.threshold();
   for (const int more : {0, 1}) {
-    const double dose = (1 + (more == 1 ? unsure_dose : -unsure_dose)) * threshold;
+    const double dose = (1 + (more == 1 ? verdict::dose_margin : -verdict::dose_margin)) * threshold;
     judge_shown(
         task, *light, frames, [&](const model::DoseMetrics&) { return dose; }, made.beside[more]);
   }

@@ -12,10 +12,6 @@
 
 namespace vam::optimize {
 
-/// Relative error of a preview's dose against more iterations on voxels as large: the margin of the verdict
-/// [verdict::firm_dose].
-inline constexpr double unsure_dose = 0.02;
-
 struct PreviewTask {
   model::Volume target;    // coverage, on the voxels of the preview
   model::Printer printer;  // with pixels as large (model::coarser)
@@ -29,7 +25,9 @@ struct PreviewTask {
 struct Preview {
   model::Grid grid;  // all that the light reaches: the voxels of the outcome
   VolumeOutcome outcome;
-  std::array<VolumeOutcome, 2> beside;  // if the resin set at a dose that is lower and higher by unsure_dose
+  /// If the resin set at a dose that is lower and higher by verdict::dose_margin, by which the dose differs from that
+  /// of more iterations on voxels as large.
+  std::array<VolumeOutcome, 2> beside;
   Trials trials;
 };
 

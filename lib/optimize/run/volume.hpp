@@ -19,7 +19,7 @@
 #include "optimize/run/front.hpp"
 #include "optimize/run/shortest.hpp"
 #include "optimize/target/slice_reader.hpp"
-#include "verdict/print_pieces.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::optimize {
 
@@ -91,6 +91,14 @@ struct VolumeOutcome {
   std::optional<Certificate> certificate;  // when asked for
   std::vector<FrontPoint> front;           // by rising limit, when asked for
   std::int64_t dark_part_voxels = 0;       // of the part, behind the insert from everywhere
+
+  /// As it is judged, its pieces on a grid of these voxels.
+  [[nodiscard]] verdict::GivenPrint print(const model::Grid& grid, double stretch_z,
+                                          const model::LightWidth& by) const {
+    verdict::GivenPrint made{metrics, with_cut, pieces, grid, stretch_z, by};
+    if (all_cut) made.whole.part = 0;
+    return made;
+  }
 };
 
 /// Whether all slices are one pass: where light couples them, where a figure is of the whole part, and where the blur

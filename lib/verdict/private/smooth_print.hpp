@@ -9,7 +9,7 @@
 
 namespace vam::verdict {
 
-/// A dose within 2 % of the threshold is moved to the side of it on which the part has the voxel.
+/// A dose within dose_margin of the threshold is moved to the side of it on which the part has the voxel.
 [[nodiscard]] float firm_dose(float coverage, float dose, double threshold);
 
 /// Less or more of the dose, which may decide on what hangs together: by a factor, but where a voxel wholly in the part

@@ -9,6 +9,7 @@
 #include "verdict/defect_voxels.hpp"
 #include "verdict/private/bit_slice.hpp"
 #include "verdict/private/field_shape.hpp"
+#include "verdict/verdict.hpp"
 
 using namespace vam;
 using namespace vam::test;
@@ -211,20 +212,20 @@ TEST_CASE("of two gaps in rods the larger one tells the place, however the slice
     print.add([&](int i) { return rod(i) ? 1.0F : 0.0F; }, [&](int i) { return rod(i) && !lost(i); });
   }
   for (const int a_pass : {1, 3, 20}) {
-    verdict::PrintPieces found = print.found(a_pass);
+    const verdict::PrintPieces found = print.found(a_pass);
     CHECK(found.broken.voxels == 6);
     CHECK(found.broken.largest == 4);
     CHECK(found.broken.at.column == 8);
     CHECK(found.broken.at.row == 5);
     CHECK(found.broken.at.slice >= 11);
     CHECK(found.broken.at.slice < 15);
-    CHECK_FALSE(found.broken_at_mm);
-    found.set_places({size, size, 20, 0.5, {-1, -2, 3}}, 1.5);
-    const auto [x, y, z] = found.broken_at_mm.value();
+    const verdict::GivenPrint given{.pieces = found, .grid = {size, size, 20, 0.5, {-1, -2, 3}}, .stretch_z = 1.5};
+    const auto [x, y, z] = given.place_mm(found.broken).value();
     CHECK(x == doctest::Approx(3));
     CHECK(y == doctest::Approx(0.5));
     CHECK(z == doctest::Approx((3 + 0.5 * found.broken.at.slice) / 1.5));
-    CHECK_FALSE(found.shut_at_mm);
+    CHECK_FALSE(given.place_mm(found.shut));
+    CHECK_FALSE(verdict::GivenPrint{.pieces = found}.place_mm(found.broken));
   }
 }
 

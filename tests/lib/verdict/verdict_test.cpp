@@ -10,8 +10,16 @@ using namespace vam::verdict;
 
 namespace {
 
-Verdict printable() {
-  Verdict made;
+/// A print, and what of the part its voxels do not resolve.
+struct Given : GivenPrint {
+  Unresolved unresolved;
+  [[nodiscard]] Verdict judged() const { return judge(unresolved, *this); }
+};
+std::string words(const Given& given) { return given.judged().words; }
+Answer answer(const Given& given) { return given.judged().answer; }
+
+Given printable() {
+  Given made;
   made.whole.part = 100;
   made.whole.void_ = 900;
   made.whole.pw = 0.0653;
@@ -29,7 +37,7 @@ TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that 
   CHECK(words(printable()) ==
         "will print: process window +0.0653 of the largest dose, VER 0 (1000 voxels); including the 110 voxels cut by "
         "the surface: process window -0.312, VER 0.0041");
-  Verdict hollow = printable();
+  Given hollow = printable();
   hollow.with_cut = hollow.whole;
   hollow.whole.pw = hollow.with_cut.pw = -0.02;
   hollow.whole.ver = 0.003;
@@ -40,7 +48,7 @@ TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that 
 }
 
 TEST_CASE("where the threshold is fixed, a window beside it does not print") {
-  Verdict fixed = printable();
+  Given fixed = printable();
   fixed.whole.max_void = 0.7;
   fixed.whole.min_part = 0.8;
   fixed.threshold = 0.772;
@@ -50,7 +58,7 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
                         "3.5 % below its least dose in the part and 10 % above its largest in the void; including the "
                         "110 voxels") == 0);
   Json figures;
-  add_to(figures, fixed);
+  add_to(figures, fixed.judged());
   CHECK(figures["threshold_margin"]["below_part"].get<double>() == doctest::Approx(0.028 / 0.8));
   CHECK(figures["threshold_margin"]["above_void"].get<double>() == doctest::Approx(0.072 / 0.7));
   fixed.threshold = 0.8;
@@ -64,7 +72,7 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
 }
 
 TEST_CASE("a part of which hardly anything is judged may print, whatever its surface shows") {
-  Verdict rods = printable();
+  Given rods = printable();
   rods.unresolved.whole = 1000;
   rods.unresolved.surface.emplace();
   rods.unresolved.part = 400;
@@ -75,7 +83,7 @@ TEST_CASE("a part of which hardly anything is judged may print, whatever its sur
 }
 
 TEST_CASE("walls and gaps that no voxel shows are told") {
-  Verdict thin = printable();
+  Given thin = printable();
   thin.unresolved.whole = 1000;
   thin.unresolved.part = 19;
   CHECK(words(thin) == words(printable()));
@@ -92,11 +100,11 @@ TEST_CASE("walls and gaps that no voxel shows are told") {
 }
 
 TEST_CASE("slits and hairs are told however small their share is") {
-  Verdict slit = printable();
+  Given slit = printable();
   slit.unresolved.lost_gaps = {40, 0.5F, 3, 9};
   CHECK(answer(slit) == Answer::not_as_designed);
   CHECK(has(words(slit), "gaps too narrow for the voxels will be shut"));
-  Verdict hair = printable();
+  Given hair = printable();
   hair.unresolved.whole = 1e6;
   hair.unresolved.lost_walls.far = hair.unresolved.lost_walls.voxels = 3;
   CHECK(answer(hair) == Answer::not_as_designed);
@@ -106,14 +114,14 @@ TEST_CASE("slits and hairs are told however small their share is") {
 }
 
 TEST_CASE("a part without a voxel wholly inside is not judged") {
-  Verdict none = printable();
+  Given none = printable();
   none.whole.part = 0;
   CHECK(answer(none) == Answer::not_judged);
   CHECK(words(none).starts_with("not judged, as no voxel is wholly inside the part: "));
 }
 
 TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
-  Verdict cut = printable();
+  Given cut = printable();
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1};
   CHECK(words(cut) == words(printable()));
   CHECK(answer(cut) == Answer::yes);
@@ -135,9 +143,11 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; walls are cut or missing: 4 voxels that the part fills by half or more do not cure"));
   cut.pieces->broken.at = {.column = 3, .row = 1, .slice = 8};
-  cut.pieces->set_places(model::centred_grid(5, 5, 9, 0.5, 1), 1.25);
+  cut.grid = model::centred_grid(5, 5, 9, 0.5, 1);
+  cut.stretch_z = 1.25;
   CHECK(words(cut).ends_with(
       " voxels that the part fills by half or more do not cure, most at x, y, z = 0.5, -0.5, 4 mm"));
+  cut.grid = {};
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .shut = {.voxels = 8}};
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; gaps are shut: 8 voxels that the part fills by less than a quarter cure"));
@@ -156,13 +166,23 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   CHECK_FALSE(has(words(cut), "pierced"));
 }
 
+TEST_CASE("an estimate that cannot tell is left open, for a reason, and reports no answer") {
+  const Verdict open = leave_open(printable().judged(), "unknown at 0.26 mm; --voxel 0.1 tells");
+  CHECK(open.answer == Answer::left_open);
+  CHECK(open.words.starts_with("unknown at 0.26 mm; --voxel 0.1 tells: process window +0.0653 of the largest dose"));
+  Json figures;
+  add_to(figures, open);
+  CHECK(figures["prints"].is_null());
+  CHECK(leave_open(judge({}, {}), "unknown").words == "unknown: no voxel is wholly inside the part");
+}
+
 // A dose that is the same everywhere has it: what prints the part prints the void, too.
 TEST_CASE("a window of width 0 does not print, and report and message agree") {
-  Verdict edge = printable();
+  Given edge = printable();
   edge.whole.pw = 0;
   CHECK(answer(edge) == Answer::no);
   Json figures;
-  add_to(figures, edge);
+  add_to(figures, edge.judged());
   CHECK(figures["verdict"] == words(edge));
   CHECK(figures["prints"] == 0);
   CHECK(figures["with_surface"]["voxels"] == 1110);
@@ -170,7 +190,7 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   edge.whole.pw = 0.1;
   edge.pieces = {.part = 1, .part_at_half = 1, .print = 1};
   Json good;
-  add_to(good, edge);
+  add_to(good, edge.judged());
   CHECK(good["prints"] == 1);
   CHECK(good["print_pieces"] == 1);
 }
@@ -179,20 +199,20 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
   verdict::PrintPieces counted;
   counted.part = 1;
   counted.part_at_half = counted.print = 2;
-  Verdict made = printable();
-  set_pieces(made, counted);
+  Given made = printable();
+  made.pieces = counted;
   CHECK(answer(made) == Answer::unsure);
   model::VoxelisedSurface surface{{}, 0.2};
   for (const auto& [solids, wanted] :
        {std::pair{0, Answer::unsure}, {2, Answer::yes}, {1, Answer::not_as_designed}, {3, Answer::not_as_designed}}) {
     surface.places.solids = solids;
     made.unresolved.surface = surface;
-    set_pieces(made, counted);
+    made.pieces = counted;
     CHECK(answer(made) == wanted);
   }
   CHECK(has(words(made), "; the print is in 2 pieces, the part in 3"));
   made.unresolved.surface->places.specks = 1;  // a third solid that is too small to count on
-  set_pieces(made, counted);
+  made.pieces = counted;
   CHECK(answer(made) == Answer::yes);
 
   surface.places.solids = 2;
@@ -202,7 +222,7 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
   made.pieces = std::nullopt;
   CHECK(answer(made) == Answer::unsure);
   made.unresolved.surface = surface;
-  set_pieces(made, counted);
+  made.pieces = counted;
   CHECK(answer(made) == Answer::yes);
   CHECK(words(made) == words(printable()));
   // Voxels that only a rough surface leaves uncovered.
