@@ -140,23 +140,6 @@ std::vector<std::size_t> defect_voxels(Defect what, int width, int height, const
 
 namespace {
 
-/// Sums over sets, at their representatives.
-std::vector<std::int64_t> sum_by_set(const RunSets& sets, const std::vector<std::int64_t>& of_runs) {
-  std::vector<std::int64_t> sums(sets.runs(), 0);
-  for (std::size_t run = 0; run < sets.runs(); ++run) sums[sets.set_of(run)] += of_runs[run];
-  return sums;
-}
-
-/// Sums by the new numbers of the sets, now that others are forgotten.
-std::vector<std::int64_t> remap(const std::vector<std::int64_t>& before, const std::vector<std::size_t>& now,
-                                std::size_t runs) {
-  std::vector<std::int64_t> sums(runs, 0);
-  for (std::size_t set = 0; set < before.size(); ++set) {
-    if (before[set] > 0 && now[set] != RunSets::gone) sums[now[set]] = before[set];
-  }
-  return sums;
-}
-
 /// Pairs are in order. Of the pieces of a set that have ended, the first and the last suffice to tell that it is cut.
 void drop_redundant_pairs(std::vector<std::pair<std::size_t, std::size_t>>& touching, std::size_t ended) {
   std::size_t kept = 0;
@@ -185,11 +168,13 @@ void BreakFinder::add(const DefectSlice& slice) {
   missing_.add(slice.missing, Touching::corners);
   boundary_.add(slice.boundary, Touching::corners);
   torn_.add(slice.torn, Touching::corners);
-  apart_.insert(apart_.end(), slice.apart.begin(), slice.apart.end());
-  torn_of_missing_.insert(torn_of_missing_.end(), slice.torn_of_missing.begin(), slice.torn_of_missing.end());
-  counted_.resize(missing_.runs());
   const std::size_t missing = missing_.first_of_last();
-  for (const std::size_t run : slice.missing_run) missing_of_torn_.push_back(missing + run);
+  for (std::size_t n = 0; n < slice.missing.size(); ++n) missing_[missing + n].torn += slice.torn_of_missing[n];
+  for (std::size_t n = 0; n < slice.torn.size(); ++n) {
+    RunSet& set = torn_[torn_.first_of_last() + n];
+    set.apart += slice.apart[n];
+    set.missing_run = missing + slice.missing_run[n];
+  }
   const std::size_t boundary = boundary_.first_of_last();
   note_touching(slice.missing, missing, slice.boundary, boundary);
   note_touching(slice.missing, missing, boundary_below, boundary - boundary_below.size());
@@ -212,18 +197,12 @@ std::vector<BreakFinder::Piece> BreakFinder::forget_boundary() {
 /// Those that do not reach the last slice.
 void BreakFinder::decide_torn() {
   constexpr std::int64_t least_apart = 3;
-  const std::vector<std::int64_t> apart = sum_by_set(torn_, apart_);
-  const std::vector<std::size_t> missing = missing_of_torn_;
-  const std::vector<std::size_t> now = torn_.forget([&](std::size_t set) {
-    if (apart[set] < least_apart && torn_.voxels(set) < least_torn_) return;
-    count(torn_.voxels(set), torn_.place(set));
-    counted_[missing[set]] += torn_.voxels(set);
+  torn_.forget([&](std::size_t run) {
+    const RunSet& set = torn_[run];
+    if (set.apart < least_apart && set.voxels < least_torn_) return;
+    count(set.voxels, set.at);
+    missing_[set.missing_run].counted += set.voxels;
   });
-  apart_ = remap(apart, now, torn_.runs());
-  missing_of_torn_.assign(torn_.runs(), 0);
-  for (std::size_t run = 0; run < now.size(); ++run) {
-    if (now[run] != RunSets::gone) missing_of_torn_[now[run]] = missing[run];
-  }
 }
 
 /// Keeps what is still open: missing sets that reach the last slice, and those whose pieces may yet become one.
@@ -237,23 +216,21 @@ void BreakFinder::decide() {
   std::sort(touching_.begin(), touching_.end());
   touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
   decide_torn();
-  const std::vector<std::int64_t> torn = sum_by_set(missing_, torn_of_missing_);
-  const std::vector<std::int64_t> counted = sum_by_set(missing_, counted_);
-  const std::vector<std::size_t> runs = missing_.forget([&](std::size_t set) {
+  const std::vector<std::size_t> runs = missing_.forget([&](std::size_t run) {
     std::vector<Piece> pieces;
-    for (auto at = std::lower_bound(touching_.begin(), touching_.end(), std::pair{set, Piece{0}});
-         at != touching_.end() && at->first == set; ++at) {
+    for (auto at = std::lower_bound(touching_.begin(), touching_.end(), std::pair{run, Piece{0}});
+         at != touching_.end() && at->first == run; ++at) {
       pieces.push_back(at->second);
     }
-    judge(torn[set] == missing_.voxels(set),
-          {missing_.voxels(set) - counted[set], missing_.place(set), std::move(pieces)});
+    const RunSet& set = missing_[run];
+    judge(set.torn == set.voxels, {set.voxels - set.counted, set.at, std::move(pieces)});
   });
   std::erase_if(touching_, [&](const auto& pair) { return runs[pair.first] == RunSets::gone; });
   drop_redundant_pairs(touching_, ended);
   for (auto& [missing, piece] : touching_) missing = runs[missing];
-  torn_of_missing_ = remap(torn, runs, missing_.runs());
-  counted_ = remap(counted, runs, missing_.runs());
-  for (std::size_t& missing : missing_of_torn_) missing = runs[missing];
+  for (std::size_t run = 0; run < torn_.runs(); ++run) {
+    if (torn_.set_of(run) == run) torn_[run].missing_run = runs[torn_[run].missing_run];
+  }
 }
 
 void BreakFinder::count(std::int64_t voxels, const VoxelPlace& at) {

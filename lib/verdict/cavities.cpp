@@ -70,7 +70,7 @@ void CavityFinder::State::add(const std::vector<VoxelRun>& runs) {
   std::vector<std::size_t> sets;
   for (std::size_t run = 0; run < rows_.size(); ++run) sets.push_back(open_.set_of(run));
   const std::vector<std::size_t> now = open_.forget([this](std::size_t set) {
-    const std::int64_t voxels = open_.voxels(set);
+    const std::int64_t voxels = open_[set].voxels;
     if (rows_[set].outside || voxels < least_voxels) return;
     ++closed_.count;
     closed_.voxels += voxels;

@@ -35,9 +35,9 @@ void RunSets::join(std::size_t a, std::size_t b) {
   a = set_of(a);
   b = set_of(b);
   if (a == b) return;
-  if (voxels_[a] < voxels_[b]) std::swap(a, b);
+  if (sets_[a].voxels < sets_[b].voxels) std::swap(a, b);
   parent_[b] = a;
-  voxels_[a] += voxels_[b];
+  sets_[a].take(sets_[b]);
 }
 
 void RunSets::join_near(const Lists& lists, int rows_apart, Touching touching) {
@@ -51,8 +51,7 @@ void RunSets::add(const std::vector<VoxelRun>& slice, Touching touching) {
   const std::size_t first = parent_.size();
   for (const VoxelRun& run : slice) {
     parent_.push_back(parent_.size());
-    voxels_.push_back(run.end - run.begin);
-    places_.push_back({(run.begin + run.end) / 2, run.row, slices_});
+    sets_.push_back({.voxels = run.end - run.begin, .at = {(run.begin + run.end) / 2, run.row, slices_}});
   }
   ++slices_;
   const Lists level{slice, slice, first, first};
@@ -70,14 +69,12 @@ std::vector<std::size_t> RunSets::forget(const std::function<void(std::size_t se
   const std::size_t first = first_of_last();
   std::vector<std::size_t> stands(runs(), gone);  // for a set, of the last slice
   std::vector<std::size_t> parents;
-  std::vector<std::int64_t> voxels;
-  std::vector<VoxelPlace> places;
+  std::vector<RunSet> sets;
   for (std::size_t run = first; run < runs(); ++run) {
     const std::size_t set = set_of(run);
     if (stands[set] == gone) stands[set] = run - first;
     parents.push_back(stands[set]);
-    voxels.push_back(voxels_[set]);
-    places.push_back(places_[set]);
+    sets.push_back(sets_[set]);
   }
   std::vector<std::size_t> now;
   for (std::size_t run = 0; run < runs(); ++run) {
@@ -85,8 +82,7 @@ std::vector<std::size_t> RunSets::forget(const std::function<void(std::size_t se
     if (parent_[run] == run && now.back() == gone) complete(run);
   }
   parent_ = std::move(parents);
-  voxels_ = std::move(voxels);
-  places_ = std::move(places);
+  sets_ = std::move(sets);
   return now;
 }
 
@@ -96,14 +92,14 @@ void PieceCounter::add(const std::vector<VoxelRun>& slice, Touching touching, co
   if (join_more) join_more(open_, before);
   open_.forget([this](std::size_t set) {
     ++complete_;
-    large_ += open_.voxels(set) >= least_ ? 1 : 0;
+    large_ += open_[set].voxels >= least_ ? 1 : 0;
   });
 }
 
 std::int64_t PieceCounter::counted(std::int64_t least) const {
   std::int64_t pieces = least == 0 ? complete_ : large_;
   for (std::size_t run = 0; run < open_.runs(); ++run)
-    pieces += open_.set_of(run) == run && open_.voxels(run) >= least ? 1 : 0;
+    pieces += open_.set_of(run) == run && open_[run].voxels >= least ? 1 : 0;
   return pieces;
 }
 

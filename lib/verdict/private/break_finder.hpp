@@ -60,9 +60,6 @@ class BreakFinder {
 
   std::int64_t least_torn_;
   RunSets missing_, torn_, boundary_;
-  std::vector<std::int64_t> torn_of_missing_, counted_;  // of each missing run or set, at its representative
-  std::vector<std::int64_t> apart_;                      // of each torn one, likewise
-  std::vector<std::size_t> missing_of_torn_;             // the missing run that a torn one is of
   std::vector<std::pair<std::size_t, Piece>> touching_;  // a missing run and a piece
   std::vector<Undecided> undecided_;
   std::size_t ended_pieces_ = 0;

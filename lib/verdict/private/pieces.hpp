@@ -24,6 +24,23 @@ enum class Touching { faces, corners };
 void for_near_runs(const std::vector<VoxelRun>& runs, const std::vector<VoxelRun>& others, int rows_apart,
                    const std::function<void(std::size_t i, std::size_t j)>& pair);
 
+/// Of a set of runs: what its runs have together.
+struct RunSet {
+  std::int64_t voxels = 0;
+  VoxelPlace at = {};           // the middle of one of the runs
+  std::int64_t torn = 0;        // of missing ones: voxels around which nothing is kept, or what is falls apart
+  std::int64_t counted = 0;     // of these, those of torn sets that count
+  std::int64_t apart = 0;       // of torn ones: voxels around which the kept ones fall apart
+  std::size_t missing_run = 0;  // of torn ones: a run of the missing set that they are of
+
+  void take(const RunSet& other) {
+    voxels += other.voxels;
+    torn += other.torn;
+    counted += other.counted;
+    apart += other.apart;
+  }
+};
+
 /// Sets of runs, which are numbered in the order in which they come.
 class RunSets {
  public:
@@ -35,10 +52,9 @@ class RunSets {
   [[nodiscard]] std::size_t runs() const { return parent_.size(); }
   /// The representative of the run's set.
   [[nodiscard]] std::size_t set_of(std::size_t run) const;
-  /// Voxels of the set that this run represents.
-  [[nodiscard]] std::int64_t voxels(std::size_t set) const { return voxels_[set]; }
-  /// The middle of one of its runs.
-  [[nodiscard]] const VoxelPlace& place(std::size_t set) const { return places_[set]; }
+  /// Of the set that this run is of.
+  [[nodiscard]] RunSet& operator[](std::size_t run) { return sets_[set_of(run)]; }
+  [[nodiscard]] const RunSet& operator[](std::size_t run) const { return sets_[set_of(run)]; }
   /// Forgets all runs but those of the last slice, which are then numbered from 0 on; before that, complete(set) of the
   /// sets that do not reach it. Returns the representative of each earlier run's set, or `gone`.
   static constexpr std::size_t gone = ~std::size_t{0};
@@ -55,8 +71,7 @@ class RunSets {
   void join_near(const Lists& lists, int rows_apart, Touching touching);
 
   mutable std::vector<std::size_t> parent_;  // of each run; paths are shortened when they are followed
-  std::vector<std::int64_t> voxels_;         // of the set, at its representative
-  std::vector<VoxelPlace> places_;           // of each run
+  std::vector<RunSet> sets_;                 // each at its representative
   std::vector<VoxelRun> last_;
   int slices_ = 0;  // so far
 };
