@@ -96,15 +96,13 @@ bool is_of_exposure(const std::string& figure) {
 }
 
 Score::Score(const ScoreOptions& options, int width, int height)
-    : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold) {
+    : options_(options),
+      width_(width),
+      region_(width, height, options.circle),
+      whole_(options.threshold),
+      with_cut_(options.threshold) {
   const model::Circle& at = options.circle;
   rim_px_ = 0.5 + std::min({at.axis_x, at.axis_y, width - 1 - at.axis_x, height - 1 - at.axis_y});
-  inside_.reserve(width * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      inside_.push_back(options.circle.contains(x, y));
-    }
-  }
 }
 
 void Score::add(const float* dose, const float* target, int count) {
@@ -117,13 +115,13 @@ void Score::add(const float* dose, const float* target, int count) {
   std::vector<model::OutsideDoses> outside(slices.size());
   std::vector<std::int64_t> surface(count, 0);
   parallel_for(count, [&](int s) {
-    const std::size_t first = product(s, inside_.size());
-    for (std::size_t i = 0; i < inside_.size(); ++i) {
+    const std::size_t first = product(s, region_.pixels());
+    for (std::size_t i = 0; i < region_.pixels(); ++i) {
       const float d = dose[first + i];
       const float f = target[first + i];
       if (!std::isfinite(d)) throw Error{Fault::data, "the dose is not finite everywhere; compute it again"};
       const auto label = model::label_of(f);
-      if (!inside_[i] && label == model::Label::void_) continue;
+      if (!region_.has(i, f)) continue;
       if (label == model::Label::surface) {
         ++surface[s];
         cut[s].add(d, model::half_covered(f) ? model::Label::part : model::Label::void_);

@@ -93,8 +93,8 @@ class Score {
 
   ScoreOptions options_;
   int width_;
-  double rim_px_ = 0;                       // of the largest circle in a slice
-  std::vector<bool> inside_;                // of a slice, whether the circle has it
+  double rim_px_ = 0;  // of the largest circle in a slice
+  verdict::JudgedRegion region_;
   model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;
   std::optional<verdict::PrintPieces> pieces_;

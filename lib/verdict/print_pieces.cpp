@@ -44,11 +44,9 @@ class PrintPieceCounter::State {
  private:
   using Slice = std::vector<std::uint8_t>;  // of bits
 
-  /// Doses inside the circle, and those of voxels of the part.
-  [[nodiscard]] std::vector<float> judged(const float* dose, const float* coverage, int count) const;
   void add_judged(const float* dose, const float* coverage, int count);
 
-  std::vector<bool> inside_;  // of a slice, whether the circle has it; empty: all is judged
+  JudgedRegion region_;
   int width_, height_;
   double threshold_;
   PieceCounter part_;
@@ -60,7 +58,8 @@ class PrintPieceCounter::State {
 };
 
 PrintPieceCounter::State::State(int width, int height, double threshold, const std::optional<model::Circle>& circle)
-    : width_(width),
+    : region_(width, height, circle),
+      width_(width),
       height_(height),
       threshold_(threshold),
       part_(PrintPieces::least_voxels),
@@ -69,27 +68,17 @@ PrintPieceCounter::State::State(int width, int height, double threshold, const s
       of_smooth_(width, height, threshold),
       of_firm_(width, height, threshold),
       of_others_(other_factors.size(), of_print_),
-      smooth_(width, height, threshold) {
-  if (!circle) return;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) inside_.push_back(circle->contains(x, y));
-  }
-}
+      smooth_(width, height, threshold) {}
 
 void PrintPieceCounter::State::add(const float* dose, const float* coverage, int count) {
-  if (inside_.empty()) return add_judged(dose, coverage, count);
-  add_judged(judged(dose, coverage, count).data(), coverage, count);
-}
-
-std::vector<float> PrintPieceCounter::State::judged(const float* dose, const float* coverage, int count) const {
-  std::vector<float> doses(product(count, inside_.size()), 0.0F);
+  std::vector<float> doses(product(count, region_.pixels()), 0.0F);
   parallel_for(count, [&](int k) {
-    const std::size_t first = product(k, inside_.size());
-    for (std::size_t i = 0; i < inside_.size(); ++i) {
-      if (inside_[i] || model::half_covered(coverage[first + i])) doses[first + i] = dose[first + i];
+    const std::size_t first = product(k, region_.pixels());
+    for (std::size_t i = 0; i < region_.pixels(); ++i) {
+      if (region_.has(i, coverage[first + i])) doses[first + i] = dose[first + i];
     }
   });
-  return doses;
+  add_judged(doses.data(), coverage, count);
 }
 
 void PrintPieceCounter::State::add_judged(const float* dose, const float* coverage, int count) {

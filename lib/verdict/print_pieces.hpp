@@ -4,14 +4,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "model/circle.hpp"
-#include "model/grid.hpp"
-#include "model/part_surface.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::verdict {
 
@@ -65,10 +65,28 @@ struct PrintPieces {
   }
 };
 
+/// Where a slice is judged: in the circle, none: everywhere, and beyond it where the part has some of a voxel; void
+/// there is not judged, and does not cure.
+class JudgedRegion {
+ public:
+  JudgedRegion(int width, int height, const std::optional<model::Circle>& circle) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) inside_.push_back(!circle || circle->contains(x, y));
+    }
+  }
+  [[nodiscard]] std::size_t pixels() const { return inside_.size(); }
+  [[nodiscard]] bool has(std::size_t pixel, float coverage) const {
+    return inside_[pixel] || model::label_of(coverage) != model::Label::void_;
+  }
+
+ private:
+  std::vector<bool> inside_;
+};
+
 /// Slice by slice, from the lowest up.
 class PrintPieceCounter {
  public:
-  /// threshold: more than 0. Outside the circle only voxels of the part cure; none: all is judged.
+  /// threshold: more than 0. circle: as of JudgedRegion.
   PrintPieceCounter(int width, int height, double threshold, const std::optional<model::Circle>& circle = {});
   ~PrintPieceCounter();
   PrintPieceCounter(PrintPieceCounter&&) noexcept;
