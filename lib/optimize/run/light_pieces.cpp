@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/index.hpp"
+#include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/shown_pass.hpp"
 
 namespace vam::optimize {
@@ -34,10 +35,15 @@ void LightPieces::count(const Pass& pass) {
   const ShownPass shown = shown_pass(
       task_, light_, reader_, pass, [&](int number) { return of(number).slice; },
       [&](int number) { return of(number).image; });
-  for_each_dose(shown, pass, [&](int number, const float* dose) {
-    task_.source.target(of(number).slice, 1, target_.data());
-    for (int n = 0; n < of(number).count; ++n) pieces_.add(dose, target_.data(), 1);
-  });
+  for_each_dose(shown.dose, shown.problem, pass.first - pass.low, pass.last - pass.low,
+                [&](int first, int count, const float* doses) {
+                  for (int k = 0; k < count; ++k) {
+                    const Alike& alike = of(pass.low + first + k);
+                    task_.source.target(alike.slice, 1, target_.data());
+                    for (int n = 0; n < alike.count; ++n)
+                      pieces_.add(doses + product(k, target_.size()), target_.data(), 1);
+                  }
+                });
   next_ = pass.last;
   const int low = division_.from(next_, std::numeric_limits<int>::max()).low;
   for (; first_ < low; ++first_) held_.pop_front();

@@ -47,35 +47,33 @@ std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem
   return slices;
 }
 
-std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int first, int count) {
-  const std::size_t size = product(dose.width, dose.height);
-  std::vector<float> slices(product(count, size));
-  for (std::size_t i = 0; i < size; ++i) {
-    for (int n = 0; n < count; ++n) {
-      const std::size_t at = i * lanes + static_cast<std::size_t>(first + n);
-      slices[product(n, size) + i] = labels[at] == Label::outside ? 0 : dose.values[at];
-    }
-  }
-  return slices;
-}
-
-// Light that fills the memory leaves room for few slices more.
-verdict::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem, const VolumeSource& source) {
+void for_each_dose(std::span<const Slab> dose, const Problem& problem, int first, int last,
+                   const std::function<void(int slice, int count, const float* doses)>& visit) {
   constexpr std::size_t few_voxels = std::size_t{1} << 19U;
   const std::size_t size = product(dose[0].width, dose[0].height);
   const int at_once = static_cast<int>(std::clamp<std::size_t>(few_voxels / size, 1, lanes));
-  verdict::PrintPieceCounter counter(dose[0].width, dose[0].height, problem.demands.window.threshold());
-  for (std::size_t s = 0; s < dose.size(); ++s) {
-    const int first = static_cast<int>(s) * lanes;
-    const int slices = std::min(lanes, problem.slices - first);
-    for (int lane = 0; lane < slices; lane += at_once) {
-      const int count = std::min(at_once, slices - lane);
-      std::vector<float> target(product(count, size));
-      source.target(first + lane, count, target.data());
-      counter.add(judged_doses(dose[s], problem.labels[s], lane, count).data(), target.data(), count);
+  for (int k = first, count = 0; k < last; k += count) {
+    const std::size_t s = static_cast<std::size_t>(k) / lanes;
+    count = std::min({at_once, last - k, lanes - k % lanes});
+    std::vector<float> doses(product(count, size));
+    for (std::size_t i = 0; i < size; ++i) {
+      for (int n = 0; n < count; ++n) {
+        const std::size_t at = i * lanes + static_cast<std::size_t>(k % lanes + n);
+        doses[product(n, size) + i] = problem.labels[s][at] == Label::outside ? 0 : dose[s].values[at];
+      }
     }
+    visit(k, count, doses.data());
   }
-  return counter.found();
+}
+
+void count_pieces(std::span<const Slab> dose, const Problem& problem, int first, int last, const VolumeSource& source,
+                  int from, verdict::PrintPieceCounter& counter) {
+  std::vector<float> target;
+  for_each_dose(dose, problem, first, last, [&](int slice, int count, const float* doses) {
+    target.resize(product(count, product(dose[0].width, dose[0].height)));
+    source.target(from + slice, count, target.data());
+    counter.add(doses, target.data(), count);
+  });
 }
 
 }  // namespace vam::optimize

@@ -95,7 +95,10 @@ void finish(RunState& run, const Pass& pass, const PassPrinters& printers, PassS
   if (whole) outcome.surface = work.method->surface_miss(state.dose);
   run.totals.add(state.dose, problem, pass, run.jobs, task.part);
   if (run.light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(state.dose, problem);  // one pass
-  if (whole && task.counts_pieces()) outcome.pieces = print_pieces(state.dose, problem, task.source);
+  if (!whole || !task.counts_pieces()) return;
+  verdict::PrintPieceCounter pieces(state.dose[0].width, state.dose[0].height, problem.demands.window.threshold());
+  count_pieces(state.dose, problem, 0, problem.slices, task.source, 0, pieces);
+  outcome.pieces = pieces.found();
 }
 
 void hand_out(const RunState& run, const Pass& pass, const light::Operator& light, PassState work,

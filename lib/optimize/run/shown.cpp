@@ -35,7 +35,6 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
   RunTotals totals;
   VolumeOutcome outcome;
   const light::Shape object = light.object();
-  std::vector<float> target(product(object.width, object.height));
   std::optional<verdict::PrintPieceCounter> pieces;
   if (!task.demands.grey && threshold > 0) pieces.emplace(object.width, object.height, threshold);
   for (const Pass& pass : jobs.passes) {
@@ -45,10 +44,8 @@ VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, cons
     totals.add(shown.dose, shown.problem, pass, jobs, task.part);
     if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
     if (pieces) {
-      for_each_dose(shown, pass, [&](int k, const float* dose) {
-        task.source.target(k, 1, target.data());
-        pieces->add(dose, target.data(), 1);
-      });
+      count_pieces(shown.dose, shown.problem, pass.first - pass.low, pass.last - pass.low, task.source, pass.low,
+                   *pieces);
     }
   }
   totals.complete(outcome, task.demands.grey, jobs.schedule.job_of_slice);

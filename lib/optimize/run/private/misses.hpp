@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,11 +24,14 @@ struct OutsideSlices {
 /// How many voxels of each slice in use are on the wrong side of the threshold.
 [[nodiscard]] std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem);
 
-/// `count` slices of a slab of doses from lane `first` on, row-major, 0 outside the circle and where inserts are.
-[[nodiscard]] std::vector<float> judged_doses(const Slab& dose, std::span<const Label> labels, int first, int count);
+/// visit(slice, count, doses) for slices [first, last), some at a time: row-major, 0 where no voxel is judged, outside
+/// the circle and where inserts are. Light that fills the memory leaves room for few.
+void for_each_dose(std::span<const Slab> dose, const Problem& problem, int first, int last,
+                   const std::function<void(int slice, int count, const float* doses)>& visit);
 
-/// Pieces of a whole part, and of its print at the threshold. Not for a grey target.
-[[nodiscard]] verdict::PrintPieces print_pieces(std::span<const Slab> dose, const Problem& problem,
-                                                const VolumeSource& source);
+/// Pieces of these slices of part and print at the threshold, slice 0 being number `from` of the source. Not for a grey
+/// target.
+void count_pieces(std::span<const Slab> dose, const Problem& problem, int first, int last, const VolumeSource& source,
+                  int from, verdict::PrintPieceCounter& counter);
 
 }  // namespace vam::optimize

@@ -20,8 +20,4 @@ struct ShownPass {
                                    const Pass& pass, const std::function<int(int job)>& slice,
                                    const std::function<Image(int job)>& image);
 
-/// visit(job, dose) for the pass's own jobs, in their order: doses are row-major, 0 where no voxel is judged.
-void for_each_dose(const ShownPass& shown, const Pass& pass,
-                   const std::function<void(int job, const float* dose)>& visit);
-
 }  // namespace vam::optimize
