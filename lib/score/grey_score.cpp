@@ -9,8 +9,8 @@
 #include "base/index.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
-#include "base/text/text.hpp"
-#include "model/dose/dose_metrics.hpp"
+#include "model/dose/figures.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::score {
 
@@ -73,15 +73,19 @@ const std::vector<std::string>& GreyScore::names() {
   return all;
 }
 
-double GreyScore::figure(const std::string& name) const {
+model::DoseMetrics GreyScore::metrics() const {
   const auto all = static_cast<double>(part_ + void_);
-  const double ver = static_cast<double>(wrong_) / all;
-  if (name == "ver") return ver;
-  if (name == "pw") return -worst_;
-  if (name == "ipdr") return largest_;
-  if (name == "cv") return std::sqrt(squares_ / all);
+  model::DoseMetrics m{.part = part_, .void_ = void_, .ver = static_cast<double>(wrong_) / all};
+  m.pw = -worst_;
+  m.ipdr = largest_;
+  m.cv = std::sqrt(squares_ / all);
+  m.iou = 1 - m.ver;
+  return m;
+}
+
+double GreyScore::figure(const std::string& name) const {
   if (name == "prints") return is_met() ? 1 : 0;
-  return name == "iou" ? 1 - ver : mismatch_ / static_cast<double>(part_);
+  return name == "bias" ? mismatch_ / static_cast<double>(part_) : model::figure(metrics(), name);
 }
 
 Json GreyScore::figures() const {
@@ -103,12 +107,8 @@ std::string GreyScore::table() const {
 }
 
 std::string GreyScore::verdict() const {
-  const double within = 100 * (1 - figure("ver"));
   const bool alike = one_band_ && (!options_.void_band || options_.void_rule != VoidRule::met);
-  return std::string(is_met() ? "met" : "not met") + ": " + format_number(within, 4) + " % of " +
-         std::to_string(part_ + void_) + " voxels are within " +
-         (alike ? format_number(options_.band, 3) + " of the target" : std::string("their bands around the target")) +
-         ", the farthest is " + format_number(largest_, 3) + " away";
+  return verdict::grey_words(metrics(), alike ? std::optional(options_.band) : std::nullopt);
 }
 
 }  // namespace vam::score

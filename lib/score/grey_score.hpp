@@ -9,6 +9,7 @@
 
 #include "base/text/json_fwd.hpp"
 #include "model/circle.hpp"
+#include "model/dose/dose_metrics.hpp"
 
 namespace vam::score {
 
@@ -41,13 +42,14 @@ class GreyScore {
   /// Throws Fault::data when no voxel of the target is above 0.
   [[nodiscard]] Json figures() const;
   [[nodiscard]] bool is_met() const { return wrong_ == 0; }
-  /// "not met: 99 % of 1000 voxels are within 0.1 of the target, the farthest is 0.2 away"; "within their bands around
-  /// the target" where these are not all the same.
+  /// verdict::grey_words()
   [[nodiscard]] std::string verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.
   [[nodiscard]] std::string table() const;
 
  private:
+  [[nodiscard]] model::DoseMetrics metrics() const;
+
   GreyOptions options_;
   int width_;
   int height_;

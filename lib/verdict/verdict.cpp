@@ -150,4 +150,11 @@ Verdict leave_open(Verdict verdict, const std::string& why) {
   return verdict;
 }
 
+std::string grey_words(const model::DoseMetrics& figures, std::optional<double> band) {
+  return std::string(figures.ver == 0 ? "met: " : "not met: ") + percent(1 - figures.ver, 4) + " of " +
+         std::to_string(voxels(figures)) + " voxels are within " +
+         (band ? format_number(*band, 3) + " of the target" : "their bands around the target") + ", the farthest is " +
+         format_number(figures.ipdr, 3) + " away";
+}
+
 }  // namespace vam::verdict

@@ -66,6 +66,11 @@ struct Verdict {
 /// why: "unknown at 0.26 mm; --voxel 0.1 tells".
 [[nodiscard]] Verdict leave_open(Verdict verdict, const std::string& why);
 
+/// Of a grey target, which prescribes a dose for every voxel: "not met: 99 % of 1000 voxels are within 0.1 of the
+/// target, the farthest is 0.2 away"; "within their bands around the target" where these are not all the same. ver:
+/// outside of them; ipdr: the largest error.
+[[nodiscard]] std::string grey_words(const model::DoseMetrics& figures, std::optional<double> band = std::nullopt);
+
 /// One of a table: its name in reports and conditions, and what it is.
 struct Figure {
   std::string name, meaning;

@@ -46,12 +46,6 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
 }
 
-/// The verdict on a grey target.
-std::string grey_verdict(const model::DoseMetrics& m) {
-  return (m.ver == 0 ? std::string("met: no") : "not met: " + format_number(100 * m.ver, 2) + " % of the") +
-         " prescribed voxels are outside the band of the target; vam-score --grey-target judges the dose";
-}
-
 /// The weights of the proof, positive in the void, negative in the part, the largest 1 or -1.
 void write_proof(const optimize::Certificate& proof, const session::Scene& scene, const io::SparseVolume& target,
                  const model::StackInfo& info, const std::string& path) {
@@ -129,8 +123,9 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
   if (options.demands.grey) {  // no part and void, whose doses these would be
     for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
       report.erase(key);
-    report["verdict"] = grey_verdict(outcome.metrics);
-    note("vam-optimize: " + io::input_name(options.input) + " " + grey_verdict(outcome.metrics));
+    report["verdict"] = verdict::grey_words(outcome.metrics);
+    note("vam-optimize: " + io::input_name(options.input) + " " + verdict::grey_words(outcome.metrics) +
+         "; vam-score --grey-target judges the dose");
   } else {
     verdict::GivenPrint print =
         outcome.print(scene.grid, model::stretch_z(target.metadata), model::light_width(printer, info.angle_step_deg));
