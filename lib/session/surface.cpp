@@ -23,29 +23,22 @@ model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std:
   return std::move(read.mesh);
 }
 
-io::SparseVolume open_body(const std::string& path, std::optional<double> isovalue) {
-  if (!isovalue) {
-    throw Error{Fault::usage,
-                io::input_name(path) + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
-  }
-  io::SparseVolume body = io::read_volume(path, "");
-  io::require_usable(path, body, *isovalue > 1 ? io::TargetKind::grey : io::TargetKind::coverage);
-  return body;
-}
-
-model::TriangleSoup surface_of(const std::string& path, const model::Volume& volume, double isovalue) {
-  model::TriangleSoup mesh = solid::isosurface(volume, isovalue);
-  if (!mesh.triangles.empty()) return mesh;
-  throw Error{Fault::data, io::input_name(path) + ": no surface, the volume does not cross " + format_number(isovalue)};
-}
-
 model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue,
-                                 const std::function<void(model::Volume&)>& prepare) {
+                                 const std::function<void(model::Volume&)>& prepare, const MeasureSurface& measure) {
   if (!io::is_volume(path)) return io::read_mesh(path);
-  const io::SparseVolume sparse = open_body(path, isovalue);
+  const std::string name = io::input_name(path);
+  if (!isovalue) {
+    throw Error{Fault::usage, name + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
+  }
+  const io::SparseVolume sparse = io::read_volume(path, "");
+  io::require_usable(path, sparse, *isovalue > 1 ? io::TargetKind::grey : io::TargetKind::coverage);
   model::Volume volume = io::dense_volume(sparse);
   if (prepare) prepare(volume);
-  model::TriangleSoup mesh = surface_of(path, volume, *isovalue);
+  model::TriangleSoup mesh = solid::isosurface(volume, *isovalue);
+  if (mesh.triangles.empty()) {
+    throw Error{Fault::data, name + ": no surface, the volume does not cross " + format_number(*isovalue)};
+  }
+  if (measure) measure(volume, mesh);
   model::unstretch(mesh, sparse.metadata);
   return mesh;
 }

@@ -17,15 +17,13 @@ namespace vam::session {
 [[nodiscard]] model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std::string& flag,
                                                const std::string& scale);
 
-/// Throws Fault::usage without an isovalue, otherwise as io::read_volume() and io::require_usable(): a target whose
-/// surface is beyond 1 is grey.
-[[nodiscard]] io::SparseVolume open_body(const std::string& path, std::optional<double> isovalue);
-/// Throws Fault::data where the volume does not cross it.
-[[nodiscard]] model::TriangleSoup surface_of(const std::string& path, const model::Volume& volume, double isovalue);
-
-/// In mm of the part, whose stretch is undone; `prepare` changes a volume before. Throws Error: usage, no_input, data.
+/// In mm of the part, whose stretch is undone; `prepare` changes a volume before, `measure` takes it with its surface
+/// before that is unstretched. Throws Fault::usage for a volume without an isovalue, Fault::data where it does not
+/// cross it, otherwise as io::read_volume() and io::require_usable(): a target whose surface is beyond 1 is grey.
+using MeasureSurface = std::function<void(const model::Volume& volume, const model::TriangleSoup& surface)>;
 [[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue,
-                                               const std::function<void(model::Volume&)>& prepare = {});
+                                               const std::function<void(model::Volume&)>& prepare = {},
+                                               const MeasureSurface& measure = {});
 
 /// Where a volume reaches the level, by its slices; its stretch, or that of another volume, is undone. Empty where it
 /// reaches it nowhere.

@@ -21,21 +21,20 @@ PrintSurface read_print(const cli::App& app, const Options& options, std::option
     print.uncertainty_mm = std::move(read.uncertainty);
     return print;
   }
-  const io::SparseVolume sparse = session::open_body(options.print, isovalue);
-  model::Volume volume = io::dense_volume(sparse);
-  print.bodies = metrology::keep_bodies(volume, *isovalue, {options.pieces_mm3, {}});
-  print.mesh = session::surface_of(options.print, volume, *isovalue);
-  if (!options.uncertainty.empty()) {
-    const io::SparseVolume known = io::read_volume(options.uncertainty, "uncertainty");
-    const auto correlation = [&](const char* name) { return model::stated_number(known.metadata, name).value_or(0); };
-    const metrology::VoxelUncertainty voxels{io::dense_volume(known), correlation("vam:correlation_xy"),
-                                             correlation("vam:correlation_z")};
-    print.uncertainty_mm = metrology::surface_uncertainty_mm(volume, voxels, print.mesh.points);
-  }
-  if (options.isovalue_uncertainty > 0) {
-    print.mm_per_isovalue = stats::median(metrology::mm_per_value(volume, print.mesh.points));
-  }
-  model::unstretch(print.mesh, sparse.metadata);
+  const auto keep = [&](model::Volume& volume) {
+    print.bodies = metrology::keep_bodies(volume, *isovalue, {options.pieces_mm3, {}});
+  };
+  print.mesh = session::read_surface(options.print, isovalue, keep, [&](const auto& volume, const auto& mesh) {
+    if (!options.uncertainty.empty()) {
+      const io::SparseVolume known = io::read_volume(options.uncertainty, "uncertainty");
+      const auto correlation = [&](const char* name) { return model::stated_number(known.metadata, name).value_or(0); };
+      const metrology::VoxelUncertainty voxels{io::dense_volume(known), correlation("vam:correlation_xy"),
+                                               correlation("vam:correlation_z")};
+      print.uncertainty_mm = metrology::surface_uncertainty_mm(volume, voxels, mesh.points);
+    }
+    if (options.isovalue_uncertainty > 0)
+      print.mm_per_isovalue = stats::median(metrology::mm_per_value(volume, mesh.points));
+  });
   return print;
 }
 
