@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/log/log.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
@@ -16,14 +15,12 @@
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/conditions.hpp"
-#include "model/metadata.hpp"
 #include "score/score.hpp"
 #include "session/dose_score.hpp"
 #include "session/exposure.hpp"
 #include "session/grey_target.hpp"
 #include "session/printer.hpp"
 #include "session/volumes.hpp"
-#include "solid/voxel/size_doubt.hpp"
 #include "vam-score/lit_fraction.hpp"
 #include "vam-score/options.hpp"
 #include "vam-score/print.hpp"
@@ -71,13 +68,6 @@ void require_files_for_outputs(const Options& options) {
   }
 }
 
-/// Of gaps of the target that none of its voxels resolves, and which the figures pass over.
-void warn_of_gaps(const verdict::Unresolved& unresolved, const io::SparseVolume& target, const std::string& file) {
-  const std::string doubt =
-      solid::gap_doubt(io::input_name(file), unresolved, target.grid(), model::stretch_z(target.metadata));
-  if (!doubt.empty()) warn(doubt + "; they are not judged");
-}
-
 void require_met(const std::vector<model::Condition>& conditions,
                  const std::function<double(const std::string&)>& value) {
   const auto failures = model::unmet(conditions, value);
@@ -110,12 +100,11 @@ void run(const cli::App& app, Options& options) {
   const io::SparseVolume& dose = in.choose(options.grid);
   const io::SparseVolume& target = in.target_around();
   const model::Printer printer = session::printer_of(options.printer, dose.metadata, io::input_name(options.input));
-  const bool is_grey = session::warn_of_grey(target, in.file());
+  session::warn_of_grey(target, in.file());
   options.how.target = io::input_name(in.file());
   session::resolve_exposure(options.how, dose, target, printer);
   require_known(conditions, options);
   score::Score result = session::score_print(dose, target, options.how);
-  if (!is_grey) warn_of_gaps(result.verdict().unresolved, target, in.file());
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
   if (!options.lit_fraction.empty()) score_tool::write_lit_fraction(options.lit_fraction, target.grid(), printer, app);

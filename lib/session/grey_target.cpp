@@ -39,15 +39,14 @@ void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::str
   app.default_is("the grid 'tolerance' of the target file, if present");
 }
 
-bool warn_of_grey(const io::SparseVolume& target, const std::string& path, const std::string& remedy) {
+void warn_of_grey(const io::SparseVolume& target, const std::string& path, const std::string& remedy) {
   const double share = model::grey_share(target.grid(), [&](int k, float* out) { target.read_slices(k, 1, out); });
-  if (share < model::least_grey_share) return false;
+  if (share < model::least_grey_share) return;
   warn(io::input_name(path) +
        ": the target is grey, or its voxels are too coarse for it: " + format_number(100 * share, 2) +
        " % of its voxels above 0 are between 0 and 1 and no surface, and are taken for surface that nothing is asked "
        "of; " +
        remedy);
-  return true;
 }
 
 void require_linear(const io::SparseVolume& dose, const std::string& file) {

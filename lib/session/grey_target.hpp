@@ -24,9 +24,8 @@ struct GreyChoice {
 /// not_beside: options that such a target has no use for.
 void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::string>& not_beside);
 
-/// Warns where a target that is taken as coverage looks like doses, and returns whether it does. remedy: ends the
-/// warning.
-bool warn_of_grey(const io::SparseVolume& target, const std::string& path,
+/// Warns where a target that is taken as coverage looks like doses. remedy: ends the warning.
+void warn_of_grey(const io::SparseVolume& target, const std::string& path,
                   const std::string& remedy = "--grey-target takes the target as the dose of every voxel");
 
 /// --grey-target judges doses. Throws Fault::data for one whose projections were made for a response of the resin.

@@ -85,6 +85,19 @@ std::string thin_doubt(const std::string& subject, const verdict::Unresolved& th
          "resolve them";
 }
 
+std::string gap_doubt(const std::string& subject, const verdict::Unresolved& unresolved, const model::Grid& grid,
+                      double stretch_z) {
+  const verdict::LostGaps& lost = unresolved.lost_gaps;
+  const model::ThinPlaces* cause = cause_of(unresolved, &model::PartSurface::gaps);
+  const double gap_mm = cause != nullptr ? cause->mm : grid.voxel_mm * static_cast<double>(lost.widest);
+  const double by_width = cause != nullptr ? resolving_mm(*cause) : 0.5 * gap_mm;
+  const double resolving = std::min(by_width, 0.75 * grid.voxel_mm);  // these voxels do not
+  return subject + ": gaps of " + format_number(gap_mm, 2) +
+         " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
+         " no voxel of theirs is more than three quarters free, and they will be printed shut; voxels of " +
+         format_number(resolving, 2) + " mm resolve them";
+}
+
 }  // namespace
 
 const std::vector<std::string>& unit_names() {
@@ -112,20 +125,6 @@ std::string finer_unit(double largest_mm, const Writable& room) {
     if (mm < 1 && widths > 0.05 && widths < 1.5) return std::string("is its unit ") + name + "?";
   }
   return "";
-}
-
-std::string gap_doubt(const std::string& subject, const verdict::Unresolved& unresolved, const model::Grid& grid,
-                      double stretch_z) {
-  const verdict::LostGaps& lost = unresolved.lost_gaps;
-  if (!unresolved.shuts_gaps()) return "";
-  const model::ThinPlaces* cause = cause_of(unresolved, &model::PartSurface::gaps);
-  const double gap_mm = cause != nullptr ? cause->mm : grid.voxel_mm * static_cast<double>(lost.widest);
-  const double by_width = cause != nullptr ? resolving_mm(*cause) : 0.5 * gap_mm;
-  const double resolving = std::min(by_width, 0.75 * grid.voxel_mm);  // these voxels do not
-  return subject + ": gaps of " + format_number(gap_mm, 2) +
-         " mm are too narrow for the voxels: " + heights(lost.first, lost.end, grid, stretch_z) +
-         " no voxel of theirs is more than three quarters free, and they will be printed shut; voxels of " +
-         format_number(resolving, 2) + " mm resolve them";
 }
 
 std::vector<std::string> resolution_doubts(const std::string& subject, const verdict::Unresolved& unresolved,

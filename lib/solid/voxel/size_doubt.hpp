@@ -37,14 +37,10 @@ namespace vam::solid {
 [[nodiscard]] std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid,
                                      double stretch_z, const Writable& room, bool unit_known);
 
-/// What a warning should say of gaps that will be printed shut, from the volume of a voxel, a tenth of one a slice and
-/// a width of 0.05 voxels on; else empty.
-[[nodiscard]] std::string gap_doubt(const std::string& subject, const verdict::Unresolved& unresolved,
-                                    const model::Grid& grid, double stretch_z);
-
 /// What warnings should say of walls that will not be printed, from a thousandth of the part on, of rods, from half a
-/// voxel of coverage without a half covered voxel within three on, and of such gaps; else of thin places, or where the
-/// part's surface is not known of much that is not judged.
+/// voxel of coverage without a half covered voxel within three on, and of gaps that will be printed shut, from the
+/// volume of a voxel, a tenth of one a slice and a width of 0.05 voxels on; else of thin places, or where the part's
+/// surface is not known of much that is not judged.
 [[nodiscard]] std::vector<std::string> resolution_doubts(const std::string& subject,
                                                          const verdict::Unresolved& unresolved, const model::Grid& grid,
                                                          double stretch_z);
