@@ -203,7 +203,8 @@ void add_critical_dose(cli::App& app, CriticalDoseOptions& o) {
           "--design", "FILE", o.design,
           "Mesh of the design in the part's frame, or volume of vam-slice: also find the critical dose that makes the "
           "next print as large as the design.")
-      .reads();
+      .reads()
+      .only_with({"resin.critical_dose_mj_cm3"});
   critical.option("-o,--output", "FILE.json", o.record, "Report; - is standard output.");
   critical.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Value of the volume at the print's surface.")
       .default_is("required for a volume")

@@ -2,6 +2,7 @@
 // vam-dose: simulates the dose of a print.
 #include <malloc.h>
 
+#include "base/constants.hpp"
 #include "base/text/json.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
@@ -35,7 +36,8 @@ void run(const cli::App& app, Options& options) {
                      (in.info().space == model::Space::projector || model::shown_turns(in.info().extra));
   const model::Printer printer = session::printer_of(options.printer, bound ? in.info().extra : model::Metadata{},
                                                      io::input_name(options.inputs.front()));
-  settle(options, printer);
+  session::require_settings(app, printer);
+  options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
   take_full_scale(options);
   const bool planned_anew = options.exposure_plan && model::shown_turns(in.info().extra);
   if (!options.full_scale && !planned_anew) options.full_scale = model::full_scale(in.info().extra);

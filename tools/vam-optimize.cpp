@@ -61,6 +61,7 @@ void require_memory_for(const session::Scene& scene, const optimize::VolumeTask&
 void run(const cli::App& app, Options& options) {
   model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, options.output)) return;
+  session::require_settings(app, printer);
   resolve(app, printer, options);
   printer.projector.axis_column += options.column_offset_px;
   resolve_recorded(printer, options);
@@ -69,6 +70,7 @@ void run(const cli::App& app, Options& options) {
 
   const session::JobVolumes in = session::read(options);
   const session::Scene scene = session::make_scene(in.target.front(), printer, options);
+  if (!model::repeat(scene.poses)) app.require_for("poses that do not return", io::input_name(options.input));
   session::warn_of(scene, in.target.front(), options);
   const model::StackInfo whole = stack_info(scene, in.target.front(), app, options);
   const std::optional<model::ImageRange> slices = slices_of(whole, options);

@@ -56,6 +56,7 @@ model::StackInfo make_info(const tomo::ProjectionSpec& spec, const io::SparseVol
 void run(const cli::App& app, const Options& options) {
   const model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, options.output)) return;
+  session::require_settings(app, printer);
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);
   io::require_usable(options.input, volume);
   if (volume.name() == "target" && io::farthest_mm(volume, 0) < 0) {

@@ -117,8 +117,8 @@ class App {
   /// operands that it does not stand for (reads).
   App& form();
   /// The option declared last is refused where none of these conditions holds: "--like", which is given;
-  /// "--geometry vial", whose value is in force. Called again: nor where none of those holds. value: only with this
-  /// one of the option.
+  /// "--geometry vial", whose value is in force; "resin.psf_mm", a setting of the printer [require_settings]. Called
+  /// again: nor where none of those holds. value: only with this one of the option.
   App& only_with(const std::vector<std::string>& any_of, const std::string& value = "");
   /// And where one of these holds.
   App& excludes(const std::vector<std::string>& conditions, const std::string& value = "");
@@ -157,6 +157,9 @@ class App {
   /// Which kind the file of this name is, as soon as the tool knows it. Throws Fault::usage for an option that is
   /// not_for() it.
   void require_for(const std::string& kind, const std::string& name) const;
+  /// Which settings of the printer have an effect, as soon as the tool knows it. Throws Fault::usage for an option with
+  /// a rule that names settings and is not kept.
+  void require_settings(const std::function<bool(const std::string& setting)>& is_set) const;
 
  private:
   struct State;
@@ -167,7 +170,9 @@ class App {
   void require_present() const;
   [[nodiscard]] bool holds(const std::string& condition) const;
   void require_rules() const;
-  void require_rule(const Option& option, const Rule& rule) const;
+  void require_rules(const std::function<bool(const std::string&)>& is_set) const;
+  void require_rule(const Option& option, const Rule& rule,
+                    const std::function<bool(const std::string&)>& is_true) const;
   void require_own_inputs() const;
   void require_own_outputs() const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;

@@ -56,7 +56,7 @@ bool App::holds(const std::string& condition) const {
   return option->value() == value;
 }
 
-// Of a form, the plain one or a command.
+// Of a form, the plain one or a command, before anything is known of the printer.
 void App::require_rules() const {
   for (const auto& positional : state_->tool.positionals) {
     const std::string name = split(positional.value_name, ' ').front();
@@ -65,18 +65,33 @@ void App::require_rules() const {
         throw Error{Fault::usage, name + ": conflicts with " + flag + "; omit one of them"};
     }
   }
+  require_rules(nullptr);
+}
+
+void App::require_settings(const std::function<bool(const std::string&)>& is_set) const {
+  form_in_use().require_rules(is_set);
+}
+
+// Those that name settings, or else the others.
+void App::require_rules(const std::function<bool(const std::string&)>& is_set) const {
+  const auto names_option = [](const std::string& condition) { return condition.starts_with("--"); };
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {
-      for (const Rule& rule : option.rules) require_rule(option, rule);
+      for (const Rule& rule : option.rules) {
+        const bool of_options = std::all_of(rule.conditions.begin(), rule.conditions.end(), names_option);
+        if (of_options && !is_set) require_rule(option, rule, [this](const std::string& one) { return holds(one); });
+        if (!of_options && is_set) require_rule(option, rule, is_set);
+      }
     }
   }
 }
 
 // All conditions are evaluated, so that a misspelt one shows whatever is given.
-void App::require_rule(const Option& option, const Rule& rule) const {
+void App::require_rule(const Option& option, const Rule& rule,
+                       const std::function<bool(const std::string&)>& is_true) const {
   std::vector<std::string> held;
   for (const auto& condition : rule.conditions) {
-    if (holds(condition)) held.push_back(condition);
+    if (is_true(condition)) held.push_back(condition);
   }
   const bool in_use = given(long_flag(option)) && (rule.value.empty() || option.value() == rule.value);
   if (!in_use || held.empty() == rule.excludes) return;

@@ -81,11 +81,8 @@ optimize::VolumeSource::Read delivered_dose(const Scene& scene, const JobVolumes
                                  model::place_text(scene.grid) +
                                  "; compute it by vam-dose --like with this target and these settings"};
   }
-  const auto critical = scene.printer.resin.critical_dose_mj_cm3;
-  if (!critical) {
-    throw Error{Fault::usage, "--delivered: the threshold of the resin is not known; set resin.critical_dose_mj_cm3"};
-  }
-  const auto relative = static_cast<float>(options.demands.window.threshold() / *critical);
+  const double critical = scene.printer.resin.critical_dose_mj_cm3.value();
+  const auto relative = static_cast<float>(options.demands.window.threshold() / critical);
   return [&doses = in.delivered, &scene, relative](int k, int count, float* to) {
     std::vector<float> dose(product(count, scene.grid.slice_size()));
     std::fill_n(to, dose.size(), 0.0F);

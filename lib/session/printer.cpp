@@ -47,6 +47,10 @@ bool print_printer(const cli::PrinterOptions& options, const std::string& output
   return options.print && print_printer(options, load_printer(options), output);
 }
 
+void require_settings(const cli::App& app, const model::Printer& printer) {
+  app.require_settings([&](const std::string& setting) { return io::has_setting(printer, setting); });
+}
+
 resin::Response response_of(const model::Projector& projector) {
   if (projector.response.empty()) return resin::projector_response(projector);
   return resin::Response(io::read_response(projector.response, projector.bits));

@@ -27,6 +27,9 @@ bool print_printer(const cli::PrinterOptions& options, const model::Printer& pri
 /// The same where nothing else has needed the printer yet.
 bool print_printer(const cli::PrinterOptions& options, const std::string& output = "-");
 
+/// Throws Fault::usage for an option that has no effect with the settings of this printer (cli::App::only_with).
+void require_settings(const cli::App& app, const model::Printer& printer);
+
 /// The response of its projector: as measured (projector.response), or else linear from min_intensity to max_intensity.
 /// Throws as io::read_response does.
 [[nodiscard]] resin::Response response_of(const model::Projector& projector);

@@ -6,8 +6,7 @@
 Every tool, and command of one, has a section, and every option of its --help=all a row. On every kind of input it
 changes what the tool writes (values, figures, facts; histories, seals, times and hashes aside) or is refused with status
 64 in its own name; on one kind at least it changes something. So it is with the context of its row, which succeeds on
-one kind at least, and without: but for settings of the printer, which one gives alike to all tools of a chain. Prints a
-line of TAP for each option.
+one kind at least, and without: but for settings of the printer. Prints a line of TAP for each option.
 """
 import argparse
 import glob
@@ -160,12 +159,11 @@ class Tool:
         changed, faults = [], []
         only = [word[1:] for word in context if word.startswith("@")]
         context = [word for word in context if not word.startswith("@")]
-        without = [word for at, word in enumerate(context) if "--set" in (word, context[at - 1 if at else 0])]
         permits = "!" in context
-        bare = context != without and option not in ("--set", "--printer") and not permits
+        bare = context and option not in ("--set", "--printer") and not permits
         context = [word for word in context if word != "!"]
         for kind in only or self.kinds:
-            for beside in (context, without) if bare else (context,):
+            for beside in (context, []) if bare else (context,):
                 changed += self.judge_one(kind, option, words, beside, faults, beside is context)
         if not permits and not any(self.base(kind, context).status in (0, 1) for kind in only or self.kinds):
             faults.append("%s: succeeds on no kind" % " ".join(context))

@@ -32,6 +32,7 @@ void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& optio
                     ": does not state vam:full_intensity_turns, so that its dose is that of one turn; give "
                     "that of the print, by vam-dose --shown or --exposure-plan, or --turns"};
   }
+  session::require_settings(app, printer);
   if (total) app.require_for("doses that state their turns", options.dose);
   model::Volume dose = io::dense_volume(sparse);
   for (float& value : dose.values) value *= static_cast<float>(options.turns.value_or(1));
@@ -41,9 +42,6 @@ void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& optio
   Json figures = metrology::to_json(at_print);
   const double middle = at_print.critical_dose_mj_cm3.value;
   if (!options.design.empty()) {
-    if (!printer.resin.critical_dose_mj_cm3) {
-      throw Error{Fault::usage, "--design: requires resin.critical_dose_mj_cm3, with which the print was planned"};
-    }
     const auto at_design = metrology::surface_dose(session::read_surface(options.design, design_isovalue), dose,
                                                    stretch_z, options.design);
     const double designed = at_design.critical_dose_mj_cm3.value;

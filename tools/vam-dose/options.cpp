@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-dose/options.hpp"
 
-#include "base/constants.hpp"
-#include "base/error.hpp"
-#include "resin/absolute_dose.hpp"
-
 namespace vam::dose_tool {
 
 namespace {
@@ -42,12 +38,17 @@ void declare_beam(cli::App& app, Options& options) {
              "Round as vam-project --dither N does, and expose to the mean over the N turns.")
       .only_with({"--bits"});
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
-             "Time in which the light arrives, and the dose diffuses.");
+             "Time in which the light arrives, and the dose diffuses.")
+      .only_with({"resin.diffusion_mm2_s"})
+      .excludes({"--no-blur"});
   app.default_is("the duration of stage.turns turns");
   app.flag("--exposure-plan", options.exposure_plan,
            "Determine the number of whole turns and the fraction of full intensity that put the critical dose in the "
            "middle half of the process window, and write the dose of that exposure.")
-      .only_with({"--like"});
+      .only_with({"--like"})
+      .only_with({"resin.critical_dose_mj_cm3"})
+      .only_with({"resin.absorption_per_mm"})
+      .not_for({"poses that do not return"});
   app.option("--shown", "RUN", options.shown,
              "Compute the dose that this print delivered: the run folder of vam-print, or the flip log of vam-project. "
              "Give it once for the print and once for each resumption. Logs that were cut or changed are refused "
@@ -58,7 +59,8 @@ void declare_beam(cli::App& app, Options& options) {
              "With --shown, count light before this time only, on the clock of the logs (t_monotonic_s). Where a print "
              "that goes on has not reached it, its light goes on as in its last frames.")
       .only_with({"--shown"});
-  app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
+  app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.")
+      .only_with({"resin.psf_mm", "resin.diffusion_mm2_s"});
   app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.")
       .not_for({"virtual sinograms", "sinograms with poses"});
@@ -94,15 +96,6 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
   app.usual({"--output", "--report", "--like", "--poses", "--bits", "--exposure-plan", "--shown", "--reverse",
              "--printer", "--set"});
-}
-
-void settle(Options& options, const model::Printer& printer) {
-  if (options.exposure_plan && !resin::dose_per_radian_mj_cm3(printer)) {
-    throw Error{Fault::usage,
-                "--exposure-plan: requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm; without them doses "
-                "are relative"};
-  }
-  options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
 }
 
 }  // namespace vam::dose_tool

@@ -35,8 +35,5 @@ struct Options {
 };
 
 void declare(cli::App& app, Options& options);
-/// Fills in what follows from other options, no file opened. Throws Fault::usage for those that the printer does not
-/// allow.
-void settle(Options& options, const model::Printer& printer);
 
 }  // namespace vam::dose_tool

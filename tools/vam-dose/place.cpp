@@ -26,11 +26,7 @@ model::StackInfo posed(const cli::App& app, model::StackInfo info, const Options
   }
   if (info.poses.empty()) return info;
   app.require_for("sinograms with poses", name);
-  if (options.exposure_plan && !model::repeat(info.poses)) {
-    throw Error{Fault::usage, "--exposure-plan: the poses of " + options.inputs.front() +
-                                  " do not return to the first one, so the print cannot be repeated turn by turn; set "
-                                  "the intensity by vam-project --multiplier"};
-  }
+  if (!model::repeat(info.poses)) app.require_for("poses that do not return", name);
   return info;
 }
 

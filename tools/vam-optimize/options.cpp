@@ -130,6 +130,7 @@ void declare_stopping(cli::App& app, Options& options) {
              "The coarser levels of auto take at most half. The result depends on the speed of the machine.")
       .excludes({"--checkpoint", "--tradeoff"})
       .not_in_job();
+      .only_with({"resin.critical_dose_mj_cm3"})
   app.option("--checkpoint", "FILE", options.checkpoint,
              "File for the state of a run that is interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from "
              "it with bit-identical results; target, printer and all options that affect the result must be the same. "
@@ -162,7 +163,10 @@ void declare_duration(cli::App& app, Options& options) {
          "projector.max_intensity_mw_cm2, and optimize.diffusion_time_s. (vam-project --turns sets the number of turns "
          "shown.)")
       .only_with(readers("--max-intensity"))
-      .excludes({"--max-intensity"});
+      .only_with({"resin.critical_dose_mj_cm3"})
+      .only_with({"resin.absorption_per_mm"})
+      .excludes({"--max-intensity"})
+      .not_for({"poses that do not return"});
   app.brief("Turns in which the print must be complete.");
   app.flag(
       "--shortest", options.shortest,

@@ -20,19 +20,10 @@ namespace {
 
 /// The value that, full grey for --turns turns, gives the critical dose where the relative dose is the threshold.
 double full_grey(const session::Scene& scene, const Options& options) {
-  if (!model::repeat(scene.poses)) {
-    throw Error{Fault::usage,
-                "--turns: the poses do not return to the first one, so the frames are shown once; omit it"};
-  }
-  const auto per_radian = resin::dose_per_radian_mj_cm3(scene.printer);
-  if (!per_radian) {
-    throw Error{Fault::usage,
-                "--turns: the duration is determined by the resin; set resin.critical_dose_mj_cm3 and "
-                "resin.absorption_per_mm, or give --max-intensity"};
-  }
+  const double per_radian = resin::dose_per_radian_mj_cm3(scene.printer).value();
   const double threshold = options.demands.window.threshold();
   const double showings = *options.turns * scene.turn.angles / static_cast<double>(scene.frames());
-  return showings * threshold * *per_radian / *scene.printer.resin.critical_dose_mj_cm3;
+  return showings * threshold * per_radian / *scene.printer.resin.critical_dose_mj_cm3;
 }
 
 }  // namespace

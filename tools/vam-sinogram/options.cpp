@@ -26,6 +26,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--absorption", "PER_MM", options.absorption_per_mm, cli::non_negative,
              "Absorption coefficient MU of the resin: exponential Radon transform.");
   app.flag("--printer-absorption", options.printer_absorption, "Use resin.absorption_per_mm of the printer file as MU.")
+      .only_with({"resin.absorption_per_mm"})
       .excludes({"--absorption"});
   app.flag("--at-wall", options.at_wall,
            "Give the values at the inner wall of the printer's vial instead of at the plane through the axis.");

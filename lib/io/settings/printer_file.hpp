@@ -39,6 +39,9 @@ enum class Records { apply, ignore };
 /// Commented TOML with every setting; parses back to the same settings, number for number.
 [[nodiscard]] std::string printer_toml(const model::Printer& printer);
 
+/// Whether this setting, "resin.psf_mm", is there and neither 0, false nor empty. Throws Fault::bug for no setting.
+[[nodiscard]] bool has_setting(const model::Printer& printer, const std::string& name);
+
 /// What differs from the embedded default, in the form of --set: "projector.columns=1920 vial.radius_mm=12"; "default"
 /// where nothing does. For the metadata vam:printer.
 [[nodiscard]] std::string printer_settings(const model::Printer& printer);

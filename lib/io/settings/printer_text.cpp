@@ -5,6 +5,7 @@
 #include <charconv>
 #include <sstream>
 
+#include "base/error.hpp"
 #include "base/text/format_version.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
@@ -36,6 +37,15 @@ struct FieldText {
 };
 
 }  // namespace
+
+bool has_setting(const model::Printer& given, const std::string& name) {
+  model::Printer printer = given;
+  for (const auto& field : printer_fields()) {
+    const auto is_there = [](const auto* value) { return *value != std::remove_cvref_t<decltype(*value)>{}; };
+    if (dotted_name(field) == name) return std::visit(is_there, field.slot(printer));
+  }
+  throw Error{Fault::bug, name + ": is no setting of the printer"};
+}
 
 std::string printer_toml(const model::Printer& given) {
   model::Printer printer = given;

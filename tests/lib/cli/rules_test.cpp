@@ -90,6 +90,20 @@ TEST_CASE("an option is refused for the kind of input that it has no effect on")
   }
 }
 
+TEST_CASE("a rule on settings of the printer waits until they are known") {
+  for (const bool set : {false, true}) {
+    Tool tool;
+    bool points = false;
+    tool.app.flag("--points", points, "Points.").only_with({"resin.psf_mm", "resin.diffusion_mm2_s"});
+    CHECK(tool.run({"--points"}) == 0);
+    const auto is_set = [&](const std::string& name) { return set && name == "resin.psf_mm"; };
+    if (set) CHECK_NOTHROW(tool.app.require_settings(is_set));
+    if (!set)
+      CHECK_THROWS_WITH(tool.app.require_settings(is_set),
+                        "--points: requires resin.psf_mm or resin.diffusion_mm2_s; give it, or omit --points");
+  }
+}
+
 TEST_CASE("a rule that names what is not declared is a bug that every run finds") {
   for (const char* condition : {"--wall", "--window hamming"}) {
     Tool tool;
