@@ -27,6 +27,8 @@ void run(const cli::App& app, const Options& options) {
   }
   if (options.input != "-") io::require_content(options.input);  // a socket cannot be looked at
   app.require_for(type ? "images" : "arrays", io::input_name(options.input));
+  if (!type && io::is_lone_array(options.input))
+    app.require_for("arrays alone in a file", io::input_name(options.input));
   check_import(options);
   if (options.voxel_mm) return convert_tool::make_volume(app, options, type, session::load_printer(options.printer));
   convert_tool::make_projections(app, options, type);

@@ -60,10 +60,12 @@ void declare_reconstruction(cli::App& app, Options& o) {
              "'uncertainty' for vam-sdf; a mesh (.ply) has those of its vertices in mm (scalar_uncertainty).")
       .writes({".vdb"})
       .excludes({"--mlem-iterations"});
-  app.choice("--negative", o.negative, {"clip", "keep"}, "Negative densities: clip them to 0, or keep them.");
+  app.choice("--negative", o.negative, {"clip", "keep"}, "Negative densities: clip them to 0, or keep them.")
+      .excludes({"--mlem-iterations"});
   app.flag("--no-refraction", o.no_refraction,
            "Neglect refraction and perspective: image columns are parallel rays (for comparison).");
-  app.flag("--keep-run-out", o.keep_run_out, "Take the vial's axis for that of the stage: run-out is not fitted.");
+  app.flag("--keep-run-out", o.keep_run_out, "Take the vial's axis for that of the stage: run-out is not fitted.")
+      .excludes({"--no-refraction"});
 }
 
 void declare_print(cli::App& app, Options& o) {

@@ -36,9 +36,11 @@ void declare(cli::App& app, Options& o) {
   app.option("-o,--output", "FILE", o.output, "Write the page to FILE; - is standard output.")
       .writes({".html", ".htm"});
   app.option("--title", "TEXT", o.title, "Title of the page.").default_is("the name of the first file");
-  app.option("--max-sections", "N", o.sections, {1, 200}, "Maximum number of sections of a volume.");
-  app.option("--max-images", "N", o.projections, {1, 360}, "Maximum number of images of a stack or video.");
-  session::add_grey_target(app, o.grey, {});
+  app.option("--max-sections", "N", o.sections, {1, 200}, "Maximum number of sections of a volume.")
+      .not_for({report_tool::no_volume});
+  app.option("--max-images", "N", o.projections, {1, 360}, "Maximum number of images of a stack or video.")
+      .not_for({report_tool::no_light});
+  session::add_grey_target(app, o.grey, {}, {report_tool::no_target}, {report_tool::no_dose});
   cli::add_printer(app, o.printer);
   cli::add_threads(app);
   app.usual({"--output", "--title", "--max-sections", "--max-images", "--grey-target", "--printer", "--set"});
@@ -52,8 +54,8 @@ void run(const cli::App& app, Options& o) {
   page.title = o.title;
   page.style = report_tool::page_style;
   page.script = report_tool::page_script;
-  page.body = report_tool::content(report_tool::gather(o.files), o.printer,
-                                   {o.title, app.history(), o.sections, o.projections, o.grey});
+  page.body =
+      report_tool::content(app, report_tool::gather(o.files), o.printer, {o.title, o.sections, o.projections, o.grey});
   io::write_text(o.output, plot::html(page));
 }
 

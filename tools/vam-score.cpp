@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-score: scores a dose against its target.
-#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -56,11 +55,10 @@ void require_known(const std::vector<model::Condition>& conditions, const Option
   }
 }
 
-void require_files_for_outputs(const Options& options) {
-  const auto is_mesh = [&](const std::string& ending) { return ending != ".ply" && options.print.ends_with(ending); };
-  const std::vector<std::string> endings = io::written_mesh_endings();
-  if (options.print_as == "points" && std::any_of(endings.begin(), endings.end(), is_mesh))
-    throw Error{Fault::usage, options.print + ": points are written as .ply"};
+void require_files_for_outputs(const cli::App& app, const Options& options) {
+  for (const std::string& ending : io::written_mesh_endings()) {
+    if (ending != ".ply" && options.print.ends_with(ending)) app.require_for("meshes but PLY", options.print);
+  }
   for (const auto& output : {options.print, options.lit_fraction}) {
     if (output != "-") continue;
     throw Error{Fault::usage,
@@ -95,7 +93,7 @@ void run(const cli::App& app, Options& options) {
   const std::vector<model::Condition> conditions = conditions_of(options);
   if (session::print_printer(options.printer)) return;
   if (options.grey.is_target) return score_grey(options, conditions);
-  require_files_for_outputs(options);
+  require_files_for_outputs(app, options);
   session::Companions in(options.input, options.target, io::TargetKind::coverage);
   const io::SparseVolume& dose = in.choose(options.grid);
   const io::SparseVolume& target = in.target_around();

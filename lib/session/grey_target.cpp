@@ -19,11 +19,14 @@ score::GreyOptions GreyChoice::options() const {
   return chosen;
 }
 
-void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::string>& not_beside) {
-  app.group("Grey target", {"--grey-target"});
+void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::string>& not_beside,
+                     const std::vector<std::string>& not_for, const std::vector<std::string>& unjudged) {
+  const std::string heading = "Grey target";
+  app.group(heading, {}, not_for);
   app.flag("--grey-target", grey.is_target,
            "The target specifies a relative dose for every voxel, to be met within --band.");
   if (!not_beside.empty()) app.excludes(not_beside);
+  app.group(heading, {"--grey-target"}, unjudged);
   app.option("--band", "EPSILON", grey.how.band, cli::non_negative, "Maximum deviation of the dose from the target.");
   app.choice("--void", grey.void_rule, {"met", "below", "free"},
              "Void, where the target is 0: must be 0 within --band (met) or not exceed --dose-low (below), or is not "

@@ -22,7 +22,8 @@ struct GreyChoice {
 };
 
 /// not_beside: options that such a target has no use for.
-void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::string>& not_beside);
+void add_grey_target(cli::App& app, GreyChoice& grey, const std::vector<std::string>& not_beside,
+                     const std::vector<std::string>& not_for = {}, const std::vector<std::string>& unjudged = {});
 
 /// Warns where a target that is taken as coverage looks like doses. remedy: ends the warning.
 void warn_of_grey(const io::SparseVolume& target, const std::string& path,

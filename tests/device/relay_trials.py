@@ -18,7 +18,7 @@ from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, end_by, load, rep
 
 STATED_S = 0.3  # of the relay, after the last heartbeat
 TICK_S = 0.02   # of the simulator and of this machine
-COMMAND = ["vam-project", "--pattern", "grey", "-o", "null:", "--light", "sim:", "--hold", "60", "--max-missed", "1", "--set"]
+COMMAND = ["vam-project", "--pattern", "grey", "-o", "null:", "--light", "sim:", "--hold", "60", "--set"]
 
 
 def children(pid):

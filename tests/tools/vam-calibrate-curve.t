@@ -52,7 +52,7 @@ with open("views/manifest.jsonl", "w") as manifest:  # as vam-capture writes it
 PY
 $npy of turn.npy 40,32,32 '(4 + 1.5 * (k // 4)) * (hypot(j - 15.5, i - 15.5) < 13)'
 vam-convert turn.npy --voxel 0.2 --grid dose --value-unit mJ/cm3 -o turn.vdb
-ok 'volumes of ten turns' vam-ost views --live --no-refraction --pixel 0.2 --axis-column 23.5 --tilt 0 --keep-run-out -o live
+ok 'volumes of ten turns' vam-ost views --live --no-refraction --pixel 0.2 --axis-column 23.5 --tilt 0 -o live
 curve() { vam-calibrate working-curve live --dose turn.vdb "$@"; }
 quiet 'their working curve' curve --lit-from 0.5 -o delayed.json
 holds 'the delay in seconds' "($(json delayed.json delay_s) - 1.5) ^ 2 < 0.05 ^ 2"  # a view is 0.2 s

@@ -26,6 +26,7 @@ python3 -c 'import zipfile
 with zipfile.ZipFile("two.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "plan/e.npy"); z.write("p.npy", "text")'
 vam-convert --array dose --voxel 0.5 --grid weight <two.npz | vam-convert >b.npy
 is 'from a pipe' "$(shown b.npy)" "$want"
+misuse --array 'arrays alone in a file' vam-convert a.npy --array dose --voxel 0.5 -o x.vdb
 
 # Where it lies.
 vam-convert a.npy --voxel 0.5 --grid weight -o a.vdb

@@ -9,7 +9,7 @@ accepted() {  # accepted NAME PART...: at two voxel sizes, by the default printe
     for printer in '' "$few"; do
       vam-slice "$@" --fit-writable --voxel $voxel $printer -o fit.vdb 2>.log/slice || cat .log/slice
       ok "$part, voxels of $voxel mm${printer:+, few columns}" \
-        vam-optimize --angles 24 --iterations 1 --method fbp $printer fit.vdb -o fit.exr
+        vam-optimize --angles 24 --method fbp $printer fit.vdb -o fit.exr
     done
   done
 }
@@ -30,7 +30,7 @@ for part in 'box:x=20,y=20,z=0.2' 'cylinder:diameter=30,height=0.3' 'cylinder:di
   voxel=$(sed 's/.*use voxels of \([0-9.]*\) mm.*/\1/' .log/err)
   ok "$part at $voxel mm" $thin "$voxel"
   # Smaller voxels than the projector's pixels are no more than sliced.
-  awk "BEGIN { exit !($voxel < 0.065) }" || ok 'which vam-optimize takes' vam-optimize --angles 24 --iterations 1 --method fbp thin.vdb -o thin.exr
+  awk "BEGIN { exit !($voxel < 0.065) }" || ok 'which vam-optimize takes' vam-optimize --angles 24 --method fbp thin.vdb -o thin.exr
 done
 
 # One number: 80 columns of 0.065 mm with 115.115 mm to the lens are 5.1947 mm in air, 3.395 mm in the resin.

@@ -81,7 +81,7 @@ void declare(cli::App& app, Options& options) {
   cli::add_output(app, options.output);
   app.group("Arrays", {}, own_files);
   app.option("--array", "NAME", options.array, "Name of the array in a .npz file, path of the dataset in an HDF5 file.")
-      .not_for({"images"});
+      .not_for({"images", "arrays alone in a file"});
   app.default_is("the only one; of HDF5 /exchange/data, or what a NeXus group shows, before the only one of 3 axes");
   app.option("--axes", "ORDER", options.axes,
              "Axes of the array from the slowest to the fastest, as NumPy indexes them: x, y and z of a volume; z, a "

@@ -33,6 +33,11 @@ Conditions grey_or_readers(const std::string& flag) {
   return conditions;
 }
 
+/// Those that compute their light at once.
+Conditions at_once() {
+  return methods_that([](const optimize::MethodEntry& entry) { return entry.iterations == 0; });
+}
+
 const Conditions in_vial{"--geometry vial"};
 const Conditions parallel{"--geometry parallel"};
 
@@ -66,9 +71,11 @@ void declare_poses(cli::App& app, Options& options) {
 void declare_constraints(cli::App& app, Options& options) {
   app.group("Target constraints");
   app.option("--dose-low", "DOSE", options.demands.window.low, cli::non_negative,
-             "LOW: upper bound on the dose of void voxels.");
+             "LOW: upper bound on the dose of void voxels.")
+      .not_for({grey_void});
   app.option("--dose-high", "DOSE", options.demands.window.high, cli::positive,
-             "HIGH: lower bound on the dose of part voxels.");
+             "HIGH: lower bound on the dose of part voxels.")
+      .not_for({grey_part});
   app.option("--weights", "FILE", options.weights,
              "Volume (VDB) with a grid 'weight', or with a single grid: relative cost of an error in each voxel. 0 "
              "leaves the voxel unconstrained.")
@@ -98,13 +105,15 @@ void declare_constraints(cli::App& app, Options& options) {
 
 void declare_stopping(cli::App& app, Options& options) {
   app.group("Stopping criteria");
-  app.option("--iterations", "N", options.iterations, {0, 1000000}, "Maximum number of iterations.");
+  app.option("--iterations", "N", options.iterations, {0, 1000000}, "Maximum number of iterations.")
+      .excludes(at_once());
   app.default_is(default_iterations()).not_in_job().brief("Maximum number of iterations.");
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
                  join(optimize::SliceFigures::names(), ", ") + ".");
   app.default_is(std::string(optimize::automatic_until) +
                  " with --method auto, with --shortest or without --iterations; else no condition")
+      .excludes(at_once())
       .not_in_job()
       .brief("Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'.");
   app.option(
@@ -112,7 +121,7 @@ void declare_stopping(cli::App& app, Options& options) {
       "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it. Where no goal is met, "
       "the result is that of the iteration with the largest IoU + PW (with --robust, and with apg while its "
       "loss constrains the surface, that of the last one), with 0 that of the last one.");
-  app.not_in_job();
+  app.excludes(at_once()).not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
   app.option("--delivered", "DOSE", options.delivered,
              "Dose (VDB, in mJ/cm3) that the resin has received already, as of vam-dose --shown: the projections "
@@ -121,6 +130,7 @@ void declare_stopping(cli::App& app, Options& options) {
              "figures of merit and report are those of both doses together. Several doses add up.")
       .reads()
       .only_with({"--init"})
+      .only_with({"resin.critical_dose_mj_cm3"})
       .only_with(in_vial)
       .only_with(readers("--delivered"))
       .excludes({"--grey-target", "--robust", "--shortest", "--tradeoff", "--certify", "--poses", "--helix",
@@ -129,14 +139,14 @@ void declare_stopping(cli::App& app, Options& options) {
              "Time for the computation as a whole: no iteration begins that would not leave enough of it for the rest. "
              "The coarser levels of auto take at most half. The result depends on the speed of the machine.")
       .excludes({"--checkpoint", "--tradeoff"})
+      .excludes(at_once())
       .not_in_job();
-      .only_with({"resin.critical_dose_mj_cm3"})
   app.option("--checkpoint", "FILE", options.checkpoint,
              "File for the state of a run that is interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from "
              "it with bit-identical results; target, printer and all options that affect the result must be the same. "
              "Removed on completion.");
   app.brief("Keep an interrupted run here, and resume from it.");
-  app.not_in_job().writes();
+  app.excludes(at_once()).not_in_job().writes();
   app.option("--trace", "FILE", options.trace,
              "Write the figures of merit after every iteration as CSV; the result may be that of an earlier one than "
              "the last (--patience).")

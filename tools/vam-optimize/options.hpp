@@ -13,6 +13,10 @@
 
 namespace vam::optimize_tool {
 
+/// Kinds of target of which no dose of part, or of void, is demanded.
+inline constexpr const char* grey_part = "grey targets without a step or logistic response";
+inline constexpr const char* grey_void = "grey targets without a step or logistic response and --void below";
+
 /// Those of the job, its method and its results.
 struct Options : session::JobOptions {
   std::string output = "-";

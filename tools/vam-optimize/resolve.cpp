@@ -13,6 +13,7 @@
 #include "io/exr/stack.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/recorded_tolerances.hpp"
+#include "io/stream/input_name.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"
@@ -122,6 +123,10 @@ void resolve(const cli::App& app, const model::Printer& printer, Options& option
   resolve_tolerances(app, options);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.demands.void_below = options.void_rule == "below";
+  if (options.demands.grey && options.response != "step" && options.response != "logistic") {
+    app.require_for(grey_part, io::input_name(options.input));
+    if (!options.demands.void_below) app.require_for(grey_void, io::input_name(options.input));
+  }
   options.demands.surface = options.surface == "voxels";
   options.demands.free_surface = options.surface == "free" || !optimize::reads(method, "optimize.surface");
   options.how.offset = options.negative == "offset";

@@ -67,18 +67,15 @@ void add_grey(cli::App& app, Options& options) {
 
 void add_live(cli::App& app, Options& all) {
   LiveOptions& options = all.live;
-  app.group("Live output", {}, {"files"});
+  const std::string heading = "Live output";
+  app.group(heading, {}, {"files", "slices"});
   app.option("--follow", "FILE", options.follow,
              "Read the stage angle from this output of vam-stage spin, a FIFO or - (SINOGRAM is then required).")
-      .reads()
-      .not_for({"slices"});
-  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
+      .reads();
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000}, "Frames to preload.")
-      .default_is("one for each angle of the sinogram")
-      .not_for({"slices"});
+      .default_is("one for each angle of the sinogram");
   app.option("--from", "DEG", options.from_deg, {0, 1e9},
-             "Stay dark until this stage angle, to print the rest of an aborted print.")
-      .not_for({"slices"});
+             "Stay dark until this stage angle, to print the rest of an aborted print.");
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
              "Delay of the projector, from the vertical blank to the light.")
       .default_is("projector.latency_ms");
@@ -95,17 +92,18 @@ void add_live(cli::App& app, Options& all) {
       "--turns do, is shown at it, another one at that of the first; what exceeds that is clipped and counted in the "
       "log. A file named turn-N.exr is for turn N only, and refused once that has begun. Names that begin with a dot "
       "are passed over.");
+  app.flag("--plan", all.only_plan,
+           "Print frames, memory, duration and dose, query display and light engine for their identity, and show "
+           "nothing; with --pattern only the query.")
+      .excludes({"--report"});
+  app.group(heading, {}, {"files"});
+  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error. Every second it is brought to the disk.");
   app.option("--log-seals", "FILE", options.log_seals,
              "Append to FILE, whenever --log was brought to the disk, the number of its bytes and their SHA-256, by "
              "which lines that are lost later are found out; used by vam-print.");
-  app.flag("--plan", all.only_plan,
-           "Print frames, memory, duration and dose, query display and light engine for their identity, and show "
-           "nothing; with --pattern only the query.")
-      .excludes({"--report"})
-      .not_for({"slices"});
   app.flag("--die-with-parent", options.with_parent, "Blank the display and exit when the parent process exits.");
 }
 
@@ -119,9 +117,11 @@ void add_patterns(cli::App& app, PatternOptions& options) {
          "sequence "
          "of 127 steps, for vam-calibrate latency; give --hold 0.02).")
       .form()
-      .excludes({"--turns", "--speed", "--print-speed", "--full-scale", "--multiplier", "--dither", "--flatland",
-                 "--column-offset", "--row-offset", "--frames-per-turn", "--from", "--frames-from", "--accept-printer",
-                 "--accept-dose", "--freeze", "--report"});
+      .excludes(
+          {"--fps",         "--turns",    "--speed",         "--print-speed",    "--full-scale",  "--multiplier",
+           "--dither",      "--flatland", "--column-offset", "--row-offset",     "--follow",      "--frames-per-turn",
+           "--from",        "--latency",  "--max-missed",    "--max-missed-lit", "--frames-from", "--accept-printer",
+           "--accept-dose", "--freeze",   "--report"});
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.")
       .only_with({"--pattern"})

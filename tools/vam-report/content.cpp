@@ -104,9 +104,14 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
 
 }  // namespace
 
-std::string content(const Sources& sources, const cli::PrinterOptions& printer, const Wanted& wanted) {
+std::string content(const cli::App& app, const Sources& sources, const cli::PrinterOptions& printer,
+                    const Wanted& wanted) {
   const bool is_grey = wanted.grey.is_target;
+  if (sources.volumes.empty()) app.require_for(no_volume, wanted.title);
+  if (sources.stacks.empty() && sources.videos.empty()) app.require_for(no_light, wanted.title);
   const Volumes volumes = read_volumes(sources.volumes, is_grey ? io::TargetKind::grey : io::TargetKind::coverage);
+  if (volumes.find("target") == nullptr) app.require_for(no_target, wanted.title);
+  if (volumes.find("dose") == nullptr) app.require_for(no_dose, wanted.title);
   const std::optional<Judged> judged = is_grey ? std::nullopt : judge(volumes, printer);
   const std::optional<score::GreyScore> grey = is_grey ? judge_grey(volumes, printer, wanted.grey) : std::nullopt;
   std::string made = "<h1>" + page_text(wanted.title) + "</h1>\n";
@@ -127,7 +132,7 @@ std::string content(const Sources& sources, const cli::PrinterOptions& printer, 
   std::vector<std::string> made_by = sources.volumes;
   made_by.insert(made_by.end(), sources.stacks.begin(), sources.stacks.end());
   if (!made_by.empty()) made += "<h2>Provenance</h2>\n" + provenance(made_by);
-  return made + "<p class=\"none\">" + page_text(wanted.history) + "</p>\n";
+  return made + "<p class=\"none\">" + page_text(app.history()) + "</p>\n";
 }
 
 }  // namespace vam::report_tool

@@ -10,15 +10,22 @@
 
 namespace vam::report_tool {
 
+/// Kinds of files, for options.
+inline constexpr const char* no_volume = "files without a volume";
+inline constexpr const char* no_light = "files without a stack or video";
+inline constexpr const char* no_target = "files without a target";
+inline constexpr const char* no_dose = "files without a dose";
+
 struct Wanted {
   std::string title;
-  std::string history;  // of this command
   int sections = 0;     // of a volume, at most
   int projections = 0;  // of a stack or video, at most
   session::GreyChoice grey = {};
 };
 
-/// HTML of the body. Throws what the readers of its files throw.
-[[nodiscard]] std::string content(const Sources& sources, const cli::PrinterOptions& printer, const Wanted& wanted);
+/// HTML of the body. Throws Fault::usage for options of what is not among the files, and what the readers of its files
+/// throw.
+[[nodiscard]] std::string content(const cli::App& app, const Sources& sources, const cli::PrinterOptions& printer,
+                                  const Wanted& wanted);
 
 }  // namespace vam::report_tool

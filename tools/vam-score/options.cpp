@@ -15,7 +15,8 @@ void declare_print(cli::App& app, Options& options) {
       .writes_as(io::written_mesh_endings());
   app.choice("--ply-as", options.print_as, {"mesh", "points"},
              "Content of FILE: the surface of the print, or as PLY its voxels coloured by dose.")
-      .only_with({"--mesh"});
+      .only_with({"--mesh"})
+      .not_for({"meshes but PLY"});
   app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold dose of the print's surface.")
       .only_with({"--mesh"});
   app.default_is(

@@ -32,16 +32,16 @@ void declare_placement(cli::App& app, Options& options) {
       .not_for({"images"});
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive,
              "Scale the part so that its largest dimension is MM.")
-      .excludes({"--scale"})
+      .excludes({"--unit", "--scale"})
       .not_for({"images"});
   app.flag(
       "--fit-writable", options.placement.fit_writable,
       "Scale the part to fill the writable cylinder, within which resin is lit from all stage angles. Refused where no "
       "voxel would be half covered then.");
-  app.excludes({"--fit", "--no-centre", "--extent resin"}).not_for({"images"});
+  app.excludes({"--unit", "--scale", "--fit", "--no-centre", "--extent resin"}).not_for({"images"});
   app.flag("--no-centre", options.no_centre,
            "Keep the origin of the file, instead of moving the centre of the bounding box to x = y = z = 0.")
-      .not_for({"images"});
+      .not_for(not_a_mesh);
   app.option("--place", "MM|auto", options.place,
              "Vertical offset of the part from the height of the lens (projector.axis_row), in mm of the print, "
              "rounded to whole voxels. auto: the offset at which climbing rays blur its horizontal faces least. The "

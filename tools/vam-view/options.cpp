@@ -107,7 +107,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
   app.default_is("names of file and content");
   app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.")
-      .excludes({"--sheet", "--dose-histogram", "--cure-map", "--render", "--compare", "--dpi", "--title"})
+      .excludes({"--sheet", "--target", "--dose-histogram", "--cure-map", "--render", "--compare", "--dpi", "--title"})
       .not_for({"traces", "PDF and SVG"});
   cli::add_printer(app, options.printer);
   app.usual({"--output", "--export", "--grid", "--plane", "--at", "--sheet", "--target", "--dose-histogram",

@@ -77,6 +77,11 @@ bool begins_a_volume(const std::string& head) { return head.starts_with(" BDV");
 
 bool is_volume(const std::string& path) { return begins_a_volume(head_of(path)); }
 
+bool is_lone_array(const std::string& path) {
+  const std::string head = head_of(path);
+  return head.starts_with("\x93NUMPY") || head.starts_with("NRRD") || head.starts_with("II") || head.starts_with("MM");
+}
+
 std::optional<FileType> known_file_type(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && std::filesystem::is_directory(path, ignored)) return FileType::images;

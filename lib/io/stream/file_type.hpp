@@ -21,6 +21,9 @@ enum class FileType {
 /// The same; nothing for a file that is none of these.
 [[nodiscard]] std::optional<FileType> known_file_type(const std::string& path);
 
+/// Is it an array that is alone in its file: NumPy's (.npy), NRRD or TIFF? Throws Fault::no_input.
+[[nodiscard]] bool is_lone_array(const std::string& path);
+
 /// Throws Error: no_input, data (a file or pipe without bytes).
 void require_content(const std::string& path);
 
