@@ -38,8 +38,8 @@ out.exr|vam-project small.exr --printer small.toml -o out.exr
 out.mkv|vam-project small.exr --printer small.toml -o out.mkv
 out.toml|vam-project --print-printer -o out.toml
 out.vdb out.json|vam-ost views --view-step 10 --pixel 0.26 --no-refraction -o out.vdb --report out.json
-out.exr out.json|vam-curethrough correct ladder.vdb --max-irradiance 110 -o out.exr --report out.json
-out.vdb|vam-curethrough model ladder.vdb --max-irradiance 110 -o out.vdb
+out.exr out.json|vam-curethrough correct ladder.vdb --set projector.max_intensity_mw_cm2=110 -o out.exr --report out.json
+out.vdb|vam-curethrough model ladder.vdb --set projector.max_intensity_mw_cm2=110 -o out.vdb
 out.exr|vam-capture --device sim:?pace=virtual --binning 12 --frames 2 -o out.exr
 out.npy|vam-convert part.vdb -o out.npy
 out.vdb|vam-convert array.npy --voxel 0.2 -o out.vdb

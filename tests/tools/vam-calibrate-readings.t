@@ -10,7 +10,7 @@ is "the logarithm is stated" "$(json curve.json logarithm_base)" 10
 printf 'grey,reading\n0,1.2\n64,6.3\n128,25\n192,58\n255,111\n' >diode.csv
 ok "response" vam-calibrate photodiode diode.csv --dark-reading 1 -o table.csv --plot response.png --report diode.json
 is "dark reading subtracted" "$(tail -n 1 table.csv)" "255,110"
-quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --max-irradiance 110 --response table.csv -o x.exr
+quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --set projector.max_intensity_mw_cm2=110 --set projector.response=table.csv -o x.exr
 printf 'grey,reading\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
 fails 65 'the reading falls from 5 at grey 100 to 4 at grey 200' vam-calibrate photodiode falling.csv -o no.csv
 done_testing

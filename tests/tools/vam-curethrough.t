@@ -2,7 +2,7 @@
 # vam-curethrough from end to end: the paper's ladder, an egg shell, and wrong inputs.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
-light="--max-irradiance 110 --min-irradiance 0.2"  # what gives the paper's figures 2 and 4
+light="--set projector.max_intensity_mw_cm2=110 --set projector.min_intensity_mw_cm2=0.2"  # what gives the paper's figures 2 and 4
 
 quiet "slice the ladder" vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb
 
@@ -59,8 +59,8 @@ fi
 
 # ---- the forms of the output
 quiet "the response on the way out and in again" sh -c "printf 'grey,intensity\n0,0.2\n60,4\n128,25\n255,110\n' > response.csv &&
-  vam-curethrough correct ladder.vdb --max-irradiance 110 --response response.csv --values grey -o grey.exr &&
-  vam-curethrough model grey.exr --target ladder.vdb --max-irradiance 110 --response response.csv --report response.json >/dev/null"
+  vam-curethrough correct ladder.vdb --set projector.max_intensity_mw_cm2=110 --set projector.response=response.csv --values grey -o grey.exr &&
+  vam-curethrough model grey.exr --target ladder.vdb --set projector.max_intensity_mw_cm2=110 --set projector.response=response.csv --report response.json >/dev/null"
 is "no cure-through after the round trip" "$(json response.json cure_through.voxels)" 0
 is "no undercure after the round trip" "$(json response.json undercured.voxels)" 0
 quiet "a stack of levels" vam-curethrough correct ladder.vdb $light --quantise -o levels.exr
@@ -108,7 +108,7 @@ is "the ratio is in the report" "$(json sweep.json points.2.df_over_dc)" 5.0
 fails 65 'slice height: 50 um is more than ten absorbance heights' \
   vam-curethrough correct ladder.vdb $light --absorbance-height 4 -o no.exr
 printf 'grey,intensity\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
-fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough correct ladder.vdb $light --response falling.csv -o no.exr
+fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough correct ladder.vdb $light --set projector.response=falling.csv -o no.exr
 fails 65 'do not match' vam-curethrough model full.exr --target ladder.vdb $light
 fails 64 '--catalogue: does not apply to stacks on standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
 ok "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb

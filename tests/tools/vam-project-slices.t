@@ -3,7 +3,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 # 1000 mm/h and 50 um a slice are 50/9 slices per second.
-light="--max-irradiance 110 --min-irradiance 0.2"
+light="--set projector.max_intensity_mw_cm2=110 --set projector.min_intensity_mw_cm2=0.2"
 screen="--set projector.pixel_mm=0.05 --set projector.columns=240 --set projector.rows=200 --set projector.axis_column=119.5 --set projector.axis_row=99.5"
 screen="$screen --set projector.max_intensity_mw_cm2=110 --set projector.min_intensity_mw_cm2=0.2"
 vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb

@@ -201,6 +201,7 @@ Job prepare(const cli::App& app, const CorrectOptions& options, bool writes) {
 }
 
 constexpr const char* no_stack = "--png or --catalogue alone";
+constexpr const char* table_alone = "--catalogue alone";
 
 /// What the slices are written to besides -o, and how.
 void declare_output(cli::App& app, CorrectOptions& options) {
@@ -211,7 +212,7 @@ void declare_output(cli::App& app, CorrectOptions& options) {
   app.flag("--full-frame", options.full_frame,
            "Place the part in an image of projector.columns x projector.rows, with the axis at projector.axis_column, "
            "projector.axis_row.")
-      .not_for({"--catalogue alone"});
+      .not_for({table_alone});
   app.group("Stack", {}, {no_stack});
   app.choice("--values", options.values, {"intensity", "grey"},
              "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey levels from 0 to 1, "
@@ -227,20 +228,22 @@ void declare(cli::App& app, CorrectOptions& options) {
   app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.").reads();
   cli::add_output(app, options.output);
   declare_output(app, options);
-  app.group("Correction");
+  app.group("Correction", {}, {table_alone});
   app.option("--omega-max", "DOSE", options.limit.omega_max, {1, std::numeric_limits<double>::infinity()},
              "Maximum dose inside features, in full-cure doses; inf removes the limit.");
   app.flag("--strong-base", options.limit.strong_base,
            "Expose features on the platform at maximum intensity regardless of --omega-max: there is no resin behind "
            "them to cure.");
+  app.option("--mask", "FILE", options.mask,
+             "PNG map of the columns: 0 empty or without such gaps, 128 with a tight gap, 255 with a gap that fuses at "
+             "any intensity.");
+  app.group("Correction");
   app.option(
       "--clear", "DOSE", options.clear, {0, 1, true},
       "Maximum dose, in full-cure doses, at the least exposed point of a gap that counts as clear; gaps above it are "
       "reported as tight.");
+  app.only_with({"--report", "--mask", "--catalogue"});
   add_part(app, options.part);
-  app.option("--mask", "FILE", options.mask,
-             "PNG map of the columns: 0 empty or without such gaps, 128 with a tight gap, 255 with a gap that fuses at "
-             "any intensity.");
   app.group("Catalogue", {"--catalogue"});
   app.option("--catalogue", "FILE", options.catalogue,
              "CSV of resins with the columns name,absorbance_height_um,full_cure_dose_mj_cm3: print a table that "
@@ -248,7 +251,7 @@ void declare(cli::App& app, CorrectOptions& options) {
       .not_for({"stacks on standard output"});
   app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Platform speeds of the table.");
   app.default_is("20, 40, 60 and 80 % of the limit of each resin");
-  add_print(app, options.print);
+  add_print(app, options.print, {table_alone});
   app.group("Report and performance");
   cli::add_report(app, options.report);
   cli::add_threads(app);
@@ -260,7 +263,7 @@ void run(const cli::App& app, CorrectOptions& options) {
   const bool images = !options.png.empty();
   const std::string part = io::input_name(options.part.path);
   if (!stack) app.require_for(no_stack, part);
-  if (!stack && !images) app.require_for("--catalogue alone", part);
+  if (!stack && !images) app.require_for(table_alone, part);
   if (stack && options.output == "-") app.require_for("stacks on standard output", part);
   Job job = prepare(app, options, stack || images);
   Json report = figures(options, job);

@@ -3,7 +3,6 @@
 
 #include <numbers>
 
-#include "base/error.hpp"
 #include "base/log/log.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
@@ -11,24 +10,15 @@
 
 namespace vam::curethrough {
 
-void add_print(cli::App& app, PrintOptions& options) {
-  app.group("Print");
+void add_print(cli::App& app, PrintOptions& options, const std::vector<std::string>& not_for) {
+  app.group("Print", {}, not_for);
   app.option("--print-speed", "MM_H", options.speed_mm_h, cli::rate, "Speed of the platform.");
   app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
              "Depth in which the intensity falls to a tenth (base 10).");
   app.default_is("from resin.absorption_per_mm, else 2000");
   app.option("--full-cure-dose", "MJ_CM3", options.full_cure_dose_mj_cm3, cli::positive, "Dose D_f of full strength.");
   app.default_is("5 x resin.critical_dose_mj_cm3, else 576");
-  app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
-             "Intensity at the window at grey 0 (overrides projector.min_intensity_mw_cm2).");
-  app.default_is("projector.min_intensity_mw_cm2");
-  app.option("--max-irradiance", "MW_CM2", options.max_intensity_mw_cm2, cli::positive,
-             "Intensity at the window at full grey (overrides projector.max_intensity_mw_cm2).");
-  app.default_is("projector.max_intensity_mw_cm2");
-  app.option("--response", "FILE", options.response,
-             "Measured grey response (CSV with the columns grey,intensity); its first entry determines the minimum "
-             "intensity.");
-  app.default_is("projector.response, else a linear response");
+  app.group("Print");
   app.choice("--exposure-mode", options.exposure, {"continuous", "layered"},
              "Motion of the platform: continuous, or at rest during each layer (exposed for slice height / speed).");
   cli::add_printer(app, options.printer);
@@ -40,17 +30,7 @@ resin::ExposureMode exposure_of(const PrintOptions& options) {
 
 PrintSettings resolve(const PrintOptions& options, double slice_um) {
   PrintSettings print{session::load_printer(options.printer), {}, {}, resin::Response()};
-  model::Projector& projector = print.printer.projector;
-  if (options.min_intensity_mw_cm2) projector.min_intensity_mw_cm2 = *options.min_intensity_mw_cm2;
-  if (options.max_intensity_mw_cm2) projector.max_intensity_mw_cm2 = *options.max_intensity_mw_cm2;
-  if ((options.min_intensity_mw_cm2 || options.max_intensity_mw_cm2) &&
-      projector.min_intensity_mw_cm2 >= projector.max_intensity_mw_cm2) {
-    throw Error{Fault::usage, "--min-irradiance: " + format_number(projector.min_intensity_mw_cm2) +
-                                  " mW/cm2 is not below the maximum, " + format_number(projector.max_intensity_mw_cm2) +
-                                  " mW/cm2 (--max-irradiance); swap or change them"};
-  }
-  if (!options.response.empty()) projector.response = options.response;
-
+  const model::Projector& projector = print.printer.projector;
   resin::Process& process = print.process;
   process.exposure = exposure_of(options);
   process.slice_um = slice_um;

@@ -19,13 +19,11 @@ struct PrintOptions {
   double speed_mm_h = resin::Process{}.speed_mm_h;
   std::optional<double> absorbance_height_um;
   std::optional<double> full_cure_dose_mj_cm3;
-  std::optional<double> min_intensity_mw_cm2;
-  std::optional<double> max_intensity_mw_cm2;
   std::string exposure = "continuous";
-  std::string response;
   cli::PrinterOptions printer;
 };
-void add_print(cli::App& app, PrintOptions& options);
+/// Speed and resin are not for these kinds of output.
+void add_print(cli::App& app, PrintOptions& options, const std::vector<std::string>& not_for = {});
 
 /// The printer file with the options on top. An option wins over the file, the file over resin::Process's defaults.
 struct PrintSettings {
