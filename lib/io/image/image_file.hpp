@@ -38,9 +38,6 @@ using ImageText = std::map<std::string, std::string>;
 void write_png(const std::string& path, const GreyImage& image, const ImageText& text = {});
 void write_png(const std::string& path, const RgbImage& image, const ImageText& text = {});
 
-/// Writes a grey TIFF, 8 bits where 8 are enough and 16 otherwise (10 bits spread over 16). "-" is stdout.
-void write_tiff(const std::string& path, const GreyImage& image);
-
 /// Of which files a folder is read: grey images (.png, .tif, .tiff), or images of intensity (.exr).
 enum class FolderOf { grey, exr };
 

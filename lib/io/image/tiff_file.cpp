@@ -7,7 +7,6 @@
 #include "io/image/image_file.hpp"
 #include "io/image/private/decoders.hpp"
 #include "io/image/private/tiff_memory.hpp"
-#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
@@ -58,7 +57,7 @@ void decode_narrow(TIFF* tiff, const std::string& name, GreyImage& image) {
 
 GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
   TiffMemory file{bytes};
-  const Tiff tiff = open_tiff(file, "rm");
+  const Tiff tiff = open_tiff(file);
   if (tiff == nullptr) refuse(name, "it is truncated or damaged");
   const auto width = tiff_field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGEWIDTH);
   const auto height = tiff_field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGELENGTH);
@@ -78,37 +77,6 @@ GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
   GreyImage image(static_cast<int>(width), static_cast<int>(height), bits == 16 ? 16 : 8);
   (bits == 16 ? decode_wide : decode_narrow)(tiff.get(), name, image);
   return image;
-}
-
-void write_tiff(const std::string& path, const GreyImage& image) {
-  const bool wide = image.bits > 8;
-  TiffMemory memory;
-  {
-    const Tiff tiff = open_tiff(memory, "wm");
-    TIFFSetField(tiff.get(), TIFFTAG_IMAGEWIDTH, image.width);
-    TIFFSetField(tiff.get(), TIFFTAG_IMAGELENGTH, image.height);
-    TIFFSetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, wide ? 16 : 8);
-    TIFFSetField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
-    TIFFSetField(tiff.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
-    TIFFSetField(tiff.get(), TIFFTAG_COMPRESSION, COMPRESSION_LZW);
-    TIFFSetField(tiff.get(), TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff.get(), 0));
-    std::vector<std::uint16_t> words(image.width);
-    std::vector<std::uint8_t> octets(image.width);
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        const int level = image(x, y);
-        words[x] = static_cast<std::uint16_t>(image.bits == 10 ? level << 6 | level >> 4 : level);
-        octets[x] = static_cast<std::uint8_t>(level * 255 / image.full());
-      }
-      void* row = wide ? static_cast<void*>(words.data()) : static_cast<void*>(octets.data());
-      if (TIFFWriteScanline(tiff.get(), row, static_cast<std::uint32_t>(y), 0) < 0) {
-        throw Error{Fault::bug, path + ": the TIFF encoder failed"};
-      }
-    }
-  }
-  OutputFile file(path);
-  file.write(memory.bytes.data(), memory.bytes.size());
-  file.commit();
 }
 
 }  // namespace vam::io

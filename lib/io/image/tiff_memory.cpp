@@ -20,14 +20,7 @@ tmsize_t read(thandle_t handle, void* to, tmsize_t size) {
   return static_cast<tmsize_t>(count);
 }
 
-tmsize_t write(thandle_t handle, void* from, tmsize_t size) {
-  TiffMemory& file = memory(handle);
-  const auto count = static_cast<std::size_t>(size);
-  if (file.bytes.size() < file.at + count) file.bytes.resize(file.at + count);
-  std::memcpy(file.bytes.data() + file.at, from, count);
-  file.at += count;
-  return size;
-}
+tmsize_t write(thandle_t /*handle*/, void* /*from*/, tmsize_t /*size*/) { return 0; }
 
 toff_t seek(thandle_t handle, toff_t offset, int whence) {
   TiffMemory& file = memory(handle);
@@ -42,10 +35,10 @@ toff_t size(thandle_t handle) { return memory(handle).bytes.size(); }
 
 }  // namespace
 
-Tiff open_tiff(TiffMemory& file, const char* mode) {
+Tiff open_tiff(TiffMemory& file) {
   TIFFSetErrorHandler(nullptr);
   TIFFSetWarningHandler(nullptr);
-  return {TIFFClientOpen("", mode, &file, read, write, seek, close, size, nullptr, nullptr), TIFFClose};
+  return {TIFFClientOpen("", "rm", &file, read, write, seek, close, size, nullptr, nullptr), TIFFClose};
 }
 
 }  // namespace vam::io

@@ -94,7 +94,7 @@ struct TiffPages::State {
 
   TiffMemory file;
   std::string name;
-  Tiff tiff = open_tiff(file, "rm");
+  Tiff tiff = open_tiff(file);
   PageLayout layout;
   std::uint32_t count = 0;
   std::uint32_t page = 0;

@@ -18,8 +18,8 @@ struct TiffMemory {
 
 using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
 
-/// mode "rm" or "wm"; `file` must outlive it. Null where libtiff finds no TIFF. It prints nothing.
-[[nodiscard]] Tiff open_tiff(TiffMemory& file, const char* mode);
+/// Reads; `file` must outlive it. Null where libtiff finds no TIFF. It prints nothing.
+[[nodiscard]] Tiff open_tiff(TiffMemory& file);
 
 template <class Value = std::uint16_t>
 Value tiff_field(TIFF* tiff, std::uint32_t tag) {
