@@ -10,7 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const fuzz::File file(fuzz::text_of(bytes, size));
   fuzz::attempt([&] { (void)vam::io::gelation_isovalue(file.path); });
-  fuzz::attempt([&] { (void)vam::io::read_shown(file.path); });
+  fuzz::attempt([&] { vam::io::FlipLog(file.path).read(); });
   fuzz::attempt([&] { (void)vam::io::read_wobble(file.path, {}, 1); });
   return fuzz::attempt([&] {
     const auto record = vam::io::read_record(file.path);

@@ -185,12 +185,6 @@ std::vector<ShownImage> FlipLog::shown_of(const std::string& sha256) const {
   });
 }
 
-std::vector<ShownImage> read_shown(const std::string& run) {
-  FlipLog log(run);
-  log.read();
-  return log.shown();
-}
-
 std::optional<FlipSummary> stated_flips(const std::string& run) {
   const std::filesystem::path log(log_of(run));
   const std::string file = (log.parent_path() / "summary.json").string();

@@ -89,10 +89,6 @@ class FlipLog {
   long blanks_ = 0;
 };
 
-/// The lit images in order, of flips.jsonl or of the run folder (vam-print) that holds it. A last line that is cut is
-/// left out. Throws Fault::no_input, Fault::data for another kind of file.
-[[nodiscard]] std::vector<ShownImage> read_shown(const std::string& run);
-
 /// What the summary.json of a run states of its log of flips, which vam-print writes when it ends.
 struct FlipSummary {
   std::optional<long> lit;  // flips with light
@@ -116,7 +112,7 @@ struct DisplayHistory {
   std::vector<ShownImage> images;
   double full_scale = 0;  // 0: not stated
 };
-/// Throws as read_shown(), require_sinogram_of() and require_stated_flips(), and Fault::data for a log in which its
+/// Throws as FlipLog, require_sinogram_of() and require_stated_flips(), and Fault::data for a log in which its
 /// full scale changes. before_s: as FlipLog::end_at().
 [[nodiscard]] DisplayHistory read_showing(const std::string& run, const std::string& sinogram,
                                           std::optional<double> before_s = {});

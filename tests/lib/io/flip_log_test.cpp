@@ -11,10 +11,15 @@
 
 using vam::Fault;
 using vam::io::read_showing;
-using vam::io::read_shown;
 using vam::io::turns_shown;
 
 namespace {
+
+std::vector<vam::io::ShownImage> read_shown(const std::string& run) {
+  vam::io::FlipLog log(run);
+  log.read();
+  return log.shown();
+}
 
 std::string flip(double t_s, int frame, double angle_deg) {
   return R"({"utc":"x","t_monotonic_s":)" + std::to_string(t_s) + R"(,"event":"flip","frame":)" +

@@ -32,11 +32,11 @@ struct Run : scratch::Folder {
   Run() { (void)write("angles.jsonl", angle(9, -90) + angle(11.9, 80)); }
   std::string read(const std::string& flips) const {
     (void)write("flips.jsonl", flips);
-    return error_of([&] { (void)vam::io::read_shown(path.string()); }, Fault::data);
+    return error_of([&] { vam::io::FlipLog(path.string()).read(); }, Fault::data);
   }
   void holds(const std::string& flips) const {
     (void)write("flips.jsonl", flips);
-    (void)vam::io::read_shown(path.string());
+    vam::io::FlipLog(path.string()).read();
   }
 };
 
@@ -62,9 +62,9 @@ TEST_CASE("a log is held to what was sealed of it while it was written; what cam
   std::filesystem::remove(run.path / "flips.jsonl");
   CHECK(has(error_of([&] { vam::io::require_stated_flips(run.path.string()); }, Fault::data),
             "flips.jsonl: is gone, but events.jsonl states " + sealed + " bytes of it; restore it"));
-  CHECK(has(error_of([&] { (void)vam::io::read_shown(run.path.string()); }, Fault::data), "is gone"));
+  CHECK(has(error_of([&] { vam::io::FlipLog(run.path.string()).read(); }, Fault::data), "is gone"));
   // A log alone, and one by another name, are taken on trust.
-  (void)vam::io::read_shown(run.write("copy.jsonl", first));
+  vam::io::FlipLog(run.write("copy.jsonl", first)).read();
 }
 
 TEST_CASE("a stage that turned on long after the last image proves that flips are missing") {
