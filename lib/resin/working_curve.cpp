@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/stats/line.hpp"
 #include "base/stats/student.hpp"
 #include "base/text/text.hpp"
 
@@ -17,12 +18,8 @@ namespace {
 
 constexpr double ln10 = std::numbers::ln10;
 
-// y = mean_y + slope (x - mean_x)
-struct FittedLine {
-  double mean_x = 0;
-  double mean_y = 0;
-  double slope = 0;
-  double spread = 0;    // sum (x - mean_x)^2
+/// The thickness by the logarithm of the exposure.
+struct FittedLine : stats::Line {
   double variance = 0;  // of the residuals
 };
 
@@ -47,20 +44,12 @@ Groups checked(std::span<const CuredSample> samples) {
 }
 
 FittedLine fit(std::span<const CuredSample> samples) {
-  FittedLine line;
-  const auto count = static_cast<double>(samples.size());
+  std::vector<double> powers, thicknesses;
   for (const CuredSample& sample : samples) {
-    line.mean_x += std::log10(sample.exposure_mj_cm2) / count;
-    line.mean_y += sample.thickness_um / count;
+    powers.push_back(std::log10(sample.exposure_mj_cm2));
+    thicknesses.push_back(sample.thickness_um);
   }
-  double product = 0;
-  for (const CuredSample& sample : samples) {
-    const double dx = std::log10(sample.exposure_mj_cm2) - line.mean_x;
-    line.spread += dx * dx;
-    product += dx * (sample.thickness_um - line.mean_y);
-  }
-  line.slope = product / line.spread;
-  return line;
+  return {stats::straight_line(powers, thicknesses)};
 }
 
 // Where the line crosses 0, in x - mean_x, with Fieller's interval: all u with
@@ -145,8 +134,7 @@ WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double conf
   double residual_squares = 0;
   double total_squares = 0;
   for (const CuredSample& sample : samples) {
-    const double dx = std::log10(sample.exposure_mj_cm2) - line.mean_x;
-    const double residual = sample.thickness_um - line.mean_y - line.slope * dx;
+    const double residual = sample.thickness_um - line.at(std::log10(sample.exposure_mj_cm2));
     curve.residual_um.push_back(residual);
     residual_squares += residual * residual;
     total_squares += (sample.thickness_um - line.mean_y) * (sample.thickness_um - line.mean_y);

@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/index.hpp"
+#include "base/stats/line.hpp"
 #include "base/stats/student.hpp"
 
 namespace vam::stats {
@@ -40,31 +41,20 @@ Measured weighted_mean(const std::vector<Measured>& parts) {
 }
 
 WeightedLine weighted_line(const std::vector<double>& x, const std::vector<Measured>& y) {
-  double s = 0;
-  double sx = 0;
-  double sxx = 0;
-  double sy = 0;
-  double sxy = 0;
+  std::vector<double> values, weights;
   int n = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double w = 1 / (y[i].sigma * y[i].sigma);
-    s += w;
-    sx += w * x[i];
-    sxx += w * x[i] * x[i];
-    sy += w * y[i].value;
-    sxy += w * x[i] * y[i].value;
-    n += y[i].n;
+  for (const Measured& one : y) {
+    values.push_back(one.value);
+    weights.push_back(1 / (one.sigma * one.sigma));
+    n += one.n;
   }
-  const double determinant = s * sxx - sx * sx;
-  WeightedLine line{{(sxx * sy - sx * sxy) / determinant, 0, n}, {(s * sxy - sx * sy) / determinant, 0, n}};
+  const Line line = straight_line(x, values, weights);
   double chi = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    chi += std::pow((y[i].value - line.at_zero.value - line.slope.value * x[i]) / y[i].sigma, 2);
-  }
+  for (std::size_t i = 0; i < x.size(); ++i) chi += weights[i] * std::pow(values[i] - line.at(x[i]), 2);
   const double excess = x.size() > 2 ? std::max(1.0, chi / static_cast<double>(x.size() - 2)) : 1;
-  line.at_zero.sigma = std::sqrt(excess * sxx / determinant);
-  line.slope.sigma = std::sqrt(excess * s / determinant);
-  return line;
+  const double variance = excess / line.spread;
+  return {{line.at(0), std::sqrt(excess / line.weight + variance * line.mean_x * line.mean_x), n},
+          {line.slope, std::sqrt(variance), n}};
 }
 
 Measured lean_deg(const Measured& slope, double pitch) {

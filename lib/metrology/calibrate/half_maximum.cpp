@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stats/line.hpp"
 #include "base/stats/median.hpp"
 
 namespace vam::metrology {
@@ -43,24 +44,14 @@ std::optional<Crossings> crossings(const std::vector<double>& profile, double le
 double top_of(const std::vector<double>& profile, const Crossings& at) {
   const double middle = 0.5 * (at.begin + at.end);
   const double reach = 0.2 * (at.end - at.begin);
-  double n = 0;
-  double sx = 0;
-  double sxx = 0;
-  double sy = 0;
-  double sxy = 0;
+  std::vector<double> squares, heights;
   const auto last = static_cast<std::size_t>(middle + reach);
   for (auto i = static_cast<std::size_t>(std::ceil(middle - reach)); i <= last; ++i) {
-    const double y = profile[i];
-    const double x = static_cast<double>(i) - middle;
-    const double square = x * x;
-    ++n;
-    sx += square;
-    sxx += square * square;
-    sy += y;
-    sxy += square * y;
+    squares.push_back(std::pow(static_cast<double>(i) - middle, 2));
+    heights.push_back(profile[i]);
   }
-  if (n < 4) return *std::max_element(profile.begin(), profile.end());
-  return (sxx * sy - sx * sxy) / (n * sxx - sx * sx);
+  if (heights.size() < 4) return *std::max_element(profile.begin(), profile.end());
+  return stats::straight_line(squares, heights).at(0);
 }
 
 // Centroid of the excess over the level, where it is connected to the samples between the crossings.

@@ -5,6 +5,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/stats/line.hpp"
 #include "base/text/text.hpp"
 
 namespace vam::metrology {
@@ -14,21 +15,9 @@ constexpr double needed_phase_sigma_deg = 10;
 }
 
 double turning_speed_deg_s(const std::vector<double>& time_s, const std::vector<double>& angle_deg) {
-  const auto n = static_cast<double>(time_s.size());
-  double mean_s = 0;
-  double mean_deg = 0;
-  for (std::size_t i = 0; i < time_s.size(); ++i) {
-    mean_s += time_s[i] / n;
-    mean_deg += angle_deg[i] / n;
-  }
-  double spread = 0;
-  double common = 0;
-  for (std::size_t i = 0; i < time_s.size(); ++i) {
-    spread += (time_s[i] - mean_s) * (time_s[i] - mean_s);
-    common += (time_s[i] - mean_s) * (angle_deg[i] - mean_deg);
-  }
-  if (!(spread > 0)) throw Error{Fault::data, "lag: the frames have no times; capture them with vam-capture --follow"};
-  return common / spread;
+  const stats::Line line = stats::straight_line(time_s, angle_deg);
+  if (line.spread > 0) return line.slope;
+  throw Error{Fault::data, "lag: the frames have no times; capture them with vam-capture --follow"};
 }
 
 std::vector<double> phase_weights(const std::vector<double>& angle_deg, double phase_deg) {

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"
+#include "base/stats/line.hpp"
 #include "base/stats/median.hpp"
 #include "base/text/text.hpp"
 #include "metrology/calibrate/private/blinks.hpp"
@@ -35,21 +36,10 @@ struct Line {
 };
 
 Line straight(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto n = static_cast<double>(x.size());
-  double sx = 0;
-  double sy = 0;
-  double sxx = 0;
-  double sxy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sx += x[i];
-    sy += y[i];
-    sxx += x[i] * x[i];
-    sxy += x[i] * y[i];
-  }
-  const double determinant = n * sxx - sx * sx;
+  const stats::Line fit = stats::straight_line(x, y);
   Line line;
-  line.light = determinant > 1e-9 ? std::max((n * sxy - sx * sy) / determinant, 0.0) : 0;
-  line.ground = (sy - line.light * sx) / n;
+  line.light = static_cast<double>(x.size()) * fit.spread > 1e-9 ? std::max(fit.slope, 0.0) : 0;
+  line.ground = fit.mean_y - line.light * fit.mean_x;
   line.square.reserve(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double residual = y[i] - line.ground - line.light * x[i];

@@ -1,34 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/compare/trend.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "base/index.hpp"
+#include "base/stats/line.hpp"
 #include "base/stats/student.hpp"
 #include "base/text/json.hpp"
 
 namespace vam::metrology {
 
 Trend trend_of(std::span<const double> values, std::span<const double> uncertainties) {
-  Trend found;
-  found.prints = count_of(values);
+  std::vector<double> places(values.size());
+  std::iota(places.begin(), places.end(), 0.0);
+  const stats::Line line = stats::straight_line(places, values);
   const auto n = static_cast<double>(values.size());
-  for (const double value : values) found.mean += value / n;
   double squares = 0;
-  double cross = 0;
-  double places = 0;
+  double rest = 0;
+  Trend found;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double at = static_cast<double>(i) - 0.5 * (n - 1);
-    squares += std::pow(values[i] - found.mean, 2);
-    cross += at * (values[i] - found.mean);
-    places += at * at;
+    squares += std::pow(values[i] - line.mean_y, 2);
+    rest += std::pow(values[i] - line.at(places[i]), 2);
     found.uncertainty += std::pow(uncertainties[i], 2) / n;
   }
+  found.prints = count_of(values);
+  found.mean = line.mean_y;
   found.spread = std::sqrt(squares / (n - 1));
-  found.drift = cross / places;
-  const double rest = std::max(0.0, squares - found.drift * cross);
-  found.drift_sigma = std::sqrt(rest / (n - 2) / places);
+  found.drift = line.slope;
+  found.drift_sigma = std::sqrt(rest / (n - 2) / line.spread);
   if (found.drift_sigma > 0) found.p = stats::student_tail(found.drift / found.drift_sigma, n - 2);
   if (found.drift_sigma == 0 && found.drift != 0) found.p = 0;
   found.last = values.back();
