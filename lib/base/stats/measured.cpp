@@ -23,6 +23,15 @@ double few_parts_factor(const std::vector<double>& parts) {
   return squares > 0 ? few_readings_factor(floor_int(sum * sum / squares)) : 1.0;
 }
 
+Measured mean_of(const std::vector<double>& readings) {
+  const auto n = static_cast<double>(readings.size());
+  double mean = 0;
+  for (const double reading : readings) mean += reading / n;
+  double square = 0;
+  for (const double reading : readings) square += (reading - mean) * (reading - mean);
+  return {mean, std::sqrt(square / (n - 1) / n) * few_readings_factor(count_of(readings) - 1), count_of(readings)};
+}
+
 Measured weighted_mean(const std::vector<Measured>& parts) {
   double weights = 0;
   Measured mean;

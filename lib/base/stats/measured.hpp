@@ -13,6 +13,9 @@ struct Measured {
   int n = 0;
 };
 
+/// Mean of at least two readings with its standard error, by Student's t.
+[[nodiscard]] Measured mean_of(const std::vector<double>& readings);
+
 /// Mean by weight 1/sigma^2; its sigma grows when the parts scatter more than they say.
 [[nodiscard]] Measured weighted_mean(const std::vector<Measured>& parts);
 

@@ -76,7 +76,6 @@ stats::Measured line_width_px(const Image& image, const std::string& subject) {
     throw Error{Fault::data, subject + ": " + std::to_string(image.height) + " rows; at least " +
                                  std::to_string(2 * groups) + " are needed"};
   }
-  double mean = 0;
   std::vector<double> widths;
   for (int g = 0; g < groups; ++g) {
     const auto extent = half_maximum(column_profile(image, g * image.height / groups, (g + 1) * image.height / groups));
@@ -84,12 +83,10 @@ stats::Measured line_width_px(const Image& image, const std::string& subject) {
       throw Error{Fault::data, subject + ": no bright line between two dark sides; light one column and focus"};
     }
     widths.push_back(extent->width());
-    mean += extent->width() / groups;
   }
-  double square = 0;
-  for (const double width : widths) square += (width - mean) * (width - mean);
-  const double error = std::sqrt(square / (groups - 1) / groups) * stats::few_readings_factor(groups - 1);
-  return {mean, std::hypot(error, interpolation_px), groups};
+  stats::Measured mean = stats::mean_of(widths);
+  mean.sigma = std::hypot(mean.sigma, interpolation_px);
+  return mean;
 }
 
 BeamWidths side_widths(const Image& image, const SideView& view, const model::Printer& printer, int planes) {

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/stats/isotonic.hpp"
 #include "base/text/text.hpp"
 
@@ -33,16 +32,6 @@ void require_ramp(const ResponseScan& scan) {
                                    " are needed to estimate the variance"};
     }
   }
-}
-
-stats::Measured mean_of(const std::vector<double>& readings) {
-  const auto n = static_cast<double>(readings.size());
-  double mean = 0;
-  for (const double reading : readings) mean += reading / n;
-  double square = 0;
-  for (const double reading : readings) square += (reading - mean) * (reading - mean);
-  const double error = std::sqrt(square / (n - 1) / n);
-  return {mean, error * stats::few_readings_factor(count_of(readings) - 1), count_of(readings)};
 }
 
 /// The nearest curve that never falls.
@@ -79,7 +68,7 @@ void require_rising_end(const std::vector<double>& grey, const std::vector<stats
 ResponseCurve measure_response(const ResponseScan& scan) {
   require_ramp(scan);
   std::vector<stats::Measured> means;
-  for (const auto& readings : scan.light) means.push_back(mean_of(readings));
+  for (const auto& readings : scan.light) means.push_back(stats::mean_of(readings));
   const std::vector<stats::Measured> risen = monotone(means);
   const stats::Measured full = risen.back();
   const stats::Measured black = risen.front();
