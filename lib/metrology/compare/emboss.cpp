@@ -140,8 +140,7 @@ void measure_area(const Relief& print, double margin_mm, Emboss& emboss) {
     return;
   }
   emboss.height_mm = stats::median(heights);
-  for (double& h : heights) h = std::abs(h - emboss.height_mm);
-  emboss.height_sigma_mm = 1.4826 * stats::median(heights);
+  emboss.height_sigma_mm = stats::robust_sigma(std::move(heights), emboss.height_mm);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ struct Emboss {
   double outline_max_mm = 0;
   double iou = 0;               // of the two areas above half height
   double height_mm = 0;         // median over the design's area, 0.15 mm and more from its outline
-  double height_sigma_mm = 0;   // robust, 1.4826 x median absolute deviation
+  double height_sigma_mm = 0;   // by the median absolute deviation
   double design_height_mm = 0;  // of the emboss above its base
   Image design;                 // the design's heights above its base, placed, on the image's pixels
 };

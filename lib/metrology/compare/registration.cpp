@@ -83,8 +83,7 @@ std::vector<double> weights_of(const std::vector<solid::SurfaceSample>& points, 
   for (std::size_t i = 0; i < points.size(); ++i) {
     left.push_back(std::abs(static_cast<double>(distances[i]) + row_of(points[i], middle).dot(motion)));
   }
-  constexpr double reach = 4.685 * 1.4826;  // in medians
-  const double limit = std::max(reach * stats::median(left), 1e-9);
+  const double limit = std::max(4.685 * stats::robust_sigma(left), 1e-9);
   for (double& one : left) one = one < limit ? std::pow(1 - one * one / (limit * limit), 2) : 0.0;
   return left;
 }

@@ -128,8 +128,7 @@ BasePlane trimmed_base(const Image& heights, BasePlane base, double limit) {
     std::erase_if(residuals, [&](float h) { return !(static_cast<double>(h) < limit); });
     if (residuals.empty()) return base;
     const double middle = stats::median(residuals);
-    for (float& h : residuals) h = std::fabs(h - static_cast<float>(middle));
-    const double most = 2.5 * 1.4826 * stats::median(residuals) + 1e-7;
+    const double most = 2.5 * stats::robust_sigma(std::move(residuals), static_cast<float>(middle)) + 1e-7;
     base = fit_plane(
         heights, [&](int i, int j, double h) { return std::abs(h - plane_at(base, heights, i, j) - middle) <= most; });
   }
@@ -146,9 +145,9 @@ std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
   for (const float h : heights) (h < limit ? base : above).push_back(h);
   if (base.empty() || above.empty()) return std::nullopt;
   const Plateaus found{stats::median(base), stats::median(above)};
-  for (float& h : base) h = std::fabs(h - static_cast<float>(found.base_mm));
   const double apart = found.top_mm - found.base_mm;
-  if (!(apart > 4 * 1.4826 * stats::median(base) && apart > 1e-5)) return std::nullopt;
+  const double spread = stats::robust_sigma(std::move(base), static_cast<float>(found.base_mm));
+  if (!(apart > 4 * spread && apart > 1e-5)) return std::nullopt;
   return found;
 }
 

@@ -79,9 +79,7 @@ SurfaceDose surface_dose(const model::TriangleSoup& body, const model::Volume& d
   for (const double one : medians) squares += (one - middle) * (one - middle);
   const double count = static_cast<double>(std::max<std::size_t>(medians.size(), 2));
   result.critical_dose_mj_cm3 = {middle, std::sqrt(squares / (count - 1) / count), static_cast<int>(all.size())};
-  for (double& one : all) one = std::abs(one - middle);
-  constexpr double sigma_per_median = 1.4826;  // of a normal distribution
-  result.spread_mj_cm3 = sigma_per_median * stats::median(all);
+  result.spread_mj_cm3 = stats::robust_sigma(std::move(all), middle);
   result.gradient_mj_cm3_mm = stats::median(slopes);
   return result;
 }

@@ -37,10 +37,10 @@ SurfaceErrors roughness(const model::TriangleSoup& print, const solid::Surface& 
   const std::vector<float> distances = design.signed_distances(ends);
   std::vector<double> differences;
   for (std::size_t i = 0; i + 1 < distances.size(); i += 2) {
-    differences.push_back(static_cast<double>(std::abs(distances[i] - distances[i + 1])));
+    differences.push_back(static_cast<double>(distances[i] - distances[i + 1]));
   }
   SurfaceErrors found{"roughness", {}, mean_edge_mm(print), 0, 0};
-  const double sigma_mm = differences.empty() ? 0.0 : 1.4826 * stats::median(differences) / std::numbers::sqrt2;
+  const double sigma_mm = differences.empty() ? 0.0 : stats::robust_sigma(std::move(differences)) / std::numbers::sqrt2;
   found.vertex_mm.assign(print.points.size(), static_cast<float>(sigma_mm));
   return found;
 }

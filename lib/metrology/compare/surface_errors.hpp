@@ -28,7 +28,7 @@ inline constexpr double resolved_cells = 0.04;
 /// cells too large.
 inline constexpr double extreme_cells = 0.4;
 
-/// From the mesh alone: how the distances of neighbouring vertices differ, 1.4826 times the median magnitude over
+/// From the mesh alone: how the distances of neighbouring vertices differ, by the median magnitude, over
 /// sqrt(2), for edges shorter than 2 % of the design. What neighbours have in common is not seen.
 [[nodiscard]] SurfaceErrors roughness(const model::TriangleSoup& print, const solid::Surface& design,
                                       double largest_dimension_mm);

@@ -40,9 +40,9 @@ double noise_of(const Image& image) {
   for (int y = 0; y < image.height; ++y) {
     const float* row = image.row(y);
     for (int x = 1; x + 1 < image.width; ++x)
-      second.push_back(static_cast<double>(std::abs(row[x - 1] - 2 * row[x] + row[x + 1])));
+      second.push_back(static_cast<double>(row[x - 1] - 2 * row[x] + row[x + 1]));
   }
-  return second.empty() ? 0.0 : stats::median(second) / (0.6745 * std::sqrt(6.0));
+  return second.empty() ? 0.0 : stats::robust_sigma(std::move(second)) / std::sqrt(6.0);
 }
 
 // Centre of mass of what stands above the median: right where all of the body is in the image, near it elsewhere.
@@ -146,7 +146,7 @@ double edge_deviation(const Normal& n) {
   for (const auto& [sight, residual] : n.lines) {
     if (sight * static_cast<double>(n.lines.size()) >= sum) residuals.push_back(residual);
   }
-  return stats::median(residuals) / 0.6745;
+  return stats::robust_sigma(std::move(residuals));
 }
 
 // Variances of column and tilt by how much ranges of rows and of offsets, `merged` of them together, disagree: what is

@@ -20,18 +20,18 @@ namespace vam::metrology {
 
 namespace {
 
-// Median of |value| over a part of all rays, of those that are not 0: empty rays of ideal views are.
+// Standard deviation of the differences between the ends of lines, of a part of all.
 double typical_difference(const std::vector<Image>& sinograms) {
   std::vector<float> differences;
   for (std::size_t k = 0; k < sinograms.size(); k += 3) {
     const Image& s = sinograms[k];
     for (int a = 0; a < s.height / 2; a += 5) {
       for (int t = 0; t < s.width; t += 2) {
-        differences.push_back(std::abs(s(t, a) - s(s.width - 1 - t, opposite(s, a))));
+        differences.push_back(s(t, a) - s(s.width - 1 - t, opposite(s, a)));
       }
     }
   }
-  return differences.empty() ? 0.0 : stats::median(differences);
+  return differences.empty() ? 0.0 : stats::robust_sigma(std::move(differences));
 }
 
 float brightest(const std::vector<Image>& sinograms) {
@@ -49,7 +49,7 @@ struct Contrast {
 
 Contrast bubble_contrast(const std::vector<Image>& sinograms) {
   constexpr float part = 0.03F;
-  const auto noise = static_cast<float>(typical_difference(sinograms) * stats::sigmas_per_median / std::sqrt(2.0));
+  const auto noise = static_cast<float>(typical_difference(sinograms) / std::sqrt(2.0));
   return {noise, part * brightest(sinograms)};
 }
 

@@ -242,7 +242,7 @@ PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, 
       farthest = std::max(farthest, std::abs(move[i]) / near);
     }
     fit.converged = step > 0 && farthest < 1;
-    if (!fit.converged) bound = 2.5 * stats::median(edge_differences(lines)) / 0.6745 + 1e-30;
+    if (!fit.converged) bound = 2.5 * stats::robust_sigma(edge_differences(lines)) + 1e-30;
   }
   return fit;
 }

@@ -188,7 +188,7 @@ RayMask speck_rays(const std::vector<Image>& sinograms) {
   const Image departing = departures(views.difference);
   std::vector<float> some;
   for (std::size_t i = 0; i < departing.size(); i += 7) some.push_back(departing.values[i]);
-  const double noise = stats::median(some) * stats::sigmas_per_median;
+  const double noise = stats::robust_sigma(std::move(some));
   const auto least = static_cast<float>(8 * noise + 0.02 * most);
   const auto departs_here = [&](int t, int k) {  // and not the other end of its lines
     return std::abs(departure(views.mean, t, k)) > std::abs(departure(views.mean, width - 1 - t, k));

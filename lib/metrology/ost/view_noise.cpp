@@ -72,7 +72,7 @@ ViewNoise view_noise(std::span<const CameraView> views) {
   std::vector<double> ones;
   for (std::size_t b = 0; b < bins; ++b) {
     if (binned[b].size() < fewest) continue;
-    const double variance = std::pow(stats::median(binned[b]) * stats::sigmas_per_median, 2) / gain;
+    const double variance = std::pow(stats::median(binned[b]) / 0.6745, 2) / gain;
     const double value = range.low + (static_cast<double>(b) + 0.5) * (range.high - range.low) / bins;
     const double relative = std::max(variance, 1e-12 * range.high * range.high);  // errors of variances are relative
     rows.insert(rows.end(), {1 / relative, value / relative});

@@ -74,7 +74,7 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Sur
   return pairs;
 }
 
-double deviation_of(const Pairs& pairs) { return 1.4826 * stats::median(pairs.far); }
+double deviation_of(const Pairs& pairs) { return stats::robust_sigma(pairs.far); }
 
 namespace {
 
