@@ -11,8 +11,8 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
+#include "metrology/ost/private/line_ranges.hpp"
 
 namespace vam::metrology {
 
@@ -92,8 +92,8 @@ struct Normal {
   double stiff_cc = 0, stiff_tt = 0;  // by how much the pulls change with column and tilt
   double noise_cc = 0, noise_tt = 0;  // what slopes of variance 1 add to cc and tt
   long count = 0;
-  std::vector<std::array<double, 2>> lines;              // what each sees of the column, squared, and its residual
-  std::array<std::array<Pull, ranges>, ranges> pulls{};  // of the ranges of rows and of offsets
+  std::vector<std::vector<SeenLine>> lines{1};
+  RangePulls<2, ranges, ranges> pulls{};  // of the ranges of rows and of offsets
 
   void add(double by_column, double by_tilt, double r, const Bound& bound, Pull& pull) {
     const double weight = bound.weight(r);
@@ -131,76 +131,23 @@ Normal normal_of(const Image& image, double column, const Bound& bound) {
       normal.noise_cc += 1;
       normal.noise_tt += along * along + x * x;
       ++normal.count;
-      normal.lines.push_back({by_column * by_column, std::abs(r)});
+      normal.lines.front().push_back({by_column * by_column, r});
     }
   }
   return normal;
 }
 
-// Standard deviation of the residuals on edges, those that see the axis better than the mean. By their median: bubbles
-// and specks do not widen it.
-double edge_deviation(const Normal& n) {
-  double sum = 0;
-  for (const auto& line : n.lines) sum += line[0];
-  std::vector<double> residuals;
-  for (const auto& [sight, residual] : n.lines) {
-    if (sight * static_cast<double>(n.lines.size()) >= sum) residuals.push_back(residual);
-  }
-  return stats::robust_sigma(std::move(residuals));
-}
-
-// Variances of column and tilt by how much ranges of rows and of offsets, `merged` of them together, disagree: what is
-// the same in all rows or at all offsets errs alike. Both, less what both count; wider where few of them pull.
-Pull disagreement(const Normal& n, double cc, double tt, double left, int merged) {
-  const int count = ranges / merged;
-  Pull by_rows{}, by_offsets{}, by_both{};
-  std::array<std::vector<double>, 2> single;
-  const auto add = [&](const Pull& pull, Pull& to) {
-    to[0] += std::pow((tt * pull[0] - n.ct * pull[1]) / left, 2);
-    to[1] += std::pow((cc * pull[1] - n.ct * pull[0]) / left, 2);
-  };
-  const auto cell = [&](int row, int offset) {
-    Pull sum{};
-    for (int i = row * merged; i < (row + 1) * merged; ++i) {
-      for (int j = offset * merged; j < (offset + 1) * merged; ++j) {
-        for (std::size_t u = 0; u < sum.size(); ++u) sum[u] += n.pulls[i][j][u];
-      }
-    }
-    return sum;
-  };
-  for (int i = 0; i < count; ++i) {
-    Pull rows{}, offsets{};
-    for (int j = 0; j < count; ++j) {
-      const Pull here = cell(i, j);
-      const Pull across = cell(j, i);
-      for (std::size_t u = 0; u < rows.size(); ++u) {
-        rows[u] += here[u];
-        offsets[u] += across[u];
-      }
-      Pull alone{};
-      add(here, alone);
-      for (std::size_t u = 0; u < rows.size(); ++u) {
-        by_both[u] += alone[u];
-        single[u].push_back(alone[u]);
-      }
-    }
-    add(rows, by_rows);
-    add(offsets, by_offsets);
-  }
-  Pull variance{};
-  for (std::size_t u = 0; u < variance.size(); ++u) {
-    variance[u] = std::pow(stats::few_parts_factor(single[u]), 2) * (by_rows[u] + by_offsets[u] - by_both[u]);
-  }
-  return variance;
-}
-
-// The largest of those of narrow and wide ranges: the trail of a bubble that drifts crosses many narrow ones, and errs
-// alike in all of them.
+// Variances of column and tilt by how much ranges of rows and of offsets disagree: what is the same in all rows or at all
+// offsets errs alike. Both, less what both count; wider where few of them pull. The largest of those of narrow and wide
+// ranges: the trail of a bubble that drifts crosses many narrow ones, and errs alike in all of them.
 Pull disagreement(const Normal& n, double cc, double tt, double left) {
   Pull most{};
-  for (const int merged : {1, 2, 4}) {
-    const Pull now = disagreement(n, cc, tt, left, merged);
-    for (std::size_t u = 0; u < most.size(); ++u) most[u] = std::max(most[u], now[u]);
+  for (const std::size_t merged : {1, 2, 4}) {
+    const auto [rows, offsets, both, few] = range_moves(n.pulls, merged, [&](const Pull& pull) {
+      return Pull{(tt * pull[0] - n.ct * pull[1]) / left, (cc * pull[1] - n.ct * pull[0]) / left};
+    });
+    for (std::size_t u = 0; u < most.size(); ++u)
+      most[u] = std::max(most[u], few[u] * few[u] * (rows[u] + offsets[u] - both[u]));
   }
   return most;
 }
@@ -235,7 +182,7 @@ std::optional<AxisEstimate> axis_of(const Image& view) {
     pose.column += column;
     pose.tilt_rad += tilt;
     if (std::abs(pose.tilt_rad) > farthest_rad) return std::nullopt;
-    bound.residual = std::min(bound.residual, few * edge_deviation(n) + 1e-30);
+    bound.residual = std::min(bound.residual, few * stats::robust_sigma(edge_differences(n.lines)) + 1e-30);
     // The slopes of the noise are no knowledge of the axis, and blurred pixels do not err one by one.
     const double cc = n.cc - noise2 * n.noise_cc;
     const double tt = std::max(n.tt - noise2 * n.noise_tt, 1e-6 * n.tt);

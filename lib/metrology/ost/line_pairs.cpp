@@ -7,8 +7,8 @@
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
-#include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
+#include "metrology/ost/private/line_ranges.hpp"
 #include "metrology/ost/private/moved_views.hpp"
 
 namespace vam::metrology {
@@ -38,7 +38,7 @@ class LineEnds {
 struct Sums {
   Matrix normal{};
   Vector right{};
-  std::array<std::array<Vector, offset_ranges>, angle_ranges> by_both{};
+  RangePulls<unknowns, angle_ranges, offset_ranges> by_both{};
 };
 
 // The height whose slopes stand for those of height k: near, and made of other rows, as slopes of the noise that is in
@@ -123,63 +123,25 @@ Vector times(const Matrix& m, const Vector& v) {
   return out;
 }
 
-// Variances by how much ranges of lines, `merged` of them together, disagree: those of angle, and those of offset, as
-// structures that turn with the part err alike over a whole range. Both, less what both count; wider where few of the
-// narrow ones pull.
-Vector variances(const Sums& sums, const Matrix& inverse, int merged) {
-  std::array<Vector, offset_ranges> by_offset{};
-  std::array<std::vector<double>, unknowns> single;
-  Vector angle{}, offset{}, both{};
-  const auto add = [&](const Vector& gradient, Vector& to) {
-    const Vector pull = times(inverse, gradient);
-    for (int i = 0; i < unknowns; ++i) to[i] += pull[i] * pull[i];
-  };
-  for (int a = 0; a < angle_ranges; a += merged) {
-    Vector of_angle{};
-    for (int t = 0; t < offset_ranges; t += merged) {
-      Vector cell{};
-      for (int n = 0; n < merged * merged; ++n) {
-        for (int i = 0; i < unknowns; ++i) cell[i] += sums.by_both[a + n / merged][t + n % merged][i];
-      }
-      for (int i = 0; i < unknowns; ++i) {
-        of_angle[i] += cell[i];
-        by_offset[t][i] += cell[i];
-      }
-      Vector alone{};
-      add(cell, alone);
-      for (int i = 0; i < unknowns; ++i) {
-        both[i] += alone[i];
-        single[i].push_back(alone[i]);
-      }
-    }
-    add(of_angle, angle);
-  }
-  for (const Vector& of_offset : by_offset) add(of_offset, offset);
-  Vector out{};
-  for (int i = 0; i < unknowns; ++i) {
-    const double all = std::max({angle[i] + offset[i] - both[i], angle[i], offset[i]});
-    out[i] = merged == 1 ? std::pow(stats::few_parts_factor(single[i]), 2) * all : all;
-  }
-  return out;
-}
-
-// The largest of those of narrow and wide ranges: bubbles drift through many narrow ones, and err alike in all of them.
+// Variances by how much ranges of lines disagree: those of angle, and those of offset, as structures that turn with the
+// part err alike over a whole range. Both, less what both count; wider where few of the narrow ones pull. The largest of
+// those of narrow and wide ranges: bubbles drift through many narrow ones, and err alike in all of them.
 Vector variances(const Sums& sums, const Matrix& inverse) {
   Vector most{};
-  for (const int merged : {1, 2, 4}) {
-    const Vector now = variances(sums, inverse, merged);
-    for (int i = 0; i < unknowns; ++i) most[i] = std::max(most[i], now[i]);
+  for (const std::size_t merged : {1, 2, 4}) {
+    const auto [angles, offsets, both, few] =
+        range_moves(sums.by_both, merged, [&](const Vector& gradient) { return times(inverse, gradient); });
+    for (int i = 0; i < unknowns; ++i) {
+      const double all = std::max({angles[i] + offsets[i] - both[i], angles[i], offsets[i]});
+      most[i] = std::max(most[i], merged == 1 ? few[i] * few[i] * all : all);
+    }
   }
   return most;
 }
 
 // Differences between the ends of lines on edges, which see a motion best.
 std::vector<double> edge_differences(const Lines& lines) {
-  struct Line {
-    double sight;
-    double difference;
-  };
-  std::vector<std::vector<Line>> heights(lines.now.size());
+  std::vector<std::vector<SeenLine>> heights(lines.now.size());
   parallel_for(count_of(heights), [&](int k) {
     const Image& s = lines.now[k];
     for (int a = 0; a < s.height; ++a) {
@@ -193,19 +155,7 @@ std::vector<double> edge_differences(const Lines& lines) {
       }
     }
   });
-  double sum = 0;
-  std::size_t count = 0;
-  for (const auto& height : heights) {
-    for (const Line& line : height) sum += line.sight;
-    count += height.size();
-  }
-  std::vector<double> out;
-  for (const auto& height : heights) {
-    for (const auto& [sight, difference] : height) {
-      if (sight * static_cast<double>(count) >= sum) out.push_back(difference);
-    }
-  }
-  return out;
+  return edge_differences(heights);
 }
 
 // Their mean, each counted up to a few times the usual one: what is in single lines hardly counts.
@@ -216,6 +166,22 @@ double usual_difference(const std::vector<double>& differences, double most) {
 }
 
 }  // namespace
+
+std::vector<double> edge_differences(const std::vector<std::vector<SeenLine>>& heights) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const auto& lines : heights) {
+    for (const SeenLine& line : lines) sum += line.sight;
+    count += lines.size();
+  }
+  std::vector<double> out;
+  for (const auto& lines : heights) {
+    for (const auto& [sight, difference] : lines) {
+      if (sight * static_cast<double>(count) >= sum) out.push_back(difference);
+    }
+  }
+  return out;
+}
 
 PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis, int count,
                        const SinogramsOf& sinograms_of) {
