@@ -12,6 +12,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/stats/median.hpp"
+#include "metrology/ost/private/heights.hpp"
 #include "metrology/ost/private/line_ranges.hpp"
 
 namespace vam::metrology {
@@ -27,6 +28,12 @@ Image blurred(const Image& image) {
   cv::Mat pixels(out.height, out.width, CV_32F, out.values.data());
   cv::GaussianBlur(pixels, pixels, {}, axis_blur_px, axis_blur_px, cv::BORDER_REPLICATE);
   return out;
+}
+
+// Turned about (column, middle row) so that the axis runs straight down its column.
+Image straightened(const Image& image, const AxisPose& axis) {
+  if (axis.tilt_rad == 0) return image;
+  return LevelRows(image.width, image.height, image.height, axis, [](int, int y) { return y; }).of(image);
 }
 
 // Variance that white noise of variance 1 leaves in the difference of two central differences, once blurred.
@@ -161,7 +168,7 @@ double softness(double stiff, double thought) {
 
 // Nothing where the image is not symmetric about a column.
 std::optional<AxisEstimate> axis_of(const Image& view) {
-  if (view.width < 20 || view.height < 3) return std::nullopt;
+  if (view.width < 20 || view.height < 4) return std::nullopt;
   AxisEstimate estimate;
   AxisPose& pose = estimate.pose;
   pose.column = start_column(view);

@@ -2,11 +2,8 @@
 #include "metrology/ost/private/camera_sinograms.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "base/compute/parallel.hpp"
-#include "base/cubic.hpp"
 #include "base/index.hpp"
 
 namespace vam::metrology {
@@ -27,27 +24,19 @@ void make_steady(std::vector<Image>& level, double background, std::span<const d
 }
 
 void undo_motion(std::vector<Image>& level, std::span<const ColumnMotion> motion, double axis_column) {
-  struct ColumnTaps {
-    int first;
-    std::array<float, 4> weights;
-  };
   parallel_for(count_of(level), [&](int i) {
     if (motion[i].shift_px == 0 && motion[i].stretch == 0) return;
     Image& image = level[i];
-    std::vector<ColumnTaps> taps(image.width);
-    for (int x = 0; x < image.width; ++x) {
-      const double from = x + motion[i].at(x - axis_column);
-      taps[x] = {floor_int(from) - 1, cubic_weights(static_cast<float>(from - std::floor(from)))};
-    }
+    std::vector<FourTaps> taps;
+    for (int x = 0; x < image.width; ++x)
+      taps.push_back(four_taps(x + motion[i].at(x - axis_column), image.width));
     std::vector<float> from(image.width);
     for (int k = 0; k < image.height; ++k) {
       float* to = image.row(k);
       std::copy(to, to + image.width, from.begin());
       for (int x = 0; x < image.width; ++x) {
         float sum = 0;
-        for (int j = 0; j < 4; ++j) {
-          sum += taps[x].weights[j] * from[std::clamp(taps[x].first + j, 0, image.width - 1)];
-        }
+        for (int j = 0; j < 4; ++j) sum += taps[x].weights[j] * from[taps[x].first + j];
         to[x] = sum;
       }
     }

@@ -16,12 +16,7 @@ namespace {
 
 double tallest_mm(const Eye& eye) { return std::max(std::abs(eye.z_mm(0)), std::abs(eye.z_mm(eye.rows - 1))); }
 
-// The pixels of a row or column that make the value between them, all in the image of four at least; beyond it its
-// last.
-struct FourTaps {
-  int first;
-  std::array<float, 4> weights;
-};
+}  // namespace
 
 FourTaps four_taps(double at, int size) {
   const double whole = std::floor(at);
@@ -32,8 +27,6 @@ FourTaps four_taps(double at, int size) {
   }
   return taps;
 }
-
-}  // namespace
 
 RowOfHeight::RowOfHeight(const Eye& eye) : eye_(eye), columns_(eye.camera.columns) {
   const double high = std::max(tallest_mm(eye), 1e-3);
@@ -76,14 +69,18 @@ double climb_rate_per_mm(const Eye& eye, double x_v_mm) {
 
 LevelRows::LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm,
                      const AxisPose& axis)
-    : columns_(columns), heights_(count_of(heights_mm)), taps_(product(columns, heights_)) {
+    : LevelRows(columns, rows, count_of(heights_mm), axis, [&](int x, int k) { return map.row(x, heights_mm[k]); }) {}
+
+LevelRows::LevelRows(int columns, int rows, int heights, const AxisPose& axis,
+                     const std::function<double(int column, int height)>& row_of)
+    : columns_(columns), heights_(heights), taps_(product(columns, heights_)) {
   const double middle = 0.5 * (rows - 1);
   const double c = std::cos(axis.tilt_rad);
   const double s = std::sin(axis.tilt_rad);
   parallel_for(heights_, [&](int k) {
     for (int x = 0; x < columns; ++x) {
       const double across = x - axis.column;
-      const auto row = static_cast<float>(std::clamp(map.row(x, heights_mm[k]), 0.0, rows - 1.0));
+      const auto row = static_cast<float>(std::clamp(row_of(x, k), 0.0, rows - 1.0));
       const double along = static_cast<double>(row) - middle;
       const FourTaps right = four_taps(axis.column + c * across + s * along, columns);
       const FourTaps down = four_taps(middle - s * across + c * along, rows);

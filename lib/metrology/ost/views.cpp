@@ -16,7 +16,6 @@
 #include "base/text/image_size.hpp"
 #include "base/text/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
-#include "metrology/ost/private/cubic.hpp"
 
 namespace vam::metrology {
 
@@ -153,23 +152,6 @@ Image middle_view(std::span<const CameraView> views) {
     }
   });
   return middle;
-}
-
-Image straightened(const Image& image, const AxisPose& axis, double row_stretch) {
-  if (axis.tilt_rad == 0 && row_stretch == 1) return image;
-  Image out(image.width, std::max(1, floor_int(image.height * row_stretch)));
-  const double middle_in = 0.5 * (image.height - 1);
-  const double middle_out = 0.5 * (out.height - 1);
-  const double c = std::cos(axis.tilt_rad);
-  const double s = std::sin(axis.tilt_rad);
-  for (int y = 0; y < out.height; ++y) {
-    for (int x = 0; x < out.width; ++x) {
-      const double across = x - axis.column;
-      const double along = (y - middle_out) / row_stretch;
-      out(x, y) = cubic_at(image, axis.column + c * across + s * along, middle_in - s * across + c * along);
-    }
-  }
-  return out;
 }
 
 }  // namespace vam::metrology

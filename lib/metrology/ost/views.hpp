@@ -60,9 +60,4 @@ struct AxisPose {
   double tilt_rad = 0;
 };
 
-/// The image turned about (column, middle row) so that the axis runs straight down its column, its rows stretched about
-/// the middle row by `row_stretch` = 1 / step (cubic convolution [KEYS81]); as many rows as the stretch makes. The
-/// same image when tilt is 0 and stretch is 1.
-[[nodiscard]] Image straightened(const Image& image, const AxisPose& axis, double row_stretch = 1);
-
 }  // namespace vam::metrology

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -49,11 +50,22 @@ class RowOfHeight {
 /// Share of its height that a ray of offset x_v gains per mm along the light; 0 where rays stay level.
 [[nodiscard]] double climb_rate_per_mm(const Eye& eye, double x_v_mm);
 
-/// Samples a camera image of `columns` x `rows`, four at least, at these heights, lowest first, turned about the axis
-/// by its tilt: cubic between pixels [KEYS81]; beyond the image its last pixels are repeated.
+/// The pixels of a row or column of `size`, four at least, that make the value between them, by cubic convolution
+/// [KEYS81]: all in the image, beyond which its last is repeated.
+struct FourTaps {
+  int first;
+  std::array<float, 4> weights;
+};
+[[nodiscard]] FourTaps four_taps(double at, int size);
+
+/// Samples an image of `columns` x `rows`, four at least, turned about the axis by its tilt.
 class LevelRows {
  public:
+  /// At these heights, lowest first.
   LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm, const AxisPose& axis);
+  /// At so many heights, the row of each in a column given by row_of(column, height).
+  LevelRows(int columns, int rows, int heights, const AxisPose& axis,
+            const std::function<double(int column, int height)>& row_of);
   [[nodiscard]] Image of(const Image& image) const;
 
  private:
