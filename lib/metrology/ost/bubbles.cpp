@@ -73,21 +73,6 @@ std::vector<Image> smoothed(const std::vector<Image>& sinograms) {
   return out;
 }
 
-// Gives marked rays the value of the darker end of their line. marked: one mask an angle.
-void take_darker_ends(std::vector<Image>& sinograms, const std::vector<RayMask>& marked) {
-  parallel_for(count_of(sinograms), [&](int k) {
-    Image& s = sinograms[k];
-    const Image before = s;
-    for (int a = 0; a < s.height; ++a) {
-      if (marked[a].empty()) continue;
-      const char* row = marked[a].data() + std::ptrdiff_t{k} * s.width;
-      for (int t = 0; t < s.width; ++t) {
-        if (row[t] != 0) s(t, a) = std::min(before(t, a), before(s.width - 1 - t, opposite(s, a)));
-      }
-    }
-  });
-}
-
 // Rays near marked ones, a few views before or after included: what lies before a brighter bubble is not marked.
 std::vector<RayMask> surroundings(const std::vector<RayMask>& marked, int width, int heights) {
   constexpr int pixels = 3;
@@ -96,12 +81,7 @@ std::vector<RayMask> surroundings(const std::vector<RayMask>& marked, int width,
   std::vector<RayMask> near(marked.size());
   parallel_for(angles, [&](int a) {
     RayMask all;
-    for (int b = a - views; b <= a + views; ++b) {
-      const RayMask& other = marked[(b + angles) % angles];
-      if (other.empty()) continue;
-      all.resize(other.size(), 0);
-      for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<char>(all[i] | other[i]);
-    }
+    for (int b = a - views; b <= a + views; ++b) mark_too(marked[(b + angles) % angles], all);
     if (!all.empty()) near[a] = grown(all, width, heights, pixels);
   });
   return near;
@@ -111,18 +91,12 @@ std::vector<RayMask> surroundings(const std::vector<RayMask>& marked, int width,
 std::vector<RayMask> mirrored(const std::vector<RayMask>& rays, int width) {
   const auto angles = count_of(rays);
   std::vector<RayMask> out(rays.size());
-  parallel_for(angles, [&](int a) {
-    out[a] = rays[(a + angles / 2) % angles];
-    for (auto row = out[a].begin(); row != out[a].end(); row += width) std::reverse(row, row + width);
-  });
+  parallel_for(angles, [&](int a) { out[a] = other_ends(rays[(a + angles / 2) % angles], width); });
   return out;
 }
 
 void add(const std::vector<RayMask>& more, std::vector<RayMask>& masks) {
-  for (std::size_t a = 0; a < masks.size(); ++a) {
-    if (masks[a].empty()) masks[a].resize(more[a].size(), 0);
-    for (std::size_t i = 0; i < more[a].size(); ++i) masks[a][i] = static_cast<char>(masks[a][i] | more[a][i]);
-  }
+  for (std::size_t a = 0; a < masks.size(); ++a) mark_too(more[a], masks[a]);
 }
 
 // Rays whose line is near a bubble, or hidden by a speck, at both ends.
@@ -133,10 +107,7 @@ std::vector<RayMask> suspect_rays(const std::vector<RayMask>& marked, const RayM
     add(std::vector<RayMask>(marked.size(), specks), suspect);
   }
   const std::vector<RayMask> far = mirrored(suspect, width);
-  for (std::size_t a = 0; a < far.size(); ++a) {
-    if (far[a].empty()) suspect[a].clear();
-    for (std::size_t i = 0; i < suspect[a].size(); ++i) suspect[a][i] = static_cast<char>(suspect[a][i] & far[a][i]);
-  }
+  for (std::size_t a = 0; a < far.size(); ++a) keep_marked(far[a], suspect[a]);
   return suspect;
 }
 
@@ -161,7 +132,7 @@ double remove_bubbles(const ClimbingRays& rays, const model::Grid& grid, const R
   for (const RayMask& mask : marked) count += std::count(mask.begin(), mask.end(), char{1});
   const double share = static_cast<double>(count) / (static_cast<double>(width) * angles * heights);
   if (count == 0 || share > most_bubbles) return share;
-  take_darker_ends(sinograms, marked);
+  choose_ends(sinograms, marked, [](float own, float other) { return std::min(own, other); });
   std::vector<RayMask> hidden = suspect_rays(marked, specks, width, heights);
   const std::vector<Image> seen = sinograms;
   constexpr int rounds = 2;                                 // restored rays show the bodies better

@@ -87,17 +87,7 @@ void restore_dark_rays(std::vector<Image>& sinograms, std::span<const int> rows,
     keep_dips(sinograms, a, least, marked[a]);
     marked[a] = grown(marked[a], width, heights, around);
   });
-  parallel_for(heights, [&](int k) {
-    Image& s = sinograms[k];
-    const Image before = s;
-    for (int a = 0; a < s.height; ++a) {
-      if (marked[a].empty()) continue;
-      const char* row = marked[a].data() + std::ptrdiff_t{k} * width;
-      for (int t = 0; t < width; ++t) {
-        if (row[t] != 0) s(t, a) = std::max(before(t, a), before(width - 1 - t, opposite(s, a)));
-      }
-    }
-  });
+  choose_ends(sinograms, marked, [](float own, float other) { return std::max(own, other); });
 }
 
 }  // namespace vam::metrology

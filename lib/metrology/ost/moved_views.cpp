@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
@@ -24,25 +25,10 @@ double blur_of(const std::vector<Image>& level) {
 
 void blur_columns(std::vector<Image>& level) {
   const double sigma = blur_of(level);
-  const int reach = ceil_int(3 * sigma);
-  std::vector<float> kernel;
-  double sum = 0;
-  for (int j = -reach; j <= reach; ++j) sum += std::exp(-0.5 * j * j / (sigma * sigma));
-  for (int j = -reach; j <= reach; ++j)
-    kernel.push_back(static_cast<float>(std::exp(-0.5 * j * j / (sigma * sigma)) / sum));
+  const int taps = 2 * ceil_int(3 * sigma) + 1;
   parallel_for(count_of(level), [&](int i) {
-    Image& image = level[i];
-    std::vector<float> padded(image.width + 2 * reach);
-    for (int k = 0; k < image.height; ++k) {
-      float* row = image.row(k);
-      std::fill_n(padded.begin(), reach, row[0]);
-      std::copy_n(row, image.width, padded.begin() + reach);
-      std::fill_n(padded.end() - reach, reach, row[image.width - 1]);
-      std::fill_n(row, image.width, 0.0F);
-      for (int j = 0; j <= 2 * reach; ++j) {
-        for (int x = 0; x < image.width; ++x) row[x] += kernel[j] * padded[x + j];
-      }
-    }
+    cv::Mat pixels(level[i].height, level[i].width, CV_32F, level[i].values.data());
+    cv::GaussianBlur(pixels, pixels, {taps, 1}, sigma, sigma, cv::BORDER_REPLICATE);
   });
 }
 
@@ -147,11 +133,8 @@ void restore(Lines& lines, double by_absorption, bool even_light) {
 // Lines of which an end is behind a speck, or so near that the blur brings some of it there.
 RayMask hidden_lines(const std::vector<Image>& sinograms, double blur_px) {
   const int width = sinograms.front().width;
-  const RayMask specks = grown(speck_rays(sinograms), width, count_of(sinograms), ceil_int(2 * blur_px));
-  RayMask hidden = specks;
-  for (std::size_t row = 0; row < hidden.size(); row += static_cast<std::size_t>(width)) {
-    for (int t = 0; t < width; ++t) hidden[row + t] = specks[row + t] | specks[row + width - 1 - t];
-  }
+  RayMask hidden = grown(speck_rays(sinograms), width, count_of(sinograms), ceil_int(2 * blur_px));
+  mark_too(other_ends(hidden, width), hidden);
   return hidden;
 }
 

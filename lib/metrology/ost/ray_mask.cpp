@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
 
 namespace vam::metrology {
@@ -24,6 +25,35 @@ RayMask grown(const RayMask& marked, int width, int height, int by) {
     }
   }
   return out;
+}
+
+RayMask other_ends(RayMask marked, int width) {
+  for (auto row = marked.begin(); row != marked.end(); row += width) std::reverse(row, row + width);
+  return marked;
+}
+
+void mark_too(const RayMask& more, RayMask& marked) {
+  if (marked.empty()) marked.resize(more.size(), 0);
+  for (std::size_t i = 0; i < more.size(); ++i) marked[i] = static_cast<char>(marked[i] | more[i]);
+}
+
+void keep_marked(const RayMask& other, RayMask& marked) {
+  if (other.empty()) marked.clear();
+  for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = static_cast<char>(marked[i] & other[i]);
+}
+
+void choose_ends(std::vector<Image>& sinograms, const std::vector<RayMask>& marked, float (*choose)(float, float)) {
+  parallel_for(count_of(sinograms), [&](int k) {
+    Image& s = sinograms[k];
+    const Image before = s;
+    for (int a = 0; a < s.height; ++a) {
+      if (marked[a].empty()) continue;
+      const char* row = marked[a].data() + product(k, s.width);
+      for (int t = 0; t < s.width; ++t) {
+        if (row[t] != 0) s(t, a) = choose(before(t, a), before(s.width - 1 - t, opposite(s, a)));
+      }
+    }
+  });
 }
 
 }  // namespace vam::metrology

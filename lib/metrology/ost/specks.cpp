@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
@@ -147,22 +146,12 @@ std::vector<Tap> taps_around(const RayMask& hidden, int width, int heights, int 
   return taps;
 }
 
-// Lines of which both ends, or either, are behind a speck.
-template <class Combine>
-RayMask ends_behind(const RayMask& specks, int width, const Combine& combine) {
-  RayMask out = specks;
-  for (std::size_t row = 0; row < out.size(); row += static_cast<std::size_t>(width)) {
-    for (int t = 0; t < width; ++t)
-      out[row + t] = static_cast<char>(combine(specks[row + t], specks[row + width - 1 - t]));
-  }
-  return out;
-}
-
 // Rays of which both ends are hidden, by what is around them.
 void fill(const RayMask& specks, std::vector<Image>& sinograms) {
   const int width = sinograms.front().width;
   const auto heights = count_of(sinograms);
-  const RayMask hidden = ends_behind(specks, width, std::bit_and<>());
+  RayMask hidden = specks;
+  keep_marked(other_ends(specks, width), hidden);
   parallel_for(heights, [&](int k) {
     for (int t = 0; t < width; ++t) {
       if (hidden[product(k, width) + t] == 0) continue;
@@ -218,7 +207,8 @@ void replace_specks(const RayMask& specks, std::vector<Image>& sinograms) {
 
 void propagate_mask(const RayMask& specks, int width, std::vector<RayMask>& marked) {
   const int heights = count_of(specks) / width;
-  const RayMask hidden = ends_behind(specks, width, std::bit_or<>());
+  RayMask hidden = specks;
+  mark_too(other_ends(specks, width), hidden);
   struct Ray {
     std::size_t index;
     std::vector<Tap> taps;
