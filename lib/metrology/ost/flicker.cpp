@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "base/compute/parallel.hpp"
-#include "base/constants.hpp"
 #include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/median.hpp"
@@ -149,8 +148,7 @@ Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, cons
   if (heights_mm.empty()) return {};
   auto level = level_views(views, LevelRows(map, eye.camera.columns, eye.rows, heights_mm, axis));
   make_steady(level, background, {});
-  std::vector<double> directions_rad;
-  for (const double angle : angles_deg) directions_rad.push_back(direction * angle * rad_per_deg + azimuth_rad);
+  const std::vector<double> directions_rad = part_angles_rad(angles_deg);
   Readings intensity = apart_from_course(view_totals(level), directions_rad);
   if (!usable(intensity)) return {};
 

@@ -110,6 +110,15 @@ std::vector<double> OstReconstructor::State::heights_mm(int first, int count) co
   return heights;
 }
 
+std::vector<Image> OstReconstructor::State::steady_views(std::span<const CameraView> views, const RowOfHeight& map,
+                                                         std::span<const double> heights_mm, double background,
+                                                         std::span<const double> intensity) const {
+  auto level = level_views(views, LevelRows(map, eye.camera.columns, eye.rows, heights_mm, axis));
+  make_steady(level, background, intensity);
+  undo_motion(level, motion(angles_deg(views), options.run_out_mm[0], options.run_out_mm[1]), axis.column);
+  return level;
+}
+
 std::vector<Image> OstReconstructor::State::virtual_sinograms(std::span<const Image> sinograms,
                                                               std::span<const double> heights_mm) const {
   std::vector<Image> out(sinograms.size());
@@ -180,8 +189,7 @@ void OstReconstructor::State::refine_slices(std::span<const Image> sinograms, in
 
 model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, CleaningReport* found) const {
   const State& s = *state_;
-  std::vector<double> angles_deg;
-  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
+  const std::vector<double> angles_deg = metrology::angles_deg(views);
   const Turns turns(angles_deg);
   const int angles = turns.angles();
   const ClimbingRays rays = s.rays(angles);
@@ -203,10 +211,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, C
   for (int first = 0; first < s.grid.nz; first += most) {
     const int count = std::min(most, s.grid.nz - first);
     const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
-    const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm, s.axis);
-    auto level = level_views(views, rows);
-    make_steady(level, dirt.background, light.intensity);
-    undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
+    auto level = s.steady_views(views, map, heights_mm, dirt.background, light.intensity);
     auto seen = camera_sinograms(level, turns);
     level.clear();
     auto sinograms = s.virtual_sinograms(seen, heights_mm);

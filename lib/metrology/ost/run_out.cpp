@@ -20,16 +20,6 @@
 
 namespace vam::metrology {
 
-namespace {
-
-std::vector<double> angles_of(std::span<const CameraView> views) {
-  std::vector<double> angles_deg;
-  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
-  return angles_deg;
-}
-
-}  // namespace
-
 std::vector<ColumnMotion> OstReconstructor::State::motion(std::span<const double> angles_deg, double x_mm,
                                                           double y_mm) const {
   // In the bath a column at x mm of the axis plane is at x m mm, and its ray leans by x / (n D).
@@ -63,19 +53,16 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   const State& s = *state_;
   RunOut found;
   if (!s.options.refraction) return found;
-  const std::vector<double> angles_deg = angles_of(views);
+  const std::vector<double> angles_deg = metrology::angles_deg(views);
   const Turns turns(angles_deg);
   const RowOfHeight map(s.eye);
   const Image mean = mean_view(views);
   constexpr std::size_t most_heights = 32;
   const auto heights_mm = print_heights(mean, map, s.eye, s.grid, most_heights);
   if (heights_mm.empty()) return found;
-  const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm, s.axis);
-  auto level = level_views(views, rows);
   const double background = even_background(mean).background;
   const Flicker light = s.flicker(views, mean, angles_deg, background);
-  make_steady(level, background, light.intensity);
-  undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
+  const auto level = s.steady_views(views, map, heights_mm, background, light.intensity);
   const double unit_mm = s.eye.camera.pixel_mm;
   const PairBasis basis{{std::vector<ColumnMotion>(views.size(), {1, 0}), s.motion(angles_deg, unit_mm, 0),
                          s.motion(angles_deg, 0, unit_mm)},

@@ -41,6 +41,12 @@ Image binned(Image image, int binning) {
 
 }  // namespace
 
+std::vector<double> angles_deg(std::span<const CameraView> views) {
+  std::vector<double> angles;
+  for (const CameraView& view : views) angles.push_back(view.angle_deg);
+  return angles;
+}
+
 Image corrected(Image image, const CameraFields& fields, int binning, const std::string& subject) {
   require_same_size(image, fields.dark, subject, "dark");
   require_same_size(image, fields.flat, subject, "flat");
@@ -110,9 +116,7 @@ std::vector<std::string> contrast_problems(std::span<const CameraView> views) {
 }
 
 Image mean_view(std::span<const CameraView> views) {
-  std::vector<double> angles_deg;
-  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
-  const AngleGrid turn(angles_deg, 0);
+  const AngleGrid turn(angles_deg(views), 0);
   Image mean(views.front().image.width, views.front().image.height);
   const float share = 1.0F / static_cast<float>(turn.summary().angles);
   parallel_for(mean.height, [&](int y) {
@@ -128,9 +132,8 @@ Image mean_view(std::span<const CameraView> views) {
 }
 
 Image middle_view(std::span<const CameraView> views) {
-  std::vector<double> angles_deg;
-  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
   constexpr int most = 120;
+  const std::vector<double> angles_deg = metrology::angles_deg(views);
   const AngleGrid turn(angles_deg, std::min(most, AngleGrid(angles_deg, 0).summary().angles));
   const int angles = turn.summary().angles;
   const int quarter = angles / 4;

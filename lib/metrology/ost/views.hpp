@@ -19,6 +19,9 @@ struct CameraView {
   double time_s = 0;
 };
 
+/// Of each view.
+[[nodiscard]] std::vector<double> angles_deg(std::span<const CameraView> views);
+
 /// Fields that the camera adds. Empty images mean none.
 struct CameraFields {
   Image dark;  // with the light off, subtracted

@@ -39,6 +39,10 @@ struct OstReconstructor::State {
   }
 
   [[nodiscard]] std::vector<double> heights_mm(int first, int count) const;
+  /// Views at these heights, as of a vial in its place in steady light; an empty span means that it is.
+  [[nodiscard]] std::vector<Image> steady_views(std::span<const CameraView> views, const RowOfHeight& map,
+                                                std::span<const double> heights_mm, double background,
+                                                std::span<const double> intensity) const;
   [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
                                                      std::span<const double> heights_mm) const;
   /// The light of the views, of which `mean` is the mean, over that of the median view. Not determined in absorbing
