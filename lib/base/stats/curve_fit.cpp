@@ -71,6 +71,14 @@ Vector linear_fit(const Vector& rows, std::size_t n, const Vector& values) {
   return parts;
 }
 
+Vector sums_of(const Vector& rows, const Vector& parts) {
+  Vector sums(rows.size() / parts.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    for (std::size_t n = 0; n < parts.size(); ++n) sums[i] += rows[i * parts.size() + n] * parts[n];
+  }
+  return sums;
+}
+
 Measured CurveFit::combined(const Vector& weight) const {
   Measured out{0, 0, n};
   double variance = 0;

@@ -38,4 +38,7 @@ using Residuals = std::function<std::vector<double>(const std::vector<double>& p
 [[nodiscard]] std::vector<double> linear_fit(const std::vector<double>& rows, std::size_t n,
                                              const std::vector<double>& values);
 
+/// What these parts of the columns sum up to, a number for each row.
+[[nodiscard]] std::vector<double> sums_of(const std::vector<double>& rows, const std::vector<double>& parts);
+
 }  // namespace vam::stats

@@ -56,11 +56,9 @@ class BandModel {
     }
     return rows;
   }
-  [[nodiscard]] std::vector<double> residuals(const std::vector<double>& rows, const double* parts) const {
-    std::vector<double> out = signal_;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      for (std::size_t k = 0; k < lights; ++k) out[i] -= parts[k] * rows[i * lights + k];
-    }
+  [[nodiscard]] std::vector<double> residuals(const std::vector<double>& rows, const std::vector<double>& parts) const {
+    std::vector<double> out = stats::sums_of(rows, parts);
+    std::transform(signal_.begin(), signal_.end(), out.begin(), out.begin(), std::minus<>());
     return out;
   }
   // The light's parameters that fit the readings best; with an even share only the first of each edge's terms.
@@ -151,7 +149,7 @@ BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, con
   const auto lit_best = [&](bool even) {
     return [&model, even](const Values& edges) {
       const Values rows = model.light(edges);
-      return model.residuals(rows, model.best_parts(rows, even).data());
+      return model.residuals(rows, model.best_parts(rows, even));
     };
   };
   Values at, rows;  // of the edges computed last: most of the parameters leave them where they are
@@ -159,7 +157,7 @@ BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, con
     const Values edges(p.begin(), p.begin() + ground);
     if (edges != at) rows = model.light(edges);
     at = edges;
-    return model.residuals(rows, p.data() + ground);
+    return model.residuals(rows, {p.begin() + ground, p.end()});
   };
   const double middle = 0.5 * (first.rise + first.fall);
   const double radius = 0.5 * (first.fall - first.rise);

@@ -17,12 +17,6 @@ constexpr std::size_t most_harmonics = 24;    // of the turn, as those that foll
 constexpr std::size_t points_of_unknown = 8;  // or fewer harmonics
 constexpr double least_sigma_deg = 1e-4;      // an encoder's last digit
 
-double sum_of_products(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 }  // namespace
 
 StageCourse::StageCourse(const std::vector<StagePoint>& points) {
@@ -36,13 +30,15 @@ StageCourse::StageCourse(const std::vector<StagePoint>& points) {
   bend_s_ = span_s / static_cast<double>(bends_ - 1);
   const std::size_t left = std::max(points.size() / points_of_unknown, bends_) - bends_;
   harmonics_ = std::min(left / 2, most_harmonics);
-  std::vector<std::vector<double>> rows;
-  for (const StagePoint& point : points) rows.push_back(parts(point.t_s, point.angle_deg));
+  std::vector<double> rows;
+  for (const StagePoint& point : points) {
+    const auto row = parts(point.t_s, point.angle_deg);
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
   const auto residuals = [&](const std::vector<double>& p) {
-    std::vector<double> out;
+    std::vector<double> out = stats::sums_of(rows, p);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      out.push_back((points[i].angle_deg - sum_of_products(rows[i], p)) /
-                    std::max(points[i].sigma_deg, least_sigma_deg));
+      out[i] = (points[i].angle_deg - out[i]) / std::max(points[i].sigma_deg, least_sigma_deg);
     }
     return out;
   };
@@ -71,7 +67,7 @@ double StageCourse::angle_deg(double t_s) const {
   const auto line = parts(t_s, 0);
   double angle_deg = 0;
   for (std::size_t i = 0; i < bends_; ++i) angle_deg += line[i] * fit_.value[i];
-  for (int pass = 0; pass < 3; ++pass) angle_deg = sum_of_products(parts(t_s, angle_deg), fit_.value);
+  for (int pass = 0; pass < 3; ++pass) angle_deg = stats::sums_of(parts(t_s, angle_deg), fit_.value).front();
   return angle_deg;
 }
 

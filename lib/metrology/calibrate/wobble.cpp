@@ -53,7 +53,7 @@ Wobble find_wobble(const std::vector<double>& angle_deg, const std::vector<stats
     rows.insert(rows.end(), {1, std::cos(theta), std::sin(theta)});
   }
   // The fit is linear: what a reading of 1 at one angle gives is its weight in each of the terms.
-  std::array<double, terms> fitted{};
+  std::vector<double> fitted(terms);
   std::array<double, terms> variance{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::vector<double> one(values.size());
@@ -65,10 +65,9 @@ Wobble find_wobble(const std::vector<double>& angle_deg, const std::vector<stats
     }
   }
   double chi_square = 0;
+  const auto course = stats::sums_of(rows, fitted);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    double rest = values[i].value;
-    for (std::size_t k = 0; k < terms; ++k) rest -= fitted[k] * rows[i * terms + k];
-    chi_square += std::pow(rest / std::max(values[i].sigma, 1e-12), 2);
+    chi_square += std::pow((values[i].value - course[i]) / std::max(values[i].sigma, 1e-12), 2);
   }
   const auto freedom = static_cast<double>(values.size() - terms);
   const double wider = freedom > 0 ? std::sqrt(std::max(chi_square / freedom, 1.0)) : 1;

@@ -34,14 +34,6 @@ std::vector<double> harmonics_at(std::span<const double> angles_rad) {
   return rows;
 }
 
-Readings sum_of(const std::vector<double>& rows, const std::vector<double>& parts) {
-  Readings out(rows.size() / terms);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    for (std::size_t n = 0; n < terms; ++n) out[i] += rows[i * terms + n] * parts[n];
-  }
-  return out;
-}
-
 // A row whose course passes zero gives no ratio.
 bool usable(const Readings& intensity) {
   return std::all_of(intensity.begin(), intensity.end(), [](double v) { return std::isfinite(v) && v > 0; });
@@ -74,7 +66,7 @@ Readings apart_from_course(const std::vector<Readings>& totals, std::span<const 
     parallel_for(count_of(totals), [&](int k) {
       Readings steady = totals[k];
       for (std::size_t i = 0; i < steady.size(); ++i) steady[i] /= intensity[i];
-      ratios[k] = sum_of(rows, stats::linear_fit(rows, terms, steady));
+      ratios[k] = stats::sums_of(rows, stats::linear_fit(rows, terms, steady));
       for (std::size_t i = 0; i < steady.size(); ++i) ratios[k][i] = totals[k][i] / ratios[k][i];
     });
     intensity = median_of(ratios);
@@ -119,12 +111,7 @@ Readings smooth_course(const Readings& values) {
     double power = 1;
     for (std::size_t n = 0; n < powers; ++n, power *= time) rows.push_back(power);
   }
-  const std::vector<double> parts = stats::linear_fit(rows, powers, values);
-  Readings course(values.size());
-  for (std::size_t i = 0; i < course.size(); ++i) {
-    for (std::size_t n = 0; n < powers; ++n) course[i] += rows[i * powers + n] * parts[n];
-  }
-  return course;
+  return stats::sums_of(rows, stats::linear_fit(rows, powers, values));
 }
 
 // Some heights of the print, not those where it ends.
@@ -159,7 +146,7 @@ Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, cons
   std::vector<double> even_rad;
   for (int a = 0; a < turns.angles(); ++a) even_rad.push_back(2 * std::numbers::pi * a / turns.angles());
   const auto course =
-      sum_of(harmonics_at(directions_rad), stats::linear_fit(harmonics_at(even_rad), terms, median_of(totals)));
+      stats::sums_of(harmonics_at(directions_rad), stats::linear_fit(harmonics_at(even_rad), terms, median_of(totals)));
   for (std::size_t i = 0; i < intensity.size(); ++i) intensity[i] *= course[i];
 
   const double usual = stats::median(intensity);
