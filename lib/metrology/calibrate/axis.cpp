@@ -19,15 +19,10 @@ namespace {
 enum : std::size_t { axis, cos_1, sin_1, cos_2, sin_2, count };
 
 void require_full_turn(const std::vector<double>& angle_deg) {
-  std::vector<double> turned;
-  for (const double angle : angle_deg) turned.push_back(angle - 360 * std::floor(angle / 360));
-  std::sort(turned.begin(), turned.end());
-  double gap_deg = turned.empty() ? 360 : turned.front() + 360 - turned.back();
-  for (std::size_t i = 1; i < turned.size(); ++i) gap_deg = std::max(gap_deg, turned[i] - turned[i - 1]);
-  if (gap_deg > 90) {
-    throw Error{Fault::data, "axis: " + std::to_string(angle_deg.size()) + " frames leave a gap of " +
-                                 format_number(gap_deg, 4) + " degrees; capture a whole turn"};
-  }
+  const double gap_deg = widest_gap_deg(angle_deg);
+  if (gap_deg <= 90) return;
+  throw Error{Fault::data, "axis: " + std::to_string(angle_deg.size()) + " frames leave a gap of " +
+                               format_number(gap_deg, 4) + " degrees; capture a whole turn"};
 }
 
 template <class Column>

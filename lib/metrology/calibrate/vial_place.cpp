@@ -10,7 +10,8 @@
 #include "base/error.hpp"
 #include "base/text/text.hpp"
 #include "metrology/calibrate/private/edges.hpp"
-#include "metrology/calibrate/private/vial_radius.hpp"
+#include "optics/chief_ray.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::metrology {
 
@@ -24,6 +25,16 @@ void require_camera_beside(double azimuth_deg) {
   throw Error{Fault::data, "sweep: the camera is at " + format_number(azimuth_deg) +
                                " degrees to the beam; edges are detected from " + format_number(nearest_deg) + " to " +
                                format_number(furthest_deg) + " on either side (camera.azimuth_deg)"};
+}
+
+/// Outer radius in mm of the vial whose outermost lit column is R_e = edge_px columns from the axis: in air
+/// R = R_e / sqrt(1 + (R_e / D_p)^2), which is optics::impact_mm() and has the sign of the square right [RAY21 eq 9;
+/// physics §10, §12]. If the resin, not the glass, ends the light, the glass is a wall further out.
+double vial_radius_mm(const model::Printer& printer, double edge_px) {
+  const optics::View view = optics::projector_view(printer);
+  const double impact = optics::impact_mm(view, edge_px * printer.projector.pixel_mm);
+  if (optics::grazing_impact_mm(view) >= view.shells.front().radius_mm * (1 - 1e-12)) return impact;
+  return impact * optics::resin_radius_mm(view) / optics::grazing_impact_mm(view) + printer.vial.wall_mm;
 }
 
 /// A band with light between two dark sides.

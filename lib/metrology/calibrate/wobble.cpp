@@ -17,11 +17,8 @@ namespace {
 
 constexpr std::size_t terms = 3;  // mean, a, b
 
-void require_round(std::vector<double> angle_deg, const std::string& subject) {
-  for (double& angle : angle_deg) angle -= 360 * std::floor(angle / 360);
-  std::sort(angle_deg.begin(), angle_deg.end());
-  double gap_deg = angle_deg.empty() ? 360 : angle_deg.front() + 360 - angle_deg.back();
-  for (std::size_t i = 1; i < angle_deg.size(); ++i) gap_deg = std::max(gap_deg, angle_deg[i] - angle_deg[i - 1]);
+void require_round(const std::vector<double>& angle_deg, const std::string& subject) {
+  const double gap_deg = widest_gap_deg(angle_deg);
   if (gap_deg < 180 - 1e-6) return;
   throw Error{Fault::data, subject + ": " + std::to_string(angle_deg.size()) + " stage angles leave a gap of " +
                                format_number(gap_deg, 4) +
@@ -30,6 +27,14 @@ void require_round(std::vector<double> angle_deg, const std::string& subject) {
 }
 
 }  // namespace
+
+double widest_gap_deg(std::vector<double> angles_deg) {
+  for (double& angle : angles_deg) angle -= 360 * std::floor(angle / 360);
+  std::sort(angles_deg.begin(), angles_deg.end());
+  double gap_deg = angles_deg.empty() ? 360 : angles_deg.front() + 360 - angles_deg.back();
+  for (std::size_t i = 1; i < angles_deg.size(); ++i) gap_deg = std::max(gap_deg, angles_deg[i] - angles_deg[i - 1]);
+  return gap_deg;
+}
 
 Wobble wobble_of(const stats::Measured& mean, const stats::Measured& a, const stats::Measured& b) {
   Wobble out;

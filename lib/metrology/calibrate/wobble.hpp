@@ -10,6 +10,9 @@
 
 namespace vam::metrology {
 
+/// Between two stage angles of a turn; 360 where there is one or none.
+[[nodiscard]] double widest_gap_deg(std::vector<double> angles_deg);
+
 /// value = mean + radius * cos(theta - phase); units of the value, degrees.
 struct Wobble {
   stats::Measured mean;       // of a vial's middle: the rotation axis
