@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "base/text/text.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -36,10 +35,7 @@ Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
   finding.value("wobble_phase", found.phase_deg, "deg", method);
   finding.value("wobble_mm", {found.wobble_px.value * pixel_mm, found.wobble_px.sigma * pixel_mm, found.wobble_px.n},
                 "mm", method);
-  if (found.column.sigma > wanted_axis_sigma_px) {
-    finding.fail_because("the standard deviation of the axis is " + format_number(found.column.sigma, 3) +
-                         " px, above " + format_number(wanted_axis_sigma_px));
-  }
+  finding.require_sigma("axis", found.column.sigma, wanted_axis_sigma_px, "px");
   return finding;
 }
 

@@ -15,7 +15,7 @@ namespace vam::calibrate_tool {
 namespace {
 
 constexpr int side_planes = 9;
-constexpr double wanted_width_sigma = 0.1;  // of the width at the axis
+constexpr double wanted_width_sigma_percent = 10;  // of the width at the axis
 
 // What shines without the projector: a print, the room.
 class Dark {
@@ -76,20 +76,13 @@ Finding scan_beam(const ScanOptions& options, const model::Printer& printer) {
   finding.value("divergence", found.divergence_deg, "deg", "atan of width over distance");
   Json planes = Json::array();
   for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
-    planes.push_back({{"plane_mm", widths.plane_mm[i]},
-                      {"value", widths.fwhm_mm[i].value},
-                      {"unit", "mm"},
-                      {"sigma", widths.fwhm_mm[i].sigma},
-                      {"n", widths.fwhm_mm[i].n},
-                      {"method", "full width at half maximum"}});
+    planes.push_back(measured_json(widths.fwhm_mm[i], "mm", "full width at half maximum"));
+    planes.back()["plane_mm"] = widths.plane_mm[i];
   }
   finding.facts["planes"] = planes;
   finding.facts["settings"] = {{"seen", options.side ? "from the side, in resin" : "on a bare sensor"}};
-  if (found.axis_fwhm_mm.sigma > wanted_width_sigma * found.axis_fwhm_mm.value) {
-    finding.fail_because("the standard deviation of the width at the axis is " +
-                         format_number(100 * found.axis_fwhm_mm.sigma / found.axis_fwhm_mm.value, 3) + " %, above " +
-                         format_number(100 * wanted_width_sigma));
-  }
+  finding.require_sigma("width at the axis", 100 * found.axis_fwhm_mm.sigma / found.axis_fwhm_mm.value,
+                        wanted_width_sigma_percent, "%");
   return finding;
 }
 

@@ -20,7 +20,7 @@ namespace vam::calibrate_tool {
 
 namespace {
 
-constexpr double wanted_radius_sigma = 2e-3;  // of the radius, so that a change of 0.5 % is distinguished from noise
+constexpr double wanted_radius_sigma_percent = 0.2;  // so that a change of 0.5 % is distinguished from noise
 // What the fit's own sigma does not know: how far the resin's absorption is as stated, as a part of what it changes;
 // and as found on the simulated bench what is left of the noise that is cut off at level 0, as a part of its
 // correction, and a beam that is 0.7 mm wide or widens by 2 degrees, as a part of the radius.
@@ -197,15 +197,8 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
                                {"pixel_mm", printer.projector.pixel_mm},
                                {"throw_mm", model::columns_lens_mm(printer.projector).value_or(0)}};
   if (all.size() > 1) finding.facts["settings"]["stage_angles_deg"] = angles;
-  if (found.axis_column.sigma > wanted_axis_sigma_px) {
-    finding.fail_because("the standard deviation of the centre is " + format_number(found.axis_column.sigma, 3) +
-                         " px, above " + format_number(wanted_axis_sigma_px));
-  }
-  if (found.radius_mm.sigma > wanted_radius_sigma * found.radius_mm.value) {
-    finding.fail_because("the standard deviation of the radius is " +
-                         format_number(100 * found.radius_mm.sigma / found.radius_mm.value, 3) + " %, above " +
-                         format_number(100 * wanted_radius_sigma));
-  }
+  finding.require_sigma("centre", found.axis_column.sigma, wanted_axis_sigma_px, "px");
+  finding.require_sigma("radius", 100 * radius.sigma / radius.value, wanted_radius_sigma_percent, "%");
   compare_edges(options, printer.calibration, found, finding);
   return finding;
 }

@@ -86,11 +86,8 @@ Finding scan_lag(const ScanOptions& options, const model::Printer& printer) {
   Finding finding;
   finding.value("camera_lag", lag, "ms", "bead turned in both directions");
   finding.facts["settings"] = {{"forwards_deg_s", one.speed_deg_s}, {"backwards_deg_s", two.speed_deg_s}};
-  if (lag.sigma > wanted_delay_sigma_ms) {
-    finding.fail_because("standard deviation is " + format_number(lag.sigma, 3) + " ms, above " +
-                         format_number(wanted_delay_sigma_ms) +
-                         "; use a higher --speed, or place the bead farther from the axis");
-  }
+  finding.require_sigma("lag", lag.sigma, wanted_delay_sigma_ms, "ms",
+                        "use a higher --speed, or place the bead farther from the axis");
   return finding;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/text/json.hpp"
-#include "base/text/text.hpp"
 #include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "vam-calibrate/scan.hpp"
@@ -48,10 +47,7 @@ Finding scan_latency(const ScanOptions& options, const model::Printer& printer) 
   Finding finding;
   finding.value("latency", found.ms, "ms", "blinking screen");
   finding.facts["contrast"] = found.contrast;
-  if (found.ms.sigma > wanted_delay_sigma_ms) {
-    finding.fail_because("standard deviation is " + format_number(found.ms.sigma, 3) + " ms, above " +
-                         format_number(wanted_delay_sigma_ms));
-  }
+  finding.require_sigma("latency", found.ms.sigma, wanted_delay_sigma_ms, "ms");
   return finding;
 }
 

@@ -113,11 +113,21 @@ std::string record_file(const std::string& current) {
 
 }  // namespace
 
+Json measured_json(const stats::Measured& measured, const std::string& unit, const std::string& method) {
+  return {{"value", measured.value}, {"unit", unit}, {"sigma", measured.sigma}, {"n", measured.n}, {"method", method}};
+}
+
 void Finding::value(const std::string& name, const stats::Measured& measured, const std::string& unit,
                     const std::string& method) {
   if (measured.n == 0) return;
-  values_[name] = {
-      {"value", measured.value}, {"unit", unit}, {"sigma", measured.sigma}, {"n", measured.n}, {"method", method}};
+  values_[name] = measured_json(measured, unit, method);
+}
+
+void Finding::require_sigma(const std::string& of, double sigma, double most, const std::string& unit,
+                            const std::string& remedy) {
+  if (sigma <= most) return;
+  fail_because("the standard deviation of the " + of + " is " + format_number(sigma, 3) + " " + unit + ", above " +
+               format_number(most) + (remedy.empty() ? "" : "; " + remedy));
 }
 
 void Finding::warn_because(const std::string& reason) { warnings_.push_back(reason); }

@@ -56,9 +56,8 @@ Finding scan_registration(const ScanOptions& options, const model::Printer& prin
   finding.facts["tilt_deg"] = found.tilt_deg;
   if (!found.failure.empty()) {
     finding.fail_because(found.failure);
-  } else if (found.angle_deg.sigma > wanted_angle_sigma_deg) {
-    finding.fail_because("the standard deviation of the angle is " + format_number(found.angle_deg.sigma, 3) +
-                         " deg, above " + format_number(wanted_angle_sigma_deg));
+  } else {
+    finding.require_sigma("angle", found.angle_deg.sigma, wanted_angle_sigma_deg, "deg");
   }
   if (found.aside_mm > most_aside_px * pixel_mm) {
     finding.warn_because("the print lies " + format_number(found.aside_mm, 3) +

@@ -50,12 +50,8 @@ Finding finding_of(const metrology::ResponseCurve& curve, const std::string& ins
   Json levels = Json::array();
   for (std::size_t i = 0; i < curve.grey.size(); ++i) {
     csv += format_number(curve.grey[i]) + "," + format_number(curve.intensity[i].value, 9) + "\n";
-    levels.push_back({{"grey", curve.grey[i]},
-                      {"value", curve.intensity[i].value},
-                      {"unit", "fraction of full"},
-                      {"sigma", curve.intensity[i].sigma},
-                      {"n", curve.intensity[i].n},
-                      {"method", "mean of the camera image, monotone"}});
+    levels.push_back(measured_json(curve.intensity[i], "fraction of full", "mean of the camera image, monotone"));
+    levels.back()["grey"] = curve.grey[i];
   }
   finding.facts["response"] = levels;
   finding.products.push_back({"response", ".csv", [csv](const std::string& path) { io::write_text(path, csv); }});

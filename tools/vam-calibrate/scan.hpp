@@ -153,6 +153,9 @@ class Finding {
  public:
   void value(const std::string& name, const stats::Measured& measured, const std::string& unit,
              const std::string& method);
+  /// Fails where a standard deviation is above the most that is allowed, both in `unit`.
+  void require_sigma(const std::string& of, double sigma, double most, const std::string& unit,
+                     const std::string& remedy = {});
   /// The result is used with a warning.
   void warn_because(const std::string& reason);
   /// The result must not be used.
@@ -172,6 +175,9 @@ class Finding {
   Json values_ = Json::object();
   std::vector<std::string> warnings_, failures_;
 };
+
+/// A value with its unit, sigma, n and method, as records have it.
+[[nodiscard]] Json measured_json(const stats::Measured& measured, const std::string& unit, const std::string& method);
 
 /// Writes the record with the hashes of the frames into calibration.folder; without a folder to stdout, products left
 /// out. Throws Fault::judged when it failed.
