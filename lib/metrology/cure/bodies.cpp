@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "base/compute/parallel.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/text/json.hpp"
+#include "model/dose/outside.hpp"
 
 namespace vam::metrology {
 
@@ -46,18 +47,14 @@ class Runs {
       runs_.insert(runs_.end(), row.begin(), row.end());
       starts_.push_back(runs_.size());
     }
-    parent_.resize(runs_.size());
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+    bodies_ = DisjointSets<>(runs_.size());
     for (int k = 0; k < grid_.nz; ++k) {
       for (int j = 0; j < grid_.ny; ++j) join_row(j, k);
     }
   }
 
   [[nodiscard]] std::size_t size() const { return runs_.size(); }
-  [[nodiscard]] std::size_t root(std::size_t run) {
-    while (parent_[run] != run) run = parent_[run] = parent_[parent_[run]];
-    return run;
-  }
+  [[nodiscard]] std::size_t root(std::size_t run) { return bodies_.of(run); }
   /// work(run index, run, j, k) for all.
   template <class Work>
   void each(const Work& work) const {
@@ -85,9 +82,8 @@ class Runs {
     std::size_t b = starts_[row_b];
     while (a < starts_[row_a + 1] && b < starts_[row_b + 1]) {
       if (runs_[a].first < runs_[b].last + reach_ && runs_[b].first < runs_[a].last + reach_) {
-        const std::size_t low = root(a);
-        const std::size_t high = root(b);
-        parent_[std::max(low, high)] = std::min(low, high);
+        const auto [low, high] = std::minmax({root(a), root(b)});
+        bodies_.join(low, high);
       }
       runs_[a].last < runs_[b].last ? ++a : ++b;
     }
@@ -97,7 +93,7 @@ class Runs {
   int reach_;
   std::vector<VoxelRun> runs_;
   std::vector<std::size_t> starts_;
-  std::vector<std::size_t> parent_;
+  DisjointSets<> bodies_{0};
 };
 
 struct Body {
@@ -148,18 +144,10 @@ double median_inside(const model::Volume& volume, double level) {
 
 Neighbourhood neighbourhood(const model::StretchedVolume& target, double margin_mm) {
   const model::Grid& g = target.volume.grid;
-  Neighbourhood box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-  Runs runs(target.volume, 0.5, true, 1);
-  if (runs.size() == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
-  runs.each([&](std::size_t, const VoxelRun& run, int j, int k) {
-    const double low[3] = {g.x_mm(run.first), g.y_mm(j), g.z_mm(k) / target.stretch_z};
-    const double high[3] = {g.x_mm(run.last - 1), low[1], low[2]};
-    for (std::size_t d = 0; d < 3; ++d) {
-      box.low[d] = std::min(box.low[d], low[d] - margin_mm);
-      box.high[d] = std::max(box.high[d], high[d] + margin_mm);
-    }
-  });
-  return box;
+  const auto [low, high] = model::covered_box(target.volume, std::nextafter(0.5F, 0.0F));
+  if (low[0] > high[0]) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
+  return {{g.x_mm(low[0]) - margin_mm, g.y_mm(low[1]) - margin_mm, g.z_mm(low[2]) / target.stretch_z - margin_mm},
+          {g.x_mm(high[0]) + margin_mm, g.y_mm(high[1]) + margin_mm, g.z_mm(high[2]) / target.stretch_z + margin_mm}};
 }
 
 BodyCount keep_bodies(model::Volume& volume, double level, const BodyRules& rules) {

@@ -10,6 +10,7 @@
 #include "base/index.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
+#include "model/dose/outside.hpp"
 
 namespace vam::metrology {
 
@@ -68,25 +69,15 @@ model::Volume PlannedDose::with(double axis_px) const {
 SensitivityField expected_sensitivity(const model::Volume& dose, const ScatterCurve& curve,
                                       const SensitivityPrior& prior) {
   const model::Grid& g = dose.grid;
-  std::array<double, 3> low{1e30, 1e30, 1e30};
-  std::array<double, 3> high{-1e30, -1e30, -1e30};
-  for (int k = 0; k < g.nz; ++k) {
-    for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) {
-        if (static_cast<double>(dose.slice(k)[flat_index(j, g.nx, i)]) < 0.5 * curve.critical_dose_mj_cm3) continue;
-        const std::array<double, 3> at{g.x_mm(i), g.y_mm(j), g.z_mm(k)};
-        for (int a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], at[a]);
-          high[a] = std::max(high[a], at[a]);
-        }
-      }
-    }
-  }
+  const auto half_critical = static_cast<float>(0.5 * curve.critical_dose_mj_cm3);
+  const auto [low, high] = model::covered_box(dose, std::nextafter(half_critical, 0.0F));
   if (low[0] > high[0]) throw Error{Fault::data, "no voxel has received half of the critical dose"};
   SensitivityField field;
   for (int a = 0; a < 3; ++a) {
-    field.centre_mm[a] = 0.5 * (low[a] + high[a]);
-    field.half_mm[a] = std::max(g.voxel_mm, 0.5 * (high[a] - low[a]));
+    const double first_mm = g.origin_mm[a] + g.voxel_mm * low[a];
+    const double last_mm = g.origin_mm[a] + g.voxel_mm * high[a];
+    field.centre_mm[a] = 0.5 * (first_mm + last_mm);
+    field.half_mm[a] = std::max(g.voxel_mm, 0.5 * (last_mm - first_mm));
   }
   field.covariance.assign(product(SensitivityField::numbers, SensitivityField::numbers), 0);
   for (int t = 0; t < SensitivityField::terms; ++t)

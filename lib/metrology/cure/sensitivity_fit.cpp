@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "metrology/cure/sensitivity.hpp"
+#include "model/dose/outside.hpp"
 #include "model/value_at.hpp"
 
 namespace vam::metrology {
@@ -59,37 +60,28 @@ Sight sight_of(const model::Volume& scatter, const model::Volume* sigma, const A
   const auto dose_at = [&](const model::Volume& volume, int i, int j, int k) {
     return model::value_at(volume, g.x_mm(i), g.y_mm(j), g.z_mm(k) * dose.stretch_z);
   };
-  const auto least = static_cast<float>(least_dose * curve.critical_dose_mj_cm3);
-  std::vector<std::array<int, 6>> of_slice(g.nz, {g.nx, g.ny, g.nz, 0, 0, 0});
+  model::Volume dose_here{g, std::vector<float>(g.size())};
   parallel_for(g.nz, [&](int k) {
+    float* to = dose_here.slice(k);
     for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) {
-        if (dose_at(dose.dose.middle(), i, j, k) < least) continue;
-        auto& box = of_slice[k];
-        box = {std::min(box[0], i), std::min(box[1], j), k, std::max(box[3], i + 1), std::max(box[4], j + 1), k + 1};
-      }
+      for (int i = 0; i < g.nx; ++i) *to++ = dose_at(dose.dose.middle(), i, j, k);
     }
   });
-  std::array<int, 6> box{g.nx, g.ny, g.nz, 0, 0, 0};
-  for (const auto& one : of_slice) {
-    for (int a = 0; a < 3; ++a) {
-      box[a] = std::min(box[a], one[a]);
-      box[a + 3] = std::max(box[a + 3], one[a + 3]);
-    }
-  }
-  if (box[3] <= box[0]) {
+  const auto least = static_cast<float>(least_dose * curve.critical_dose_mj_cm3);
+  model::VoxelBox box = model::covered_box(dose_here, std::nextafter(least, 0.0F));
+  if (box.low[0] > box.high[0]) {
     throw Error{Fault::data, "no voxel of the scattering volume has received a third of the critical dose"};
   }
   const std::array<int, 3> size{g.nx, g.ny, g.nz};
-  Sight sight;
-  std::array<int, 3> first{};
   for (int a = 0; a < 3; ++a) {
-    first[a] = std::max(0, box[a] - margin);
-    box[a + 3] = std::min(size[a], box[a + 3] + margin);
+    box.low[a] = std::max(0, box.low[a] - margin);
+    box.high[a] = std::min(size[a] - 1, box.high[a] + margin);
   }
-  sight.grid = {box[3] - first[0],
-                box[4] - first[1],
-                box[5] - first[2],
+  const auto& first = box.low;
+  Sight sight;
+  sight.grid = {box.high[0] - first[0] + 1,
+                box.high[1] - first[1] + 1,
+                box.high[2] - first[2] + 1,
                 g.voxel_mm,
                 {g.x_mm(first[0]), g.y_mm(first[1]), g.z_mm(first[2])}};
   const std::size_t n = sight.grid.size();
