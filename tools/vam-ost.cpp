@@ -18,7 +18,6 @@
 #include "session/printer.hpp"
 #include "vam-ost/print.hpp"
 #include "vam-ost/session.hpp"
-#include "vam-ost/usable_views.hpp"
 
 namespace {
 
@@ -130,8 +129,7 @@ void once(const cli::App& app, const Options& options) {
   ost_tool::Session session(app, options);
   ost_tool::Print print(app, options, session.printer().camera);
   io::ViewSource source(options.views, options.step_deg.value_or(0));
-  const std::vector<metrology::CameraView> views =
-      ost_tool::usable_views(session, source, io::input_name(options.views));
+  const std::vector<metrology::CameraView> views = session.usable_views(source, io::input_name(options.views));
   auto [made, problem] = session.attempt(views, source.pixel_mm());
   if (!made) throw Error{Fault::data, io::input_name(options.views) + ": " + problem};
   model::Volume& volume = *made;

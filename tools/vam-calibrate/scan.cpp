@@ -8,6 +8,8 @@
 #include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/printer_file.hpp"
+#include "metrology/cure/bodies.hpp"
+#include "session/surface.hpp"
 
 namespace vam::calibrate_tool {
 
@@ -23,6 +25,11 @@ std::optional<io::CalibrationRecord> usable_record(const model::Calibration& cal
 }
 
 }  // namespace
+
+model::TriangleSoup print_surface(const std::string& path, std::optional<double> isovalue) {
+  return session::read_surface(path, isovalue,
+                               [&](model::Volume& volume) { (void)metrology::keep_bodies(volume, *isovalue, {}); });
+}
 
 void run_scan(const cli::App& app, const std::string& command, Scan scan, ScanOptions& options) {
   options.command = command;

@@ -26,6 +26,10 @@ class Session {
 
   /// A frame as a view: its size checked, corrected, binned.
   metrology::CameraView take(io::CameraFrame frame, const metrology::Exposure& exposure);
+  /// All views of the source but those without contrast, saturated ones and those whose light failed, each with a
+  /// warning: the angles of the others are known. Throws Fault::data with the first reason where that is more than a
+  /// tenth of them.
+  [[nodiscard]] std::vector<metrology::CameraView> usable_views(io::ViewSource& source, const std::string& subject);
   /// Live: a turn may show nothing yet, or have gaps; the next one may be better. The axis is found as soon as
   /// something is visible, and again until it is certain.
   struct Attempt {

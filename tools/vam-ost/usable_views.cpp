@@ -1,31 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-ost/usable_views.hpp"
-
+// The views of a turn that can be measured.
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/log/log.hpp"
+#include "vam-ost/session.hpp"
 
 namespace vam::ost_tool {
 
-std::vector<metrology::CameraView> usable_views(Session& session, io::ViewSource& source, const std::string& subject) {
+std::vector<metrology::CameraView> Session::usable_views(io::ViewSource& source, const std::string& subject) {
   std::vector<metrology::CameraView> views;
   std::vector<std::string> names;
   std::vector<std::string> left_out;
-  const auto leave_out = [&](const std::string& name, const std::string& problem) {
-    left_out.push_back(name + ": " + problem);
-  };
   io::CameraFrame frame;
   while (source.next(frame)) {
     const metrology::Exposure exposure = metrology::exposure_of(frame.image);
     const std::string problem = exposure.problem();
     if (!problem.empty()) {
-      leave_out(frame.name, problem);
+      left_out.push_back(frame.name + ": " + problem);
       continue;
     }
     names.push_back(frame.name);
-    views.push_back(session.take(std::move(frame), exposure));
+    views.push_back(take(std::move(frame), exposure));
   }
   const std::vector<std::string> unlike = metrology::contrast_problems(views);
   std::vector<metrology::CameraView> usable;
@@ -33,7 +30,7 @@ std::vector<metrology::CameraView> usable_views(Session& session, io::ViewSource
     if (unlike[i].empty()) {
       usable.push_back(std::move(views[i]));
     } else {
-      leave_out(names[i], unlike[i]);
+      left_out.push_back(names[i] + ": " + unlike[i]);
     }
   }
   constexpr std::size_t one_of = 10;

@@ -25,10 +25,7 @@
 #include "solid/mesh/align.hpp"
 #include "solid/mesh/repair.hpp"
 #include "solid/mesh/signed_distance.hpp"
-#include "vam-sdf/figure_names.hpp"
-#include "vam-sdf/options.hpp"
-#include "vam-sdf/pose.hpp"
-#include "vam-sdf/regions.hpp"
+#include "vam-sdf/steps.hpp"
 
 namespace vam::sdf_tool {
 

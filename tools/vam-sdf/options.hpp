@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "cli/app.hpp"
-#include "metrology/cure/bodies.hpp"
-#include "model/mesh.hpp"
 
 namespace vam::sdf_tool {
 
@@ -62,20 +60,6 @@ struct TrendOptions {
   std::string plot;
   std::string report;
 };
-
-/// A print: without the bodies that are too small to belong to it (metrology::keep_bodies), which are counted; a mesh
-/// stays as it is.
-struct PrintSurface {
-  model::TriangleSoup mesh;
-  std::vector<float> uncertainty_mm;  // standard, of each vertex along the normal; empty: not known
-  double mm_per_isovalue = 0;         // how far the surface moves with the isovalue; 0: a mesh
-  std::optional<metrology::BodyCount> bodies;
-};
-[[nodiscard]] PrintSurface read_print(const cli::App& app, const Options& options, std::optional<double> isovalue);
-
-/// The deviation around the design's surface as a volume, for vam-slice --compensate. `print` is aligned.
-void write_deviation_volume(const cli::App& app, const Options& options, const model::TriangleSoup& print,
-                            const model::TriangleSoup& design, double rms_mm);
 
 /// Print against design.
 void deviation(const cli::App& app, const Options& options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-sdf/regions.hpp"
+#include "vam-sdf/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

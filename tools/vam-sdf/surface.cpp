@@ -8,7 +8,7 @@
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/surface_uncertainty.hpp"
 #include "model/metadata.hpp"
-#include "vam-sdf/options.hpp"
+#include "vam-sdf/steps.hpp"
 
 namespace vam::sdf_tool {
 

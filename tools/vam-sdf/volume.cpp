@@ -7,7 +7,7 @@
 #include "model/grid_size.hpp"
 #include "solid/mesh/repair.hpp"
 #include "solid/voxel/compensation.hpp"
-#include "vam-sdf/options.hpp"
+#include "vam-sdf/steps.hpp"
 
 namespace vam::sdf_tool {
 
