@@ -11,17 +11,14 @@
 #include "cli/app.hpp"
 #include "io/stream/file_type.hpp"
 #include "manual_page.hpp"
-#include "vam-calibrate/readings.hpp"
+#include "vam-calibrate/figures.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace {
 
 using namespace vam;
-using calibrate_tool::CriticalDoseOptions;
-using calibrate_tool::ResinOptions;
 using calibrate_tool::Scan;
 using calibrate_tool::ScanOptions;
-using calibrate_tool::WorkingCurveOptions;
 
 enum class Flips { none, optional, required };
 
@@ -114,15 +111,10 @@ void add_delays(cli::App& app, ScanOptions& o) {
            calibrate_tool::scan_latency, Flips::required);
 }
 
-/// A print that was measured: a mesh has no isovalue.
-void require_for_print(const cli::App& app, const std::string& print) {
-  if (!io::is_volume(print)) app.require_for("meshes", print);
-}
-
 void add_registration(cli::App& app, ScanOptions& o) {
   auto& scan =
       app.subcommand("registration", "height, angle and scale of the camera in the projector's frame", [&app, &o] {
-        require_for_print(app, o.from);
+        if (!io::is_volume(o.from)) app.require_for("meshes", o.from);
         run_scan(app, "registration", calibrate_tool::scan_registration, o);
       });
   scan.positional("PRINT", o.from,
@@ -148,80 +140,7 @@ void add_check(cli::App& app, ScanOptions& o) {
   cli::add_printer(check, o.printer);
 }
 
-void add_resin(cli::App& app, ResinOptions& o) {
-  auto& resin =
-      app.subcommand("resin", "gelation threshold, from a printed standard cylinder", [&o] { measure_resin(o); });
-  resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).").reads();
-  resin.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
-  resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.")
-      .required_without("--profile");
-  resin
-      .option("--profile", "FILE.png", o.profile,
-              "Height image of the standard from a profilometer, to measure its diameter.")
-      .reads()
-      .form()
-      .excludes({"--diameter"});
-  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.")
-      .only_with({"--profile"});
-}
-
-void add_working_curve(cli::App& app, WorkingCurveOptions& o) {
-  auto& curve = app.subcommand("working-curve", "scattering against dose and its delay, from a staircase of doses",
-                               [&o] { measure_working_curve(o); });
-  curve.positional("SCATTER", o.scatter, "Folder of volumes of vam-ost --live, or one volume (VDB).").reads();
-  curve.option("--dose", "FILE.vdb", o.dose, "Dose of the staircase in mJ/cm3 (vam-dose).").reads().required();
-  curve.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
-  curve.option("--lit-from", "TURNS", o.lit_from_turn, {-1e6, 1e6}, "Turns of the views before the light came on.");
-  curve.option("--lit-turns", "TURNS", o.lit_turns, cli::positive, "Turns with light.")
-      .default_is("those of the dose, if it states them, for one volume; all for a folder");
-  curve.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.")
-      .default_is("half of the saturation");
-  curve.option("--classes", "N", o.classes, {4, 256}, "Classes of dose.");
-}
-
-void add_critical_dose(cli::App& app, CriticalDoseOptions& o) {
-  auto& critical =
-      app.subcommand("critical-dose", "dose with which the resin gels at the surface of a print", [&app, &o] {
-        require_for_print(app, o.print);
-        measure_critical_dose(app, o);
-      });
-  critical
-      .positional(
-          "PRINT", o.print,
-          "Mesh of the print in the part's frame (vam-ost --mesh, vam-sdf -o), or a volume (VDB) with --isovalue.")
-      .reads();
-  critical
-      .option("--dose", "FILE.vdb", o.dose,
-              "Dose that the print was given, in mJ/cm3 (vam-dose --shown or --exposure-plan), or that of a turn.")
-      .reads()
-      .required();
-  critical.option("--turns", "N", o.turns, cli::positive, "Turns at full intensity, where the dose is that of one.")
-      .default_is("as the dose states")
-      .not_for({"doses that state their turns"});
-  critical
-      .option(
-          "--design", "FILE", o.design,
-          "Mesh of the design in the part's frame, or volume of vam-slice: also find the critical dose that makes the "
-          "next print as large as the design.")
-      .reads()
-      .only_with({"resin.critical_dose_mj_cm3"});
-  critical.option("-o,--output", "FILE.json", o.record, "Report; - is standard output.");
-  critical.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Value of the volume at the print's surface.")
-      .default_is("required for a volume")
-      .not_for({"meshes"});
-  cli::add_printer(critical, o.printer);
-}
-
-/// What the commands read.
-struct AllOptions {
-  ScanOptions scan;
-  ResinOptions resin;
-  WorkingCurveOptions curve;
-  CriticalDoseOptions critical;
-};
-
-void declare(cli::App& app, AllOptions& all) {
-  ScanOptions& o = all.scan;
+void declare(cli::App& app, ScanOptions& o) {
   add_edges(app, o);
   add_response(app, o);
   add_flat(app, o);
@@ -230,9 +149,9 @@ void declare(cli::App& app, AllOptions& all) {
   add_delays(app, o);
   add_registration(app, o);
   add_check(app, o);
-  add_resin(app, all.resin);
-  add_working_curve(app, all.curve);
-  add_critical_dose(app, all.critical);
+  calibrate_tool::add_resin(app);
+  calibrate_tool::add_working_curve(app);
+  calibrate_tool::add_critical_dose(app);
   calibrate_tool::add_photodiode(app);
   calibrate_tool::add_cure_depth(app);
 }
@@ -257,7 +176,7 @@ int main(int argc, char** argv) {
                 "measure the instrument and write calibration records",
                 manual_page,
                 {{1, "A result does not meet its requirements and is not put in force."}}});
-  AllOptions all_options;
-  declare(app, all_options);
+  ScanOptions options;
+  declare(app, options);
   return app.run(argc, argv);
 }

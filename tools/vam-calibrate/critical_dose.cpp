@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate critical-dose: the dose with which the resin gels at the surface of a print.
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
+#include "cli/common.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/file_type.hpp"
 #include "metrology/compare/surface_dose.hpp"
 #include "model/metadata.hpp"
 #include "session/printer.hpp"
 #include "session/surface.hpp"
 #include "session/volumes.hpp"
+#include "vam-calibrate/figures.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -20,9 +25,43 @@ namespace {
 constexpr double design_isovalue = 0.5;  // of coverage
 constexpr double most_spread = 0.2;      // of the dose
 
-}  // namespace
+struct CriticalDoseOptions {
+  std::string print;
+  std::string dose;
+  std::string design;  // none: only the dose at the print's surface
+  std::optional<double> turns;
+  std::string record = "-";
+  std::optional<double> isovalue;
+  cli::PrinterOptions printer;
+};
 
-void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& options) {
+void declare(cli::App& app, CriticalDoseOptions& options) {
+  app.positional(
+         "PRINT", options.print,
+         "Mesh of the print in the part's frame (vam-ost --mesh, vam-sdf -o), or a volume (VDB) with --isovalue.")
+      .reads();
+  app.option("--dose", "FILE.vdb", options.dose,
+             "Dose that the print was given, in mJ/cm3 (vam-dose --shown or --exposure-plan), or that of a turn.")
+      .reads()
+      .required();
+  app.option("--turns", "N", options.turns, cli::positive, "Turns at full intensity, where the dose is that of one.")
+      .default_is("as the dose states")
+      .not_for({"doses that state their turns"});
+  app.option(
+         "--design", "FILE", options.design,
+         "Mesh of the design in the part's frame, or volume of vam-slice: also find the critical dose that makes the "
+         "next print as large as the design.")
+      .reads()
+      .only_with({"resin.critical_dose_mj_cm3"});
+  app.option("-o,--output", "FILE.json", options.record, "Report; - is standard output.");
+  app.option("--isovalue", "VALUE", options.isovalue, cli::positive, "Value of the volume at the print's surface.")
+      .default_is("required for a volume")
+      .not_for({"meshes"});
+  cli::add_printer(app, options.printer);
+}
+
+void run(const cli::App& app, CriticalDoseOptions& options) {
+  if (!io::is_volume(options.print)) app.require_for("meshes", options.print);
   const io::SparseVolume sparse = session::read_dose(options.dose);
   const model::Printer printer = session::printer_of(options.printer, sparse.metadata, options.dose);
   const bool total = model::stated_number(sparse.metadata, "vam:full_intensity_turns").has_value();
@@ -56,6 +95,13 @@ void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& optio
                                    " of " + format_number(middle, 3) +
                                    " mJ/cm3, so that it is no surface of this dose; check how the print is aligned"};
   }
+}
+
+}  // namespace
+
+void add_critical_dose(cli::App& app) {
+  app.subcommand<CriticalDoseOptions>("critical-dose", "dose with which the resin gels at the surface of a print",
+                                      declare, run);
 }
 
 }  // namespace vam::calibrate_tool

@@ -16,7 +16,7 @@
 #include "plot/plot.hpp"
 #include "plot/save.hpp"
 #include "resin/working_curve.hpp"
-#include "vam-calibrate/readings.hpp"
+#include "vam-calibrate/figures.hpp"
 
 namespace vam::calibrate_tool {
 

@@ -14,7 +14,7 @@
 #include "plot/save.hpp"
 #include "resin/response.hpp"
 #include "resin/response_fit.hpp"
-#include "vam-calibrate/readings.hpp"
+#include "vam-calibrate/figures.hpp"
 
 namespace vam::calibrate_tool {
 

@@ -40,52 +40,11 @@ struct ScanOptions {
   cli::PrinterOptions printer;
 };
 
-/// resin: the standard's scattering volume and its size.
-struct ResinOptions {
-  std::string scatter = "-";
-  std::string record = "-";
-  std::string profile;
-  std::optional<double> diameter_mm;
-  double profile_pixel_mm = 0.05;
-};
-
-/// working-curve: volumes of a staircase of doses, and the doses.
-struct WorkingCurveOptions {
-  std::string scatter;
-  std::string dose;
-  std::string record = "-";
-  double lit_from_turn = 0;
-  std::optional<double> lit_turns;
-  std::optional<double> isovalue;
-  int classes = 16;
-};
-
-/// critical-dose: a print that was measured, and the dose that it was given.
-struct CriticalDoseOptions {
-  std::string print;
-  std::string dose;
-  std::string design;  // none: only the dose at the print's surface
-  std::optional<double> turns;
-  std::string record = "-";
-  std::optional<double> isovalue;
-  cli::PrinterOptions printer;
-};
-
 class Finding;
 using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
 
 /// Keeps what the scan finds as its record. Throws as the scan does, Fault::judged when its result must not be used.
 void run_scan(const cli::App& app, const std::string& command, Scan scan, ScanOptions& options);
-
-/// Writes the gelation threshold as a resin record. Throws Error: usage, no_input, data, no_output.
-void measure_resin(const ResinOptions& options);
-
-/// Writes scattering against dose as a resin record. Throws Error: usage, no_input, data, no_output.
-void measure_working_curve(const WorkingCurveOptions& options);
-
-/// Writes the dose at the surface of a print. Throws Error: usage, no_input, data, no_output; judged where the surface
-/// does not follow the dose.
-void measure_critical_dose(const cli::App& app, const CriticalDoseOptions& options);
 
 // ---- frames.cpp: which pattern frame each camera frame shows
 

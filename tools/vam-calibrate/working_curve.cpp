@@ -2,6 +2,7 @@
 // vam-calibrate working-curve: what of the dose scatters, and when, from volumes of a staircase of doses.
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,13 +14,35 @@
 #include "metrology/cure/curing_curve.hpp"
 #include "model/metadata.hpp"
 #include "session/volumes.hpp"
-#include "vam-calibrate/scan.hpp"
+#include "vam-calibrate/figures.hpp"
 
 namespace vam::calibrate_tool {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+struct WorkingCurveOptions {
+  std::string scatter;
+  std::string dose;
+  std::string record = "-";
+  double lit_from_turn = 0;
+  std::optional<double> lit_turns;
+  std::optional<double> isovalue;
+  int classes = 16;
+};
+
+void declare(cli::App& app, WorkingCurveOptions& options) {
+  app.positional("SCATTER", options.scatter, "Folder of volumes of vam-ost --live, or one volume (VDB).").reads();
+  app.option("--dose", "FILE.vdb", options.dose, "Dose of the staircase in mJ/cm3 (vam-dose).").reads().required();
+  app.option("-o,--output", "FILE.json", options.record, "Record for --resin; - is standard output.");
+  app.option("--lit-from", "TURNS", options.lit_from_turn, {-1e6, 1e6}, "Turns of the views before the light came on.");
+  app.option("--lit-turns", "TURNS", options.lit_turns, cli::positive, "Turns with light.")
+      .default_is("those of the dose, if it states them, for one volume; all for a folder");
+  app.option("--isovalue", "VALUE", options.isovalue, cli::positive, "Gelation threshold I_p.")
+      .default_is("half of the saturation");
+  app.option("--classes", "N", options.classes, {4, 256}, "Classes of dose.");
+}
 
 /// The dose of one turn, and where it is in the print.
 struct TurnDose {
@@ -50,9 +73,7 @@ std::vector<std::string> volumes_of(const std::string& path) {
   return files;
 }
 
-}  // namespace
-
-void measure_working_curve(const WorkingCurveOptions& options) {
+void run(const cli::App& /*app*/, WorkingCurveOptions& options) {
   const TurnDose dose = read_dose(options.dose);
   const std::vector<std::string> files = volumes_of(options.scatter);
   constexpr double for_ever = 1e9;
@@ -74,6 +95,13 @@ void measure_working_curve(const WorkingCurveOptions& options) {
   Json figures = to_json(metrology::fit_curing_curve(readings, lit_turns, options.isovalue), stats::median(turn_s));
   figures["volumes"] = files.size();
   io::write_report(options.record, "vam-working-curve", figures);
+}
+
+}  // namespace
+
+void add_working_curve(cli::App& app) {
+  app.subcommand<WorkingCurveOptions>("working-curve",
+                                      "scattering against dose and its delay, from a staircase of doses", declare, run);
 }
 
 }  // namespace vam::calibrate_tool

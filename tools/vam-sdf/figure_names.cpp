@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-sdf/steps.hpp"
-
 #include <utility>
+
+#include "vam-sdf/steps.hpp"
 
 namespace vam::sdf_tool {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-sdf/steps.hpp"
-
 #include <algorithm>
 #include <array>
 
@@ -8,6 +6,7 @@
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
 #include "metrology/compare/datum.hpp"
+#include "vam-sdf/steps.hpp"
 
 namespace vam::sdf_tool {
 

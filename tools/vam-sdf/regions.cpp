@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-sdf/steps.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,6 +8,7 @@
 #include "base/text/text.hpp"
 #include "session/surface.hpp"
 #include "solid/mesh/signed_distance.hpp"
+#include "vam-sdf/steps.hpp"
 
 namespace vam::sdf_tool {
 

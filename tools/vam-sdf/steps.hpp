@@ -19,8 +19,8 @@ struct Toleranced {
   std::vector<metrology::Region> regions;  // each with its own tolerance, or that of the whole print
 };
 
-/// --region and --tolerance; the faces of regions are read. Throws Fault::usage when a name is given twice or not at all,
-/// or a tolerance is not a length above 0.
+/// --region and --tolerance; the faces of regions are read. Throws Fault::usage when a name is given twice or not at
+/// all, or a tolerance is not a length above 0.
 [[nodiscard]] Toleranced read_regions(const Options& options);
 
 /// Names of figures in conditions and messages: "rms", ..., and "top.flatness" of every region.

@@ -21,7 +21,8 @@ template <class Number>
   return static_cast<double>(*middle);
 }
 
-/// Standard deviation about `centre` by the median of the distances from it: outliers hardly count. There must be a value.
+/// Standard deviation about `centre` by the median of the distances from it: outliers hardly count. There must be a
+/// value.
 template <class Number>
 [[nodiscard]] double robust_sigma(std::vector<Number> values, Number centre = 0) {
   for (Number& value : values) value = std::abs(value - centre);

@@ -144,9 +144,9 @@ Normal normal_of(const Image& image, double column, const Bound& bound) {
   return normal;
 }
 
-// Variances of column and tilt by how much ranges of rows and of offsets disagree: what is the same in all rows or at all
-// offsets errs alike. Both, less what both count; wider where few of them pull. The largest of those of narrow and wide
-// ranges: the trail of a bubble that drifts crosses many narrow ones, and errs alike in all of them.
+// Variances of column and tilt by how much ranges of rows and of offsets disagree: what is the same in all rows or at
+// all offsets errs alike. Both, less what both count; wider where few of them pull. The largest of those of narrow and
+// wide ranges: the trail of a bubble that drifts crosses many narrow ones, and errs alike in all of them.
 Pull disagreement(const Normal& n, double cc, double tt, double left) {
   Pull most{};
   for (const std::size_t merged : {1, 2, 4}) {

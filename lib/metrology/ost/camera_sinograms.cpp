@@ -28,8 +28,7 @@ void undo_motion(std::vector<Image>& level, std::span<const ColumnMotion> motion
     if (motion[i].shift_px == 0 && motion[i].stretch == 0) return;
     Image& image = level[i];
     std::vector<FourTaps> taps;
-    for (int x = 0; x < image.width; ++x)
-      taps.push_back(four_taps(x + motion[i].at(x - axis_column), image.width));
+    for (int x = 0; x < image.width; ++x) taps.push_back(four_taps(x + motion[i].at(x - axis_column), image.width));
     std::vector<float> from(image.width);
     for (int k = 0; k < image.height; ++k) {
       float* to = image.row(k);

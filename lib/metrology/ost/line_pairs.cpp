@@ -124,8 +124,8 @@ Vector times(const Matrix& m, const Vector& v) {
 }
 
 // Variances by how much ranges of lines disagree: those of angle, and those of offset, as structures that turn with the
-// part err alike over a whole range. Both, less what both count; wider where few of the narrow ones pull. The largest of
-// those of narrow and wide ranges: bubbles drift through many narrow ones, and err alike in all of them.
+// part err alike over a whole range. Both, less what both count; wider where few of the narrow ones pull. The largest
+// of those of narrow and wide ranges: bubbles drift through many narrow ones, and err alike in all of them.
 Vector variances(const Sums& sums, const Matrix& inverse) {
   Vector most{};
   for (const std::size_t merged : {1, 2, 4}) {
