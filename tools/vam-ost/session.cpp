@@ -222,8 +222,8 @@ void Session::say_axis() const {
        format_number(axis_.pose.tilt_rad * deg_per_rad, 3) + " +- " +
        format_number(axis_.tilt_sigma_rad * deg_per_rad, 2) + " deg");
   if (run_out_.seen()) {
-    note("run-out of the vial " + format_number(run_out_.size_mm(), 3) + " +- " +
-         format_number(run_out_.size_sigma_mm(), 2) + " mm, removed");
+    note("run-out of the vial " + format_number(run_out_.size_mm(), 3) + " +- " + format_number(run_out_.sigma_mm, 2) +
+         " mm, removed");
   } else if (!run_out_.determined && !options_.keep_run_out && !options_.no_refraction && !run_out_.absorbs()) {
     const std::string line =
         "the run-out of the vial is not determined by these views and none is removed; clean window and resin, or give "

@@ -82,9 +82,8 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   // columns and angles, up to 0.025 columns of ideal views.
   constexpr double left_mm2 = 0.1;
   constexpr double left_columns = 0.02;
-  const double sigma_mm = std::hypot(unit_mm * std::hypot(fit.sigma[1], fit.sigma[2]) / std::numbers::sqrt2,
-                                     left_mm2 * s.absorption_per_mm, left_columns * unit_mm);
-  found.sigma_mm = {sigma_mm, sigma_mm};
+  found.sigma_mm = std::hypot(unit_mm * std::hypot(fit.sigma[1], fit.sigma[2]) / std::numbers::sqrt2,
+                              left_mm2 * s.absorption_per_mm, left_columns * unit_mm);
   found.column = s.axis.column + fit.value[0];
   found.column_sigma = fit.sigma[0];
   const bool is_given = s.absorption_per_mm > 0;
@@ -101,15 +100,9 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
 
 double RunOut::size_mm() const { return std::hypot(mm[0], mm[1]); }
 
-double RunOut::size_sigma_mm() const {
-  const double size = size_mm();
-  if (size == 0) return std::hypot(sigma_mm[0], sigma_mm[1]) / std::sqrt(2.0);
-  return std::hypot(mm[0] * sigma_mm[0], mm[1] * sigma_mm[1]) / size;
-}
-
 bool RunOut::seen() const {
   constexpr double sigmas = 3.44;  // of two components: as rarely exceeded by chance as 3 by one
-  return determined && size_mm() > sigmas * size_sigma_mm();
+  return determined && size_mm() > sigmas * sigma_mm;
 }
 
 bool RunOut::absorbs() const {
@@ -120,12 +113,8 @@ bool RunOut::absorbs() const {
 
 Json to_json(const RunOut& found) {
   if (!found.determined) return nullptr;
-  return {{"x_mm", found.mm[0]},
-          {"y_mm", found.mm[1]},
-          {"x_sigma_mm", found.sigma_mm[0]},
-          {"y_sigma_mm", found.sigma_mm[1]},
-          {"size_mm", found.size_mm()},
-          {"size_sigma_mm", found.size_sigma_mm()},
+  return {{"x_mm", found.mm[0]},          {"y_mm", found.mm[1]},        {"x_sigma_mm", found.sigma_mm},
+          {"y_sigma_mm", found.sigma_mm}, {"size_mm", found.size_mm()}, {"size_sigma_mm", found.sigma_mm},
           {"removed", found.seen()}};
 }
 

@@ -15,15 +15,14 @@ using RunOutVector = std::array<double, 2>;
 struct RunOut {
   bool determined = false;  // the rest is without meaning when it is not
   RunOutVector mm{};
-  RunOutVector sigma_mm{};
-  double column = 0;  // of the stage's axis, found together with it
+  double sigma_mm = 0;  // in any direction
+  double column = 0;    // of the stage's axis, found together with it
   double column_sigma = 0;
   /// Absorption of the scattered light, fitted where none is given; where it is seen, run-out is not determined.
   double absorption_per_mm = 0;
   double absorption_sigma_per_mm = 0;
 
   [[nodiscard]] double size_mm() const;
-  [[nodiscard]] double size_sigma_mm() const;  // along its direction, or of a part where the size is 0
   /// Farther from 0 than chance takes one of 370.
   [[nodiscard]] bool seen() const;
   /// The scattered light is absorbed by more than chance makes it seem in one of 740 cases, and enough to matter.

@@ -94,7 +94,7 @@ TEST_CASE("run-out and axis deviate from the truth by as much as their standard 
     const RunOut found = found_in(bench, views, axis.pose);
     REQUIRE(found.determined);
     for (std::size_t i = 0; i < 2; ++i) {
-      run_out.add(found.mm[i] - bench.run_out_mm[i], found.sigma_mm[i]);
+      run_out.add(found.mm[i] - bench.run_out_mm[i], found.sigma_mm);
       worst_mm = std::max(worst_mm, std::abs(found.mm[i] - bench.run_out_mm[i]));
     }
     with_run_out.add(found.column - bench.axis_column, found.column_sigma);
@@ -133,7 +133,7 @@ TEST_CASE("a clean cylinder beside the axis has no run-out") {
     oracle::ViewBench bench = coarse_bench();
     bench.lens_mm = lens_mm;
     const RunOut found = found_in(bench, seen(bench, cylinder, 0, 1), {bench.axis_column, 0});
-    MESSAGE("run-out ", found.mm[0], " ", found.mm[1], " +- ", found.sigma_mm[0], " mm");
+    MESSAGE("run-out ", found.mm[0], " ", found.mm[1], " +- ", found.sigma_mm, " mm");
     CHECK(found.determined);
     CHECK(!found.seen());
     CHECK(found.size_mm() < 0.02 * bench.pixel_mm);  // blurred along the columns alone a tenth of a pixel of 0.05 mm
@@ -157,7 +157,7 @@ TEST_CASE("a run-out of 0.1 mm is seen, and a print without it is as it is") {
     const auto views = seen(bench, post, 0, 1, 120);
     const AxisEstimate axis = find_axis(mean_view(views));
     const RunOut found = found_in(bench, views, axis.pose);
-    MESSAGE("run-out ", found.mm[0], " ", found.mm[1], " +- ", found.sigma_mm[0], " mm");
+    MESSAGE("run-out ", found.mm[0], " ", found.mm[1], " +- ", found.sigma_mm, " mm");
     CHECK(found.seen());
     CHECK(std::abs(found.size_mm() - 0.1) < 0.01);
     const auto rms_mm = [&](RunOutVector run_out, double column) {
@@ -203,7 +203,7 @@ TEST_CASE("where bubbles pass, run-out and axis deviate by as much as their stan
     worst_px = std::max(worst_px, std::abs(axis.pose.column - bench.axis_column));
     const RunOut found = found_in(bench, views, axis.pose);
     if (!found.determined) continue;
-    for (std::size_t i = 0; i < 2; ++i) run_out.add(found.mm[i] - bench.run_out_mm[i], found.sigma_mm[i]);
+    for (std::size_t i = 0; i < 2; ++i) run_out.add(found.mm[i] - bench.run_out_mm[i], found.sigma_mm);
   }
   MESSAGE("normalised deviations: run-out ", run_out.rms(), " of ", run_out.count, ", column ", column.rms(), ", tilt ",
           tilt.rms(), "; worst column off by ", worst_px, " px");
@@ -236,9 +236,9 @@ TEST_CASE("bubbles that turn with the vial are no run-out") {
     const auto pixels = oracle::bench_views(bench, part, bubbles, 180);
     const std::vector<CameraView> views = views_of(bench, pixels);
     const RunOut found = found_in(bench, views, {bench.axis_column, 0});
-    MESSAGE("run-out ", found.size_mm(), " +- ", found.size_sigma_mm(), " mm, determined: ", found.determined);
+    MESSAGE("run-out ", found.size_mm(), " +- ", found.sigma_mm, " mm, determined: ", found.determined);
     CHECK(!found.seen());
-    pulled += !found.determined && found.size_mm() > 3.44 * found.size_sigma_mm() ? 1 : 0;
+    pulled += !found.determined && found.size_mm() > 3.44 * found.sigma_mm ? 1 : 0;
   }
   CHECK(pulled > 0);  // the fit alone would have been believed
 }
@@ -283,8 +283,8 @@ TEST_CASE("where the absorption is given the run-out is found beside it, and non
       };
       const RunOut none = found_at(0, 0);
       const RunOut some = found_at(0.16, -0.12);
-      MESSAGE("without it ", none.size_mm(), " +- ", none.size_sigma_mm(), " mm, with it ", some.mm[0], " ", some.mm[1],
-              " +- ", some.size_sigma_mm(), " mm");
+      MESSAGE("without it ", none.size_mm(), " +- ", none.sigma_mm, " mm, with it ", some.mm[0], " ", some.mm[1],
+              " +- ", some.sigma_mm, " mm");
       CHECK(!none.seen());
       CHECK(some.seen());
       CHECK(std::hypot(some.mm[0] - 0.16, some.mm[1] + 0.12) < 0.04);
@@ -310,8 +310,8 @@ TEST_CASE("specks in the window of a bath do not hide the run-out, nor are they 
     };
     const RunOut none = found_at(0);
     const RunOut some = found_at(0.2);
-    MESSAGE("without it ", none.size_mm(), " +- ", none.size_sigma_mm(), " mm, with it ", some.mm[0], " ", some.mm[1],
-            " +- ", some.size_sigma_mm(), " mm");
+    MESSAGE("without it ", none.size_mm(), " +- ", none.sigma_mm, " mm, with it ", some.mm[0], " ", some.mm[1], " +- ",
+            some.sigma_mm, " mm");
     CHECK(none.determined);
     CHECK(!none.seen());
     CHECK(some.determined);
