@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
 #include "base/constants.hpp"
@@ -18,14 +17,6 @@ namespace vam::metrology {
 
 namespace {
 
-using outline::bilinear;
-using outline::distance_to;
-using outline::fit;
-using outline::middle_of;
-using outline::Outline;
-using outline::OutlinePoint;
-using outline::Similar;
-
 // Heights above the base; the base itself where there is no material.
 struct Design {
   Image above_base_mm;
@@ -35,16 +26,13 @@ struct Design {
 };
 
 Design design_of(const solid::HeightMap& map) {
-  std::vector<float> heights;
-  std::copy_if(map.heights_mm.values.begin(), map.heights_mm.values.end(), std::back_inserter(heights),
-               [](float h) { return std::isfinite(h); });
-  const auto found = plateaus(heights);
+  const auto found = plateaus(map.heights_mm.values);
   if (!found) throw Error{Fault::data, "design: flat, no embossing; include the base plate"};
   Design design{map.heights_mm, map.pixel_mm, found->top_mm - found->base_mm, {}};
   for (float& h : design.above_base_mm.values) h = std::isnan(h) ? 0.0F : h - static_cast<float>(found->base_mm);
   const Image& image = design.above_base_mm;
   const auto half = static_cast<float>(0.5 * design.height_mm);
-  const OutlinePoint middle = middle_of(image);
+  const OutlinePoint middle = image_middle(image);
   const auto add = [&](int i, int j, int di, int dj) {
     const float from = image(i, j);
     const float to = image(i + di, j + dj);
@@ -62,7 +50,7 @@ Design design_of(const solid::HeightMap& map) {
 }
 
 OutlinePoint centroid_above(const Image& image, double pixel_mm, float level) {
-  const OutlinePoint middle = middle_of(image);
+  const OutlinePoint middle = image_middle(image);
   OutlinePoint sum;
   double count = 0;
   for (int j = 0; j < image.height; ++j) {
@@ -93,20 +81,20 @@ Similar place(const Design& design, const Relief& print, const Outline& outline,
     const OutlinePoint there = start(from);
     start.x = to.x - there.x;
     start.y = to.y - there.y;
-    const Similar found = fit(few, outline, start, 30);
+    const Similar found = fit_outline(few, outline, start, 30);
     const double rms = outline.rms(few, found);
     const double size = std::hypot(found.a, found.b);
     if (size < 0.5 || size > 2 || rms > 0.98 * best_rms) continue;  // of symmetric places the one with the least turn
     best = found;
     best_rms = rms;
   }
-  return fit(design.outline, outline, best, 50);
+  return fit_outline(design.outline, outline, best, 50);
 }
 
 Image placed(const Design& design, const Similar& pose, const Relief& print) {
   Image image(print.heights_mm.width, print.heights_mm.height);
-  const OutlinePoint middle = middle_of(image);
-  const OutlinePoint design_middle = middle_of(design.above_base_mm);
+  const OutlinePoint middle = image_middle(image);
+  const OutlinePoint design_middle = image_middle(design.above_base_mm);
   for (int j = 0; j < image.height; ++j) {
     for (int i = 0; i < image.width; ++i) {
       const OutlinePoint p = pose.inverse({(i - middle.x) * print.pixel_mm, (middle.y - j) * print.pixel_mm});

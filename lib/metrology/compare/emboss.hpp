@@ -22,12 +22,12 @@ struct Relief {
 };
 
 /// The medians of what lies below and above Otsu's threshold. Nothing where they are less than four spreads of the base
-/// apart: noise alone, cut in two, is 2.4 apart.
+/// apart: noise alone, cut in two, is 2.4 apart. Heights that are not a number are gaps.
 struct Plateaus {
   double base_mm = 0;
   double top_mm = 0;
 };
-[[nodiscard]] std::optional<Plateaus> plateaus(const std::vector<float>& heights_mm);
+[[nodiscard]] std::optional<Plateaus> plateaus(std::vector<float> heights_mm);
 
 /// Takes off the plane through the base: what lies below Otsu's threshold, found and fitted in turns, at last without
 /// what departs by more than 2.5 robust standard deviations: sides, dents and crumbs. Heights that are

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace vam::metrology::outline {
+namespace vam::metrology {
 
-OutlinePoint middle_of(const Image& image) { return {0.5 * (image.width - 1), 0.5 * (image.height - 1)}; }
+OutlinePoint image_middle(const Image& image) { return {0.5 * (image.width - 1), 0.5 * (image.height - 1)}; }
 
 float bilinear(const Image& image, double column, double row) {
   const double x = std::clamp(column, 0.0, image.width - 1.001);
@@ -61,7 +61,7 @@ Outline::Outline(const Relief& print)
     : distance_(distance_to(print.heights_mm, static_cast<float>(0.5 * print.plateau_mm))),
       judged_(judged(print)),
       pixel_mm_(print.pixel_mm),
-      middle_(middle_of(distance_)) {}
+      middle_(image_middle(distance_)) {}
 
 double Outline::distance(const OutlinePoint& p) const {
   return pixel_mm_ * static_cast<double>(bilinear(distance_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_));
@@ -88,7 +88,7 @@ double Outline::rms(const std::vector<OutlinePoint>& points, const Similar& pose
   return count > 0 ? std::sqrt(sum / count) : 1e300;
 }
 
-Similar fit(const std::vector<OutlinePoint>& points, const Outline& outline, Similar pose, int steps) {
+Similar fit_outline(const std::vector<OutlinePoint>& points, const Outline& outline, Similar pose, int steps) {
   double reach = 1e-9;
   for (const OutlinePoint& p : points) reach = std::max(reach, std::hypot(p.x, p.y));
   for (int step = 0; step < steps; ++step) {
@@ -116,4 +116,4 @@ Similar fit(const std::vector<OutlinePoint>& points, const Outline& outline, Sim
   return pose;
 }
 
-}  // namespace vam::metrology::outline
+}  // namespace vam::metrology

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
@@ -77,11 +78,9 @@ double plane_at(const BasePlane& plane, const Image& image, int i, int j) {
          plane.per_row * (j - 0.5 * (image.height - 1));
 }
 
-std::vector<float> readings(const Image& image) {
-  std::vector<float> values;
-  std::copy_if(image.values.begin(), image.values.end(), std::back_inserter(values),
-               [](float v) { return std::isfinite(v); });
-  return values;
+std::vector<float> readings(std::vector<float> heights) {
+  std::erase_if(heights, [](float h) { return !std::isfinite(h); });
+  return heights;
 }
 
 Image without(const BasePlane& plane, const Image& heights) {
@@ -124,7 +123,7 @@ void fill_gaps(Image& heights) {
 BasePlane trimmed_base(const Image& heights, BasePlane base, double limit) {
   constexpr int rounds = 8;
   for (int round = 0; round < rounds; ++round) {
-    std::vector<float> residuals = readings(without(base, heights));
+    std::vector<float> residuals = readings(without(base, heights).values);
     std::erase_if(residuals, [&](float h) { return !(static_cast<double>(h) < limit); });
     if (residuals.empty()) return base;
     const double middle = stats::median(residuals);
@@ -137,7 +136,8 @@ BasePlane trimmed_base(const Image& heights, BasePlane base, double limit) {
 
 }  // namespace
 
-std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
+std::optional<Plateaus> plateaus(std::vector<float> heights) {
+  heights = readings(std::move(heights));
   if (heights.empty()) return std::nullopt;
   const double limit = otsu(heights);
   std::vector<float> base;
@@ -152,7 +152,7 @@ std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
 }
 
 Relief levelled(const Image& heights_mm, double pixel_mm) {
-  const std::vector<float> values = readings(heights_mm);
+  const std::vector<float> values = readings(heights_mm.values);
   if (static_cast<double>(values.size()) < 0.1 * static_cast<double>(heights_mm.size())) {
     throw Error{Fault::data, "height image: only " + std::to_string(values.size()) + " of " +
                                  std::to_string(heights_mm.size()) + " pixels are readings"};
@@ -160,7 +160,7 @@ Relief levelled(const Image& heights_mm, double pixel_mm) {
   BasePlane base = fit_plane(heights_mm, [](int, int, double) { return true; });
   double limit = 0;
   for (int round = 0; round < 12; ++round) {
-    limit = otsu(readings(without(base, heights_mm)));
+    limit = otsu(readings(without(base, heights_mm).values));
     base = fit_plane(heights_mm, [&](int i, int j, double h) { return h - plane_at(base, heights_mm, i, j) < limit; });
   }
   base = trimmed_base(heights_mm, base, limit);
@@ -172,7 +172,7 @@ Relief levelled(const Image& heights_mm, double pixel_mm) {
   for (std::size_t i = 0; i < heights_mm.size(); ++i) {
     if (!std::isfinite(heights_mm.values[i])) relief.measured.values[i] = 0;
   }
-  const auto found = plateaus(readings(relief.heights_mm));
+  const auto found = plateaus(relief.heights_mm.values);
   if (!found) throw Error{Fault::data, "height image: flat, no embossing above its base"};
   relief.plateau_mm = found->top_mm;
   fill_gaps(relief.heights_mm);

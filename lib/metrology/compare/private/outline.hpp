@@ -8,7 +8,7 @@
 #include "base/image.hpp"
 #include "metrology/compare/emboss.hpp"
 
-namespace vam::metrology::outline {
+namespace vam::metrology {
 
 struct OutlinePoint {
   double x = 0;
@@ -29,7 +29,7 @@ struct Similar {
 };
 
 /// In pixels.
-[[nodiscard]] OutlinePoint middle_of(const Image& image);
+[[nodiscard]] OutlinePoint image_middle(const Image& image);
 /// The value between pixel middles; outside that of the nearest.
 [[nodiscard]] float bilinear(const Image& image, double column, double row);
 
@@ -56,6 +56,7 @@ class Outline {
 };
 
 /// Gauss-Newton on the distances of the placed points; far ones pull with constant force (Huber).
-[[nodiscard]] Similar fit(const std::vector<OutlinePoint>& points, const Outline& outline, Similar pose, int steps);
+[[nodiscard]] Similar fit_outline(const std::vector<OutlinePoint>& points, const Outline& outline, Similar pose,
+                                  int steps);
 
-}  // namespace vam::metrology::outline
+}  // namespace vam::metrology
