@@ -16,11 +16,7 @@ namespace vam::metrology {
 
 namespace {
 
-Eigen::Map<const Eigen::Matrix<double, SensitivityField::numbers, SensitivityField::numbers>> matrix_of(
-    const std::vector<double>& covariance) {
-  return Eigen::Map<const Eigen::Matrix<double, SensitivityField::numbers, SensitivityField::numbers>>(
-      covariance.data());
-}
+using Covariance = Eigen::Map<const Eigen::Matrix<double, SensitivityField::numbers, SensitivityField::numbers>>;
 
 double squared(double value) { return value * value; }
 
@@ -44,7 +40,8 @@ double SensitivityField::sigma_at(double x_mm, double y_mm, double z_mm) const {
   const Terms basis_here = basis(x_mm, y_mm, z_mm);
   const Eigen::Map<const Eigen::Matrix<double, SensitivityField::terms, 1>> at(basis_here.data());
   return std::sqrt(std::max(
-      0.0, at.dot(matrix_of(covariance).topLeftCorner<SensitivityField::terms, SensitivityField::terms>() * at)));
+      0.0,
+      at.dot(Covariance(covariance.data()).topLeftCorner<SensitivityField::terms, SensitivityField::terms>() * at)));
 }
 
 double SensitivityField::axis_sigma_px() const { return std::sqrt(covariance.back()); }
@@ -179,7 +176,7 @@ SensitivityField sensitivity_field(const Json& json) {
                 "its covariance is not of " + std::to_string(SensitivityField::numbers) + " numbers squared"};
   }
   const bool sized = std::all_of(field.half_mm.begin(), field.half_mm.end(), [](double half) { return half > 0; });
-  if (!sized || matrix_of(field.covariance).llt().info() != Eigen::Success) {
+  if (!sized || Covariance(field.covariance.data()).llt().info() != Eigen::Success) {
     throw Error{Fault::data, "its box or covariance is none"};
   }
   return field;

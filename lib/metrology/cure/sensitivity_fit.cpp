@@ -40,12 +40,6 @@ void put(const Vector& vector, SensitivityField& field) {
   for (int t = 0; t < terms; ++t) field.value[t] = vector[t];
   field.axis_px = vector[terms];
 }
-Matrix stated_matrix(const std::vector<double>& covariance) { return Eigen::Map<const Matrix>(covariance.data()); }
-
-void put_covariance(const Matrix& covariance, SensitivityField& field) {
-  field.covariance.assign(covariance.data(), covariance.data() + covariance.size());
-}
-
 /// The voxels that the fit looks at: a box of the scattering volume.
 struct Sight {
   model::Grid grid;
@@ -107,27 +101,20 @@ Sight sight_of(const model::Volume& scatter, const model::Volume* sigma, const A
 }
 
 /// Gaussian of the resolution, in place.
-class Blur {
- public:
-  explicit Blur(double sigma_px) : sigma_(sigma_px) {}
-  void apply(const model::Grid& g, std::vector<float>& values) const {
-    if (!(sigma_ > 0.1)) return;
-    const auto rows = [&](int k) { return cv::Mat(g.ny, g.nx, CV_32F, values.data() + product(k, g.slice_size())); };
-    parallel_for(g.nz, [&](int k) {
-      cv::Mat slice = rows(k);
-      cv::GaussianBlur(slice, slice, {}, sigma_, sigma_, cv::BORDER_REPLICATE);
-    });
-    parallel_for(g.ny, [&](int j) {
-      cv::Mat plane(g.nz, g.nx, CV_32F);
-      for (int k = 0; k < g.nz; ++k) rows(k).row(j).copyTo(plane.row(k));
-      cv::GaussianBlur(plane, plane, {1, 0}, 0.01, sigma_, cv::BORDER_REPLICATE);
-      for (int k = 0; k < g.nz; ++k) plane.row(k).copyTo(rows(k).row(j));
-    });
-  }
-
- private:
-  double sigma_;
-};
+void blur(double sigma_px, const model::Grid& g, std::vector<float>& values) {
+  if (!(sigma_px > 0.1)) return;
+  const auto rows = [&](int k) { return cv::Mat(g.ny, g.nx, CV_32F, values.data() + product(k, g.slice_size())); };
+  parallel_for(g.nz, [&](int k) {
+    cv::Mat slice = rows(k);
+    cv::GaussianBlur(slice, slice, {}, sigma_px, sigma_px, cv::BORDER_REPLICATE);
+  });
+  parallel_for(g.ny, [&](int j) {
+    cv::Mat plane(g.nz, g.nx, CV_32F);
+    for (int k = 0; k < g.nz; ++k) rows(k).row(j).copyTo(plane.row(k));
+    cv::GaussianBlur(plane, plane, {1, 0}, 0.01, sigma_px, cv::BORDER_REPLICATE);
+    for (int k = 0; k < g.nz; ++k) plane.row(k).copyTo(rows(k).row(j));
+  });
+}
 
 struct Normal {
   Matrix matrix = Matrix::Zero();
@@ -150,7 +137,7 @@ double mix(const std::vector<std::vector<float>>& doses, const std::array<double
 }
 
 Expected expected_at(const Sight& sight, const ScatterCurve& curve, const ActedDose& dose,
-                     const SensitivityField& field, const Blur& blur) {
+                     const SensitivityField& field, double blur_px) {
   const model::Grid& g = sight.grid;
   const bool moves = sight.dose.size() > 1;
   constexpr double step = 0.05;  // of the distance between the doses
@@ -176,17 +163,17 @@ Expected expected_at(const Sight& sight, const ScatterCurve& curve, const ActedD
       }
     }
   });
-  blur.apply(g, expected.density);
-  blur.apply(g, expected.by_log);
-  if (moves) blur.apply(g, expected.by_axis);
+  blur(blur_px, g, expected.density);
+  blur(blur_px, g, expected.by_log);
+  if (moves) blur(blur_px, g, expected.by_axis);
   return expected;
 }
 
 /// Residuals and their derivatives at a field.
 Normal normal_at(const Sight& sight, const ScatterCurve& curve, const ActedDose& dose, const SensitivityField& field,
-                 const Blur& blur) {
+                 double blur_px) {
   const model::Grid& g = sight.grid;
-  const Expected expected = expected_at(sight, curve, dose, field, blur);
+  const Expected expected = expected_at(sight, curve, dose, field, blur_px);
   std::vector<Normal> of_slice(g.nz);
   parallel_for(g.nz, [&](int k) {
     Normal& sum = of_slice[k];
@@ -262,14 +249,13 @@ Attempt descend(Attempt best, const Vector& expected, const Matrix& precision, c
 SensitivityFit fit_sensitivity(const model::Volume& scatter, const model::Volume* sigma, const ActedDose& dose,
                                const ScatterCurve& curve, const SensitivityField& before, double resolution_mm) {
   const double sigma_px = resolution_mm / scatter.grid.voxel_mm;
-  const Blur blur(sigma_px);
   const Sight sight = sight_of(scatter, sigma, dose, curve, ceil_int(3 * sigma_px));
-  const Matrix precision = stated_matrix(before.covariance).inverse();
+  const Matrix precision = Eigen::Map<const Matrix>(before.covariance.data()).inverse();
   const Vector expected = vector_of(before.value, before.axis_px);
   SensitivityField field = before;
   const auto try_at = [&](const Vector& value) {
     put(value, field);
-    Attempt attempt{value, normal_at(sight, curve, dose, field, blur), 0};
+    Attempt attempt{value, normal_at(sight, curve, dose, field, sigma_px), 0};
     attempt.cost = attempt.normal.cost + (value - expected).dot(precision * (value - expected));
     return attempt;
   };
@@ -290,7 +276,7 @@ SensitivityFit fit_sensitivity(const model::Volume& scatter, const model::Volume
   fit.rms = normal.voxels > 0 ? std::sqrt(normal.cost * correlated_voxels / static_cast<double>(normal.voxels)) : 0;
   // Residuals that are larger than their sigmas are of a model that is wrong by as much.
   const Matrix covariance = (normal.matrix / std::max(1.0, fit.rms * fit.rms) + precision).inverse();
-  put_covariance(covariance, field);
+  field.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   fit.field = field;
   fit.voxels = normal.voxels;
   fit.explained = nothing > 0 ? std::sqrt(normal.squares / nothing) : 1;
