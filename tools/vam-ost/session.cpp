@@ -11,7 +11,6 @@
 #include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/settings/printer_file.hpp"
-#include "metrology/ost/flicker.hpp"
 #include "optics/chief_ray.hpp"
 #include "session/printer.hpp"
 

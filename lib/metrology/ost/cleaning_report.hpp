@@ -2,6 +2,8 @@
 // Disturbances of a real bench in the views of a print: an even background, flicker, static specks, passing bubbles.
 #pragma once
 
+#include <vector>
+
 #include "base/image.hpp"
 #include "base/text/json_fwd.hpp"
 
@@ -16,6 +18,14 @@ struct CleaningReport {
   double bubble_percent = 0;    // of them, brighter than the same line from the other end and taken from there
   bool bubbles_exceed_limit = false;  // so many rays differ that it is no dirt, and none was replaced for it
 };
+
+/// The light of each view over that of the median view: less or more than that of the others [physics §8]. Empty where
+/// it is not determined, or does not change.
+struct Flicker {
+  double percent = 0;             // RMS from 1, without what growth explains
+  std::vector<double> intensity;  // of each view
+};
+inline constexpr double removed_flicker_percent = 0.5;  // at least; below, the views are left as they are
 
 /// The level of the emptiest tenth of a mean view, when hardly a pixel is darker: the shortest interval that holds a
 /// tenth of the pixels, refined to a mean. CleaningReport::has_background is false where there is no such plateau.

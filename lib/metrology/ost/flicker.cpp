@@ -3,8 +3,6 @@
 // parallel: their sum changes smoothly over the turn. So neighbouring views are compared
 // with this smooth course, and the course itself is found from the parallel rays that are made of the views [physics
 // §8].
-#include "metrology/ost/flicker.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/median.hpp"
+#include "metrology/ost/cleaning_report.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/ost_state.hpp"
 

@@ -12,7 +12,6 @@
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
-#include "metrology/ost/flicker.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/bubbles.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"

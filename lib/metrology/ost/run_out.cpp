@@ -10,7 +10,6 @@
 #include "base/constants.hpp"
 #include "base/index.hpp"
 #include "base/text/json.hpp"
-#include "metrology/ost/flicker.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"

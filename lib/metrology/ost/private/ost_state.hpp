@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "metrology/ost/flicker.hpp"
+#include "metrology/ost/cleaning_report.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/private/back_projection.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"
