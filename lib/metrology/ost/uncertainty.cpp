@@ -64,21 +64,17 @@ VoxelUncertainty OstReconstructor::uncertainty(std::span<const CameraView> views
   const ViewNoise noise = view_noise(views);
   constexpr int draws = 2;
   VoxelUncertainty found;
-  model::Volume squares;
-  model::Volume seen;
+  model::Volume squares{grid(), std::vector<float>(grid().size())};
+  model::Volume inside = squares;
   for (int draw = 0; draw < draws; ++draw) {
-    model::Volume one = plain.reconstruct(noise_views(views, noise, static_cast<std::uint64_t>(draw) + 1));
+    const model::Volume one = plain.reconstruct(noise_views(views, noise, static_cast<std::uint64_t>(draw) + 1));
     if (draw == 0) found = {{}, correlation(one, false), correlation(one, true)};
-    for (float& value : one.values) value *= value;
-    if (draw == 0) {
-      seen = one;
-      for (float& value : seen.values) value = value > 0 ? 1.0F : 0.0F;
-      squares = std::move(one);
-    } else {
-      for (std::size_t i = 0; i < one.values.size(); ++i) squares.values[i] += one.values[i];
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      squares.values[i] += one.values[i] * one.values[i];
+      if (draw == 0 && one.values[i] != 0) inside.values[i] = 1;
     }
   }
-  const model::Volume inside = seen;
+  model::Volume seen = inside;
   sum_neighbours(squares);
   sum_neighbours(seen);
   for (std::size_t i = 0; i < squares.values.size(); ++i) {
