@@ -22,10 +22,6 @@ Rows frame_of(const Vector3& primary, const Vector3& secondary) {
   return {primary, second, cross(primary, second)};
 }
 
-Vector3 turned(const Rows& rotation, const Vector3& x) {
-  return {dot(rotation[0], x), dot(rotation[1], x), dot(rotation[2], x)};
-}
-
 /// x with rows * x = right (Cramer).
 Vector3 solved(const Rows& rows, const Vector3& right) {
   const double volume = dot(rows[0], cross(rows[1], rows[2]));
@@ -52,7 +48,7 @@ solid::Similarity datum_motion(const std::array<DatumFace, 3>& faces) {
   Vector3 gaps{};
   for (std::size_t f = 0; f < 3; ++f) {
     normals[f] = faces[f].design.normal;
-    gaps[f] = dot(normals[f], faces[f].design.point - turned(motion.rotation, faces[f].print.point));
+    gaps[f] = dot(normals[f], faces[f].design.point - motion(faces[f].print.point));
   }
   motion.shift_mm = solved(normals, gaps);
   return motion;
