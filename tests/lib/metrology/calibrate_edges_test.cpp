@@ -76,27 +76,6 @@ TEST_CASE("Vial edges: many sweeps, 95 % inside 2 sigma, centre within 0.1 px, r
   CHECK(radius.worst() < 5e-4);
 }
 
-// Light fades from where it enters; counted from its exit, it would seem to come from a vial that stands aside.
-TEST_CASE("Vial edges: a resin that absorbs moves neither the axis nor the radius") {
-  for (int run = 0; run < 8; ++run) {
-    CAPTURE(run);
-    vam::oracle::Random random(run);
-    vam::oracle::SweepTruth truth{.noise = 0.1, .electrons = 1e4};
-    if (run % 2 == 1) truth.camera_rad *= -1;
-    if (run / 2 % 2 == 1) truth.camera_rad *= 5.0 / 6;
-    if (run / 4 == 1) truth.lens_mm.reset();
-    for (const double absorption_per_mm : {0.05, 0.1}) {
-      CAPTURE(absorption_per_mm);
-      truth.absorption_per_mm = absorption_per_mm;
-      const VialEdges found = find_edges(swept(truth, 2, 250, 770, random), printer_of(truth));
-      const double off_px = found.axis_column.value - truth.axis_column;
-      CHECK(std::abs(off_px) < 3 * found.axis_column.sigma);
-      CHECK(std::abs(off_px) < 0.01);
-      CHECK(std::abs(found.radius_mm.value - truth.radius_mm) < 1e-3);
-    }
-  }
-}
-
 // [physics §12]
 TEST_CASE("Vial edges: the tangent column is further out than the vial") {
   vam::oracle::Random random(3);
