@@ -20,42 +20,36 @@ float bilinear(const Image& image, double column, double row) {
          fy * ((1 - fx) * image(i, j + 1) + fx * image(i + 1, j + 1));
 }
 
-Image distance_to(const Image& image, float level) {
-  cv::Mat above(image.height, image.width, CV_8U);
-  for (int j = 0; j < image.height; ++j) {
-    for (int i = 0; i < image.width; ++i) above.at<unsigned char>(j, i) = image(i, j) >= level ? 1 : 0;
-  }
-  cv::Mat inside;
-  cv::Mat outside;
-  cv::distanceTransform(above, inside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  cv::distanceTransform(1 - above, outside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  Image distance(image.width, image.height);
-  for (int j = 0; j < image.height; ++j) {
-    for (int i = 0; i < image.width; ++i) {
-      distance(i, j) = image(i, j) >= level ? 0.5F - inside.at<float>(j, i) : outside.at<float>(j, i) - 0.5F;
-    }
-  }
-  return distance;
-}
-
 namespace {
+
+cv::Mat matrix_of(Image& image) { return {image.height, image.width, CV_32F, image.values.data()}; }
 
 // 1 where the outline may be judged.
 Image judged(const Relief& print) {
-  cv::Mat gaps(print.measured.height, print.measured.width, CV_8U);
-  for (int j = 0; j < gaps.rows; ++j) {
-    for (int i = 0; i < gaps.cols; ++i) gaps.at<unsigned char>(j, i) = print.measured(i, j) == 0 ? 1 : 0;
-  }
+  Image known = print.measured;
+  const cv::Mat pixels = matrix_of(known);
+  cv::Mat gaps = pixels == 0;
   cv::erode(gaps, gaps, cv::Mat::ones(5, 5, CV_8U), {-1, -1}, 1, cv::BORDER_REPLICATE);
   cv::dilate(gaps, gaps, cv::Mat::ones(13, 13, CV_8U), {-1, -1}, 1, cv::BORDER_REPLICATE);
-  Image known(gaps.cols, gaps.rows);
-  for (int j = 0; j < gaps.rows; ++j) {
-    for (int i = 0; i < gaps.cols; ++i) known(i, j) = gaps.at<unsigned char>(j, i) == 0 ? 1.0F : 0.0F;
-  }
+  cv::threshold(gaps, gaps, 0, 1, cv::THRESH_BINARY_INV);
+  gaps.convertTo(pixels, CV_32F);
   return known;
 }
 
 }  // namespace
+
+Image distance_to(const Image& image, float level) {
+  Image distance = image;
+  const cv::Mat pixels = matrix_of(distance);
+  const cv::Mat above = pixels >= level;
+  cv::Mat inside;
+  cv::Mat outside;
+  cv::distanceTransform(above, inside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::distanceTransform(~above, outside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::subtract(outside, 0.5F, pixels);
+  cv::Mat(0.5F - inside).copyTo(pixels, above);
+  return distance;
+}
 
 Outline::Outline(const Relief& print)
     : distance_(distance_to(print.heights_mm, static_cast<float>(0.5 * print.plateau_mm))),
