@@ -89,10 +89,9 @@ void Print::write(const model::Volume& volume, const metrology::VoxelUncertainty
   const auto sheet = metrology::projection_sheet(volume, isovalue_, target_ ? &*target_ : nullptr);
   plot::ImageFigure figure;
   figure.title = "Sum projections";
-  for (std::size_t i = 0; i < sheet.images.size(); ++i)
-    figure.panels.push_back({sheet.images[i], sheet.captions[i], {}});
-  figure.x = {"mm", 0, sheet.images[0].width * sheet.pixel_mm};
-  figure.y = {"mm", 0, sheet.images[0].height * sheet.pixel_mm};
+  for (const auto& [image, caption] : sheet) figure.panels.push_back({image, caption, {}});
+  figure.x = {"mm", 0, sheet.front().image.width * volume.grid.voxel_mm};
+  figure.y = {"mm", 0, sheet.front().image.height * volume.grid.voxel_mm};
   figure.scale.label = "relative sum";
   figure.columns = 3;
   plot::save(options_.projections, plot::draw(figure), app_.history());

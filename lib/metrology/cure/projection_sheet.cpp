@@ -18,7 +18,7 @@ Image padded(const Image& image, int width, int height) {
   return out;
 }
 
-void add_row(const SumProjections& sums, const std::string& what, Sheet& sheet) {
+void add_row(const SumProjections& sums, const std::string& what, std::vector<SheetView>& sheet) {
   const int width = std::max(sums.along_z.width, sums.along_x.width);
   const int height = std::max(sums.along_z.height, sums.along_x.height);
   float brightest = 0;
@@ -29,8 +29,7 @@ void add_row(const SumProjections& sums, const std::string& what, Sheet& sheet) 
        {std::pair{&sums.along_z, "top"}, {&sums.along_y, "front"}, {&sums.along_x, "side"}}) {
     Image scaled = padded(*image, width, height);
     for (float& value : scaled.values) value = brightest > 0 ? value / brightest : 0.0F;
-    sheet.images.push_back(std::move(scaled));
-    sheet.captions.push_back(what + " " + from);
+    sheet.push_back({std::move(scaled), what + " " + from});
   }
 }
 
@@ -46,11 +45,9 @@ model::Volume sampled(const model::StretchedVolume& target, const model::Grid& g
 
 }  // namespace
 
-Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level,
-                       const model::StretchedVolume* target) {
-  Sheet sheet;
-  sheet.pixel_mm = scatter.grid.voxel_mm;
-  sheet.brightest = 1;
+std::vector<SheetView> projection_sheet(const model::Volume& scatter, std::optional<double> level,
+                                        const model::StretchedVolume* target) {
+  std::vector<SheetView> sheet;
   add_row(sum_projections(scatter), "volume", sheet);
   if (level) add_row(sum_projections(scatter, level), "print", sheet);
   if (target != nullptr) add_row(sum_projections(sampled(*target, scatter.grid)), "design", sheet);

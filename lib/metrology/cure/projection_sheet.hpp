@@ -10,17 +10,15 @@
 
 namespace vam::metrology {
 
-/// Views of one size, padded with zeros, in rows of three: top (along z), front (along y), side (along x).
-struct Sheet {
-  std::vector<Image> images;
-  std::vector<std::string> captions;
-  double pixel_mm = 0;
-  float brightest = 0;
+struct SheetView {
+  Image image;  // pixels of a voxel, the brightest of its row 1
+  std::string caption;
 };
 
-/// One row for the scattering volume; with a level one for { scatter >= level }; with a target one for its design,
-/// sampled at the volume's voxels. Each row is scaled to its own brightest pixel.
-[[nodiscard]] Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level,
-                                     const model::StretchedVolume* target);
+/// Views of one size, padded with zeros, in rows of three: top (along z), front (along y), side (along x). One row for
+/// the scattering volume; with a level one for { scatter >= level }; with a target one for its design, sampled at the
+/// volume's voxels.
+[[nodiscard]] std::vector<SheetView> projection_sheet(const model::Volume& scatter, std::optional<double> level,
+                                                      const model::StretchedVolume* target);
 
 }  // namespace vam::metrology
