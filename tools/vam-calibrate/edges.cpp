@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate edges: where the vial stands, from a sweep of lines through fluorescing resin.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -114,32 +115,29 @@ metrology::VialEdges combine(const std::vector<double>& angles, const std::vecto
         "sweep at 0, 90, 180 and 270 degrees");
     return all.front();
   }
-  std::vector<stats::Measured> column, tilt, edge, radius, blur;
-  for (const auto& edges : all) {
-    column.push_back(edges.axis_column);
-    if (edges.tilt_deg.n > 0) tilt.push_back(edges.tilt_deg);
-    edge.push_back(edges.edge_px);
-    radius.push_back(edges.radius_mm);
-    blur.push_back(edges.blur_px);
-  }
+  const auto each = [&](stats::Measured metrology::VialEdges::*number) {
+    std::vector<stats::Measured> numbers;
+    for (const auto& edges : all) numbers.push_back(edges.*number);
+    return numbers;
+  };
   const char* method = "first harmonic of the vial's centre";
-  const auto circle = metrology::find_wobble(angles, column, "edges");
+  const auto circle = metrology::find_wobble(angles, each(&metrology::VialEdges::axis_column), "edges");
   finding.value("wobble", circle.radius, "px", method);
   finding.value("wobble_phase", circle.phase_deg, "deg", method);
   metrology::VialEdges out = all.front();
-  out.edge_px = stats::weighted_mean(edge);
+  out.edge_px = stats::weighted_mean(each(&metrology::VialEdges::edge_px));
   const double pixel_mm = printer.projector.pixel_mm;
   const double mm = pixel_mm * optics::displacement_rate(optics::projector_view(printer), out.edge_px.value * pixel_mm);
   finding.value("wobble_mm", {circle.radius.value * mm, circle.radius.sigma * mm, circle.radius.n}, "mm", method);
   out.axis_column = circle.mean;
-  if (tilt.size() == all.size()) {
-    const auto cone = metrology::find_wobble(angles, tilt, "edges");
+  if (std::all_of(all.begin(), all.end(), [](const auto& edges) { return edges.tilt_deg.n > 0; })) {
+    const auto cone = metrology::find_wobble(angles, each(&metrology::VialEdges::tilt_deg), "edges");
     out.tilt_deg = cone.mean;
     finding.value("wobble_tilt", cone.radius, "deg", "first harmonic of the tilt");
     finding.value("wobble_tilt_phase", cone.phase_deg, "deg", "first harmonic of the tilt");
   }
-  out.radius_mm = stats::weighted_mean(radius);
-  out.blur_px = stats::weighted_mean(blur);
+  out.radius_mm = stats::weighted_mean(each(&metrology::VialEdges::radius_mm));
+  out.blur_px = stats::weighted_mean(each(&metrology::VialEdges::blur_px));
   return out;
 }
 
