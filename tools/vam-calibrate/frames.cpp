@@ -94,10 +94,4 @@ void each_frame(const ScanOptions& options, const model::Printer& printer, Frame
   }
 }
 
-double mean_level(const Image& image) {
-  double sum = 0;
-  for (const float value : image.values) sum += value;
-  return sum / static_cast<double>(image.size());
-}
-
 }  // namespace vam::calibrate_tool

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stats/range.hpp"
 #include "base/text/json.hpp"
 #include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
@@ -40,7 +41,7 @@ Finding scan_latency(const ScanOptions& options, const model::Printer& printer) 
     if (frame.time_s < flips.front().t_s || frame.time_s > flips.back().t_s) return;
     clock_sigma_s = std::max(clock_sigma_s, frame.time_sigma_s);
     scan.begin_s.push_back(frame.time_s - 0.5 * scan.exposure_s);
-    scan.light.push_back(mean_level(frame.image));
+    scan.light.push_back(stats::mean_value(frame.image.values));
   });
   auto found = metrology::measure_latency(scan);
   found.ms.sigma = std::hypot(found.ms.sigma, 1e3 * clock_sigma_s, lag_sigma_ms(printer.calibration));

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/stats/range.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "io/image/view_source.hpp"
@@ -62,10 +63,11 @@ Finding finding_of(const metrology::ResponseCurve& curve, const std::string& ins
 
 Finding scan_response(const ScanOptions& options, const model::Printer& printer) {
   double dark = 0;
-  if (!options.dark.empty()) dark = mean_level(io::read_field(options.dark));
+  if (!options.dark.empty()) dark = stats::mean_value(io::read_field(options.dark).values);
   std::map<int, std::vector<double>> readings;
-  each_frame(options, printer, FrameKind::steady,
-             [&](const ScanFrame& frame) { readings[frame.shown].push_back(mean_level(frame.image) - dark); });
+  each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {
+    readings[frame.shown].push_back(stats::mean_value(frame.image.values) - dark);
+  });
   metrology::ResponseScan scan;
   const int full = (1 << printer.projector.bits) - 1;
   for (const auto& [level, light] : by_level(options, std::move(readings))) {

@@ -90,9 +90,6 @@ using ColumnsOfBands = std::vector<double> (*)(const Image& frame, int bands);
 /// no_input, data.
 [[nodiscard]] model::TriangleSoup print_surface(const std::string& path, std::optional<double> isovalue);
 
-/// Mean over the image: each frame is reduced to one number until the timing of the pattern is known.
-[[nodiscard]] double mean_level(const Image& image);
-
 // ---- edges.cpp and its neighbours: one measurement each
 [[nodiscard]] Finding scan_edges(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_response(const ScanOptions& options, const model::Printer& printer);

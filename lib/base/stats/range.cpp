@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
 
 namespace vam::stats {
 
@@ -25,6 +26,10 @@ std::pair<float, float> range_of(std::span<const float> values) {
     high[0] = std::max(high[0], values[i]);
   }
   return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
+}
+
+double mean_value(std::span<const float> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 }  // namespace vam::stats

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/stats/range.hpp"
 #include "base/text/text.hpp"
 
 namespace vam::metrology {
@@ -13,12 +14,6 @@ namespace vam::metrology {
 namespace {
 
 constexpr float dead_below = 0.2F;
-
-double mean_of(const Image& image) {
-  double sum = 0;
-  for (const float value : image.values) sum += value;
-  return sum / static_cast<double>(image.size());
-}
 
 double percentile(std::vector<float> values, double part) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
@@ -103,7 +98,7 @@ FlatField flat_field(const FrameMean& frames, const Image& dark, double dark_sig
     }
     for (std::size_t i = 0; i < dark.size(); ++i) flat.field.values[i] -= dark.values[i];
   }
-  const double mean = mean_of(flat.field);
+  const double mean = stats::mean_value(flat.field.values);
   const double error = std::hypot(frames.noise() / std::sqrt(frames.count()), dark_sigma);
   if (!(mean > 3 * error)) {
     throw Error{Fault::data, "flat: the scene is dark, " + format_number(mean) + " +- " + format_number(error)};

@@ -54,8 +54,7 @@ Image corrected(Image image, const CameraFields& fields, int binning, const std:
     for (std::size_t i = 0; i < image.size(); ++i) image.values[i] -= fields.dark.values[i];
   }
   if (!fields.flat.values.empty()) {
-    const double sum = std::accumulate(fields.flat.values.begin(), fields.flat.values.end(), 0.0);
-    const auto mean = static_cast<float>(sum / static_cast<double>(fields.flat.size()));
+    const auto mean = static_cast<float>(stats::mean_value(fields.flat.values));
     for (std::size_t i = 0; i < image.size(); ++i) {
       const float flat = fields.flat.values[i];
       if (!(flat > 0)) {
