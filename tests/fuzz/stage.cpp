@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The answers of a stage's controller, FUZZ_STAGE, to all that may be asked and ordered.
 #include "device/os/clock.hpp"
-#include "device/stage/gcs_stage.hpp"
-#include "device/stage/grbl_stage.hpp"
-#include "device/stage/zaber_stage.hpp"
+#include "device/stage/stage_backends.hpp"
 #include "fuzz/answers.hpp"
 #include "fuzz/drive.hpp"
 

@@ -3,7 +3,7 @@
 #include "device/os/clock.hpp"
 #include "device/port/usb_link.hpp"
 #include "device/projector/light_engine.hpp"
-#include "device/stage/tic_stage.hpp"
+#include "device/stage/stage_backends.hpp"
 #include "fuzz/drive.hpp"
 
 namespace {

@@ -18,7 +18,7 @@
 #include "session/sinogram_frames.hpp"
 #include "sim/cameras/gv_camera.hpp"
 #include "sim/cameras/makers.hpp"
-#include "sim/controllers/options.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "vam-sim/commands.hpp"
 
 namespace vam::sim_tool {

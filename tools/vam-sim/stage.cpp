@@ -13,11 +13,8 @@
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"
 #include "device/port/lines.hpp"
-#include "sim/controllers/grbl.hpp"
-#include "sim/controllers/options.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "sim/controllers/pty_host.hpp"
-#include "sim/controllers/relay.hpp"
-#include "sim/controllers/zaber.hpp"
 #include "vam-sim/commands.hpp"
 
 namespace vam::sim_tool {

@@ -23,7 +23,6 @@
 #include "device/camera/private/aravis_problem.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
-#include "device/camera/private/read_back.hpp"
 #include "device/os/identity.hpp"
 #include "device/os/interrupt.hpp"
 

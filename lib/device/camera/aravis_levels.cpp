@@ -9,8 +9,8 @@
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"
+#include "device/camera/camera_backends.hpp"
 #include "device/camera/private/aravis_problem.hpp"
-#include "device/camera/private/read_back.hpp"
 
 namespace vam::device {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/camera/find_cameras.hpp"
-
 #include <arv.h>
 #include <linux/videodev2.h>
 
@@ -8,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "device/camera/camera_backends.hpp"
 #include "device/camera/private/kept_sigpipe.hpp"
 #include "device/camera/v4l2_driver.hpp"
 

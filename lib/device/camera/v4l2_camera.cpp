@@ -18,8 +18,6 @@
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
-#include "device/camera/private/v4l2_controls.hpp"
-#include "device/camera/private/v4l2_format.hpp"
 #include "device/camera/private/v4l2_node.hpp"
 #include "device/os/interrupt.hpp"
 

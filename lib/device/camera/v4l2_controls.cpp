@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/camera/private/v4l2_controls.hpp"
-
 #include <linux/videodev2.h>
 
 #include <array>
@@ -14,7 +12,8 @@
 #include "base/index.hpp"
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
-#include "device/camera/private/read_back.hpp"
+#include "device/camera/camera_backends.hpp"
+#include "device/camera/private/v4l2_node.hpp"
 
 namespace vam::device {
 

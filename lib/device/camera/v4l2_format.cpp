@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/camera/private/v4l2_format.hpp"
-
 #include <linux/videodev2.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
+#include "device/camera/private/v4l2_node.hpp"
 
 namespace vam::device {
 

@@ -4,7 +4,7 @@
 #include "device/camera/camera_backends.hpp"
 #include "device/open/private/backends.hpp"
 #include "model/device_schemes.hpp"
-#include "sim/cameras/open_camera.hpp"
+#include "sim/cameras/camera.hpp"
 
 namespace vam::device {
 

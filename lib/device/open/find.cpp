@@ -6,11 +6,11 @@
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"
-#include "device/camera/find_cameras.hpp"
+#include "device/camera/camera_backends.hpp"
 #include "device/open/stage.hpp"
 #include "device/os/clock.hpp"
 #include "device/port/find_ports.hpp"
-#include "device/projector/find_displays.hpp"
+#include "device/projector/display_backends.hpp"
 #include "model/device_schemes.hpp"
 
 namespace vam::device {

@@ -6,8 +6,7 @@
 #include "device/os/lock.hpp"
 #include "device/port/serial_port.hpp"
 #include "model/device_schemes.hpp"
-#include "sim/controllers/options.hpp"
-#include "sim/controllers/relay.hpp"
+#include "sim/controllers/controllers.hpp"
 
 namespace vam::device {
 

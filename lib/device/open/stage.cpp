@@ -6,12 +6,9 @@
 #include "device/os/lock.hpp"
 #include "device/port/serial_port.hpp"
 #include "device/port/usb_kinds.hpp"
-#include "device/stage/gcs_stage.hpp"
-#include "device/stage/grbl_stage.hpp"
-#include "device/stage/tic_stage.hpp"
-#include "device/stage/zaber_stage.hpp"
+#include "device/stage/stage_backends.hpp"
 #include "model/device_schemes.hpp"
-#include "sim/controllers/options.hpp"
+#include "sim/controllers/controllers.hpp"
 
 namespace vam::device {
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The constructors behind open_display(). A screen has its own mode; `wanted` is what null: plays.
+// The constructors behind open_display(), and the screens that there are. A screen has its own mode; `wanted` is what
+// null: plays.
 #pragma once
 
+#include <vector>
+
+#include "device/os/device_listing.hpp"
 #include "device/projector/display.hpp"
 
 namespace vam::device {
@@ -17,5 +21,9 @@ inline constexpr const char* sdl_lock = "sdl-";
 /// Options hz, and miss=N: every N-th flip comes one vertical blank late.
 [[nodiscard]] std::unique_ptr<Display> open_null_display(const Address& address, const DisplayMode& wanted,
                                                          Clock& clock, Guardian* guardian);
+
+/// The connectors of the graphics cards that have a screen, and the screens of the desktop, if there is one. Nothing is
+/// shown on them.
+[[nodiscard]] std::vector<DeviceListing> find_displays();
 
 }  // namespace vam::device

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/projector/find_displays.hpp"
-
 #include <fcntl.h>
 #include <unistd.h>
 #include <xf86drm.h>
@@ -11,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"
+#include "device/projector/display_backends.hpp"
 #include "device/projector/private/drm_output.hpp"
 #include "device/projector/private/sdl_library.hpp"
 

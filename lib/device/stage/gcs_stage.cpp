@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/stage/gcs_stage.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -13,6 +11,7 @@
 #include "base/text/text.hpp"
 #include "device/port/serial_port.hpp"
 #include "device/safety/stop_order.hpp"
+#include "device/stage/stage_backends.hpp"
 
 namespace vam::device {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/stage/grbl_stage.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "device/safety/stop_order.hpp"
 #include "device/stage/private/line_link.hpp"
 #include "device/stage/private/shown.hpp"
+#include "device/stage/stage_backends.hpp"
 
 namespace vam::device {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/stage/tic_stage.hpp"
-
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -11,6 +9,7 @@
 #include "base/text/text.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "device/safety/stop_order.hpp"
+#include "device/stage/stage_backends.hpp"
 
 namespace vam::device {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: Zaber ASCII Protocol Manual, firmware 6 and 7 (zaber.com/protocol-manual); for the speed that a motion takes
 // from firmware 7.25 on, the reference of Zaber Motion Library, Axis.moveAbsolute.
-#include "device/stage/zaber_stage.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "base/text/text.hpp"
 #include "device/safety/stop_order.hpp"
 #include "device/stage/private/line_link.hpp"
+#include "device/stage/stage_backends.hpp"
 
 namespace vam::device {
 

@@ -11,8 +11,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "device/camera/camera_backends.hpp"
-#include "sim/cameras/open_camera.hpp"
-#include "sim/controllers/options.hpp"
+#include "sim/controllers/controllers.hpp"
 
 namespace vam::sim {
 

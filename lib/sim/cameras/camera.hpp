@@ -36,4 +36,10 @@ struct SimCameraSettings {
 /// "3,7" to numbers of frames. Throws Fault::usage.
 [[nodiscard]] std::set<long> parse_frames(const std::string& text);
 
+/// The camera behind "sim:", with options of sim/bench/scene.hpp and pace=real or virtual (frames at their period,
+/// without waiting for it).
+[[nodiscard]] std::unique_ptr<device::Camera> open_sim_camera(const device::Address& address,
+                                                              const device::CameraSettings& settings,
+                                                              const device::CameraBench& bench, device::Clock& clock);
+
 }  // namespace vam::sim

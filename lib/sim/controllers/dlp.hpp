@@ -6,7 +6,7 @@
 #include <string>
 
 #include "device/port/usb_link.hpp"
-#include "sim/controllers/options.hpp"
+#include "sim/controllers/controllers.hpp"
 
 namespace vam::sim {
 

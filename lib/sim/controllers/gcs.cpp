@@ -2,8 +2,6 @@
 // Sources, named beside each behaviour: a number alone is a section of the maker's manual of the C-863.11 (PI MS249E);
 // "errors" is the maker's list of codes, picontrollererrors.h, as public drivers have it (EPICS, epics-modules/motor,
 // motorApp/PIGCS2Src).
-#include "sim/controllers/gcs.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "sim/controllers/private/controller.hpp"
 
 namespace vam::sim {

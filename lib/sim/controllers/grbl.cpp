@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sources, named beside each behaviour: "Interface", "Jogging", "Commands" and "Configuration" are the pages of GRBL
 // 1.1's wiki (github.com/gnea/grbl/wiki), "limits.c" is its own source.
-#include "sim/controllers/grbl.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <utility>
 
 #include "base/text/text.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "sim/controllers/private/controller.hpp"
 
 namespace vam::sim {

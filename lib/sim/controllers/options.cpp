@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/controllers/options.hpp"
-
 #include <memory>
 
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "device/os/event_log.hpp"
+#include "sim/controllers/controllers.hpp"
 
 namespace vam::sim {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source of all of it: the firmware that [devices §7] prints.
-#include "sim/controllers/relay.hpp"
-
 #include <utility>
 
 #include "base/text/json.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "sim/controllers/private/controller.hpp"
 
 namespace vam::sim {

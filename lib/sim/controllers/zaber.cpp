@@ -2,8 +2,6 @@
 // Sources, named beside each behaviour: "manual" is the Zaber ASCII Protocol Manual of the maker, firmware 6.06 to 7
 // (zaber.com/wiki/Manuals/ASCII_Protocol_Manual, zaber.com/protocol-manual); "library" is the reference of the maker's
 // Zaber Motion Library. The stage is an X-RSW60A: 384 000 microsteps a turn (its data sheet: 0.0009375 deg each).
-#include "sim/controllers/zaber.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "sim/controllers/private/controller.hpp"
 
 namespace vam::sim {

@@ -29,5 +29,6 @@ TEST_CASE("an answer that is not text is reported escaped, with a remedy") {
   CHECK(std::string(link.malformed("get pos", noise).what()) ==
         "port: 'get pos' was answered '\\x0b\\x00\\xff', not a reply of this controller; check the device and its baud "
         "rate");
-  CHECK(has(std::string(link.malformed("$$", std::string(100, 'a')).what()), std::string(40, 'a') + "...'"));
+  CHECK(
+      has(std::string(link.malformed("$$", std::string(100, 'a')).what()), std::string(64, 'a') + "...' (100 bytes)"));
 }

@@ -7,7 +7,7 @@
 #include "base/text/json.hpp"
 #include "device/projector/relayed_lamp.hpp"
 #include "lib/device/virtual_stage.hpp"
-#include "sim/controllers/relay.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "testing.hpp"
 
 using namespace vam;

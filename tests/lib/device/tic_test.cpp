@@ -7,7 +7,7 @@
 #include "base/text/json.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"
-#include "device/stage/tic_stage.hpp"
+#include "device/stage/stage_backends.hpp"
 #include "testing.hpp"
 
 using namespace vam;

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "device/stage/gcs_stage.hpp"
-#include "sim/controllers/gcs.hpp"
+#include "device/stage/stage_backends.hpp"
+#include "sim/controllers/controllers.hpp"
 
 namespace vam::device {
 

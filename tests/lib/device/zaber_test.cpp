@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/controllers/zaber.hpp"
-
 #include <memory>
 
 #include "base/text/json.hpp"
 #include "device/stage/spin.hpp"
-#include "device/stage/zaber_stage.hpp"
+#include "device/stage/stage_backends.hpp"
 #include "lib/device/virtual_stage.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "testing.hpp"
 
 using namespace vam;

@@ -6,12 +6,9 @@
 
 #include "base/text/json.hpp"
 #include "device/os/clock.hpp"
+#include "sim/controllers/controllers.hpp"
 #include "sim/controllers/dlp.hpp"
-#include "sim/controllers/gcs.hpp"
-#include "sim/controllers/grbl.hpp"
-#include "sim/controllers/relay.hpp"
 #include "sim/controllers/tic.hpp"
-#include "sim/controllers/zaber.hpp"
 #include "testing.hpp"
 
 using namespace vam;

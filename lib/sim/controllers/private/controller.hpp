@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "sim/controllers/gcs.hpp"
+#include "sim/controllers/controllers.hpp"
 
 namespace vam::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A simulated PI C-863 with a rotation stage, including its faults.
+// Simulated controllers on a serial line: rotation stages and the relay of a lamp, with their faults.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "device/os/address.hpp"
 #include "sim/controllers/device.hpp"
 #include "sim/controllers/motor.hpp"
 
@@ -26,6 +27,7 @@ struct SimFault {
 /// "truncated@POS?:3". Throws Fault::usage.
 [[nodiscard]] SimFault parse_sim_fault(const std::string& text);
 
+/// Of all of them; each takes what it has.
 struct SimGcsSettings {
   MotorSettings motor;
   double max_speed_deg_s = 90;  // M-060.PD
@@ -45,6 +47,27 @@ struct SimGcsSettings {
   std::vector<SimFault> faults;
 };
 
+/// By the options of a device string, as of sim:?speed_error=0.01&jitter=5.
+[[nodiscard]] SimGcsSettings sim_settings(const device::Address& address);
+
+/// Writes each line to the file as it comes; nothing when path is empty.
+[[nodiscard]] SimLog file_sim_log(const std::string& path);
+
+/// A PI C-863.
 [[nodiscard]] std::unique_ptr<SimDevice> make_sim_gcs(const SimGcsSettings& settings, double now_s, SimLog log);
+
+/// A GRBL 1.1 board with the stage on axis X. Faults are garbage, truncated, late, silent and error at "?", "$J", "$I",
+/// "$$", "$H", "$X"; unplug and power-loss anywhere.
+[[nodiscard]] std::unique_ptr<SimDevice> make_sim_grbl(const SimGcsSettings& settings, double now_s, SimLog log);
+
+/// A Zaber rotary stage with its controller, in Zaber's ASCII protocol. Faults are garbage, truncated, late, silent,
+/// wrong-sender and error at a command's words ("get pos", "move abs", "home", "warnings", "" for the question without
+/// words), stall: the stage is held fast and reports it; unplug and power-loss anywhere. Without a reference it takes
+/// no absolute motion, and its position counts from where it stood at power-on.
+[[nodiscard]] std::unique_ptr<SimDevice> make_sim_zaber(const SimGcsSettings& settings, double now_s, SimLog log);
+
+/// A dead-man relay with the firmware of [devices §7]. Its log has {"event": "closed"} and {"event": "open", "reason":
+/// "order" or "heartbeat"}. Of the settings it takes latency and faults, at "?", "A", "H" and "O".
+[[nodiscard]] std::unique_ptr<SimDevice> make_sim_relay(const SimGcsSettings& settings, double now_s, SimLog log);
 
 }  // namespace vam::sim
