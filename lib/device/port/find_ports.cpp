@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "base/text/json.hpp"
-#include "device/port/private/usb_text.hpp"
+#include "base/text/json_text.hpp"
 #include "device/port/serial_port.hpp"
 #include "device/port/usb_kinds.hpp"
 
@@ -27,20 +27,15 @@ struct Vendor {
 constexpr std::array vendors{Vendor{"1a72", "gcs"}, Vendor{"2341", "grbl"}, Vendor{"2a03", "grbl"},
                              Vendor{"1a86", "grbl"}};
 
-std::string word(const Json& entry, const char* key) {
-  const auto found = entry.find(key);
-  return found != entry.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 DeviceListing serial_stage(const Json& entry) {
-  const std::string path = word(entry, "path");
-  const std::string ids = word(entry, "usb_id");
+  const std::string path = text_at(entry, "path");
+  const std::string ids = text_at(entry, "usb_id");
   const auto* maker =
       std::find_if(vendors.begin(), vendors.end(), [&](const Vendor& vendor) { return ids.starts_with(vendor.id); });
-  DeviceListing found{"stage", "gcs:" + path, word(entry, "description"), node_obstacle(path)};
+  DeviceListing found{"stage", "gcs:" + path, text_at(entry, "description"), node_obstacle(path)};
   if (maker != vendors.end()) found.device = maker->scheme + (":" + path);
   for (const char* key : {"manufacturer", "serial"}) {
-    if (const std::string more = word(entry, key); !more.empty())
+    if (const std::string more = text_at(entry, key); !more.empty())
       found.about += (found.about.empty() ? "" : " ") + more;
   }
   return found;

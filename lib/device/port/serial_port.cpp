@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -17,6 +16,7 @@
 #include "base/text/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
+#include "device/port/usb_kinds.hpp"
 
 namespace vam::device {
 
@@ -151,9 +151,7 @@ Json list_serial_ports() {
     int vendor = 0;
     int product = 0;
     if (sp_get_port_usb_vid_pid(*port, &vendor, &product) == SP_OK) {
-      std::array<char, 16> ids{};
-      std::snprintf(ids.data(), ids.size(), "%04x:%04x", static_cast<unsigned>(vendor), static_cast<unsigned>(product));
-      entry["usb_id"] = ids.data();
+      entry["usb_id"] = ids_text(vendor, product);
       entry["manufacturer"] = text(sp_get_port_usb_manufacturer(*port));
       entry["product"] = text(sp_get_port_usb_product(*port));
       entry["serial"] = text(sp_get_port_usb_serial(*port));

@@ -9,6 +9,8 @@
 
 #include "device/port/usb_link.hpp"
 
+struct libusb_device_handle;
+
 namespace vam::device {
 
 struct UsbKind {
@@ -42,5 +44,8 @@ inline constexpr std::array usb_kinds{
 
 /// "0451:c900"
 [[nodiscard]] std::string ids_text(int vendor, int product);
+
+/// The descriptor string of that number; empty when the device has none.
+[[nodiscard]] std::string string_of(libusb_device_handle* handle, unsigned char index);
 
 }  // namespace vam::device

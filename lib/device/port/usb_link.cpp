@@ -11,7 +11,6 @@
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "device/port/private/usb_text.hpp"
 #include "device/port/usb_kinds.hpp"
 
 namespace vam::device {
