@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "device/stage/private/shown.hpp"
 
 namespace vam::device {
 
@@ -65,7 +65,7 @@ GcsLink::GcsLink(std::unique_ptr<Port> port, Clock& clock, GcsSettings settings)
     : port_(std::move(port)), clock_(clock), settings_(settings) {}
 
 Error GcsLink::malformed(const std::string& question, const std::string& answer, const std::string& what) const {
-  return {Fault::protocol, port_->name() + ": '" + shown(question) + "' was answered '" + shown(answer) + "', " + what};
+  return {Fault::protocol, port_->name() + ": " + excerpt(question) + " was answered " + excerpt(answer) + ", " + what};
 }
 
 double GcsLink::send(const std::string& text) {
@@ -80,8 +80,8 @@ double GcsLink::send(const std::string& text) {
 std::string GcsLink::read_more(const std::string& question, const std::string& so_far) {
   std::string bytes = port_->read(settings_.timeout_s);
   if (bytes.empty()) {
-    throw Error{Fault::busy, port_->name() + ": no " + (so_far.empty() ? "answer" : "end of the answer") + " to '" +
-                                 shown(question) + "' within " + format_number(settings_.timeout_s) +
+    throw Error{Fault::busy, port_->name() + ": no " + (so_far.empty() ? "answer" : "end of the answer") + " to " +
+                                 excerpt(question) + " within " + format_number(settings_.timeout_s) +
                                  " s; check power, cable" +
                                  (settings_.address ? ", baud rate and address" : " and baud rate")};
   }

@@ -8,10 +8,10 @@
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"
+#include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "device/safety/stop_order.hpp"
 #include "device/stage/private/line_link.hpp"
-#include "device/stage/private/shown.hpp"
 #include "device/stage/stage_backends.hpp"
 
 namespace vam::device {
@@ -192,7 +192,7 @@ class GrblStage final : public Stage {
       if (line == "ok") break;
       if (line.rfind("[VER:", 0) == 0) read_version(line);
       if (line.rfind('[', 0) != 0) {
-        throw Error{Fault::protocol, port_.name() + ": '$I' was answered '" + shown(line) + "'; this is not GRBL 1.1"};
+        throw Error{Fault::protocol, port_.name() + ": '$I' was answered " + excerpt(line) + "; this is not GRBL 1.1"};
       }
     }
   }

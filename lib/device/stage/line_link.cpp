@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "device/stage/private/line_link.hpp"
 
+#include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "device/stage/private/shown.hpp"
 
 namespace vam::device {
 
@@ -42,8 +42,8 @@ std::string LineLink::need_line(double wait_s) {
 }
 
 Error LineLink::malformed(const std::string& question, const std::string& line) const {
-  return {Fault::protocol, port_->name() + ": '" + question + "' was answered '" + shown(line) +
-                               "', not a reply of this controller; check the device and its baud rate"};
+  return {Fault::protocol, port_->name() + ": '" + question + "' was answered " + excerpt(line) +
+                               ", not a reply of this controller; check the device and its baud rate"};
 }
 
 }  // namespace vam::device
