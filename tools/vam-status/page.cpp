@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/text/figure_text.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "io/image/capture_folder.hpp"
@@ -24,12 +24,6 @@ namespace vam::status_tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string fixed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
 
 // Mean of blocks, so that no more than `most` columns are left.
 Image reduced(const GreyImage& image, int most) {
@@ -69,7 +63,7 @@ std::string camera_figure(const RunFolder& run) {
   view.scale.label = "fraction of full scale";
   view.size = 480;
   const std::string when =
-      newest->angle_deg ? ", at stage angle " + fixed(std::fmod(*newest->angle_deg, 360), 1) + " deg" : "";
+      newest->angle_deg ? ", at stage angle " + fixed_number(std::fmod(*newest->angle_deg, 360), 1) + " deg" : "";
   return plot::page_figure("Camera", plot::page_image(plot::draw(view).image(), "camera image"),
                            "Newest image" + when + ".");
 }
@@ -86,7 +80,7 @@ std::string screen_figure(const RunFolder& run, const LightView& light, double a
   view.size = 480;
   const double peak = run.printer().projector.max_intensity_mw_cm2;
   return plot::page_figure("Projected image", plot::page_image(plot::draw(view).image(), "image of the projector"),
-                           lit ? "At stage angle " + fixed(std::fmod(angle_deg, 360), 1) +
+                           lit ? "At stage angle " + fixed_number(std::fmod(angle_deg, 360), 1) +
                                      " deg; 1 is the maximum intensity of the print, " + format_number(peak, 3) +
                                      " mW/cm2."
                                : "Dark: no light is projected now.");
@@ -96,7 +90,7 @@ std::string time_text(const std::string& utc) {
   std::tm moment{};
   if (strptime(utc.c_str(), "%Y-%m-%dT%H:%M:%S", &moment) == nullptr) return "age unknown";
   const double age_h = (static_cast<double>(std::time(nullptr)) - static_cast<double>(timegm(&moment))) / 3600;
-  return age_h < 48 ? fixed(age_h, 1) + " h old" : fixed(age_h / 24, 1) + " days old";
+  return age_h < 48 ? fixed_number(age_h, 1) + " h old" : fixed_number(age_h / 24, 1) + " days old";
 }
 
 std::string records_table(const PrintProgress& progress) {
@@ -116,11 +110,11 @@ std::string figures_table(const RunFolder& run) {
     return "<tr><th>" + name + "</th><td>" + page_text(value) + "</td></tr>\n";
   };
   std::string rows = "<table>" + row("turn", turn_text(p));
-  rows += row("stage angle", fixed(std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 1) + " deg");
+  rows += row("stage angle", angle_text(p));
   rows += row("dose delivered", given_text(p) + " of this print");
   rows += row("missed vertical blanks", std::to_string(p.missed) + " of " + std::to_string(p.blanks));
-  rows += p.missing_percent ? row("cured / missing", fixed(100 - *p.missing_percent, 1) + " % / " +
-                                                         fixed(*p.missing_percent, 1) + " % of the part")
+  rows += p.missing_percent ? row("cured / missing", fixed_number(100 - *p.missing_percent, 1) + " % / " +
+                                                         fixed_number(*p.missing_percent, 1) + " % of the part")
                             : row("cured / missing", "not measured (vam-print --until)");
   if (const std::string light = correction_text(run); !light.empty()) rows += row("new light", light);
   if (!p.simulated.empty()) rows += row("simulated", join(p.simulated, ", "));

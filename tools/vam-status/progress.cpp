@@ -8,15 +8,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/resumption.hpp"
 #include "io/settings/run_sums.hpp"
@@ -222,37 +223,32 @@ std::string state_of(const PrintProgress& progress) {
 }
 
 std::string turn_text(const PrintProgress& p) {
-  char text[64];
-  if (p.turns <= 0) {  // neither is known of a print that is not armed, or whose events.jsonl is cut
-    std::snprintf(text, sizeof text, "%.2f of unknown", std::max(0.0, p.angle_deg / 360));
-  } else {
-    std::snprintf(text, sizeof text, "%.2f of %g", std::clamp(p.angle_deg / 360, 0.0, p.turns), p.turns);
-  }
-  return text;
+  // Neither is known of a print that is not armed, or whose events.jsonl is cut.
+  if (p.turns <= 0) return fixed_number(std::max(0.0, p.angle_deg / 360), 2) + " of unknown";
+  return fixed_number(std::clamp(p.angle_deg / 360, 0.0, p.turns), 2) + " of " + format_number(p.turns);
+}
+
+std::string angle_text(const PrintProgress& p) {
+  return fixed_number(std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 1) + " deg";
 }
 
 std::string given_text(const PrintProgress& p) {
-  char text[32];
-  if (!p.given_fraction) return "unknown";
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * *p.given_fraction);
-  return text;
+  return p.given_fraction ? fixed_number(100 * *p.given_fraction, 1) + " %" : "unknown";
 }
 
 std::string status_line(const PrintProgress& p, double speed_deg_s) {
-  char text[256];
-  std::string line = state_of(p) + "  turn " + turn_text(p);
-  std::snprintf(text, sizeof text, "  angle %.1f deg  dose delivered %s  missed %ld of %ld vertical blanks",
-                std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), given_text(p).c_str(), p.missed, p.blanks);
-  line += text;
+  std::string line = state_of(p) + "  turn " + turn_text(p) + "  angle " + angle_text(p) + "  dose delivered " +
+                     given_text(p) + "  missed " + std::to_string(p.missed) + " of " + std::to_string(p.blanks) +
+                     " vertical blanks";
   if (p.missing_percent) {
-    std::snprintf(text, sizeof text, "  cured %.1f %%, missing %.1f %%", 100 - *p.missing_percent, *p.missing_percent);
-    line += text;
+    line += "  cured " + fixed_number(100 - *p.missing_percent, 1) + " %, missing " +
+            fixed_number(*p.missing_percent, 1) + " %";
   }
   if (const double left = left_s(p, speed_deg_s);
       !p.outcome && !p.abandoned && p.silent_s <= silence_s && std::isfinite(left)) {
     const long seconds = std::lround(left);
-    std::snprintf(text, sizeof text, "  %ld:%02ld left", seconds / 60, seconds % 60);
-    line += text;
+    line +=
+        "  " + std::to_string(seconds / 60) + (seconds % 60 < 10 ? ":0" : ":") + std::to_string(seconds % 60) + " left";
   }
   if (!p.resumed_by.empty()) line += "  resumed by " + excerpt(p.resumed_by);
   return line;

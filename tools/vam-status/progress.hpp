@@ -74,6 +74,8 @@ class RunFolder {
 
 /// "3.41 of 20", "3.41 of unknown" while events.jsonl has no number of turns.
 [[nodiscard]] std::string turn_text(const PrintProgress& progress);
+/// "147.6 deg", within a turn.
+[[nodiscard]] std::string angle_text(const PrintProgress& progress);
 /// "17.0 %" or "unknown", likewise.
 [[nodiscard]] std::string given_text(const PrintProgress& progress);
 /// "printing  turn 3.41 of 20  angle 147.6 deg  dose delivered 17 % ..."

@@ -2,14 +2,13 @@
 #include "vam-view/movie.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/log/progress.hpp"
+#include "base/text/figure_text.hpp"
 #include "base/text/text.hpp"
 #include "io/image/movie.hpp"
 #include "model/dose/dose_metrics.hpp"
@@ -40,13 +39,8 @@ double largest(const io::SparseVolume& dose) {
 
 /// As wide as its value at the end, by blanks that are as wide as a digit.
 std::string part_of(double whole, double fraction, int decimals) {
-  const auto rounded = [decimals](double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-    return std::string(text.data());
-  };
-  std::string text = rounded(fraction * whole);
-  for (std::size_t n = text.size(); n < rounded(whole).size(); ++n) text.insert(0, "\u2007");
+  std::string text = fixed_number(fraction * whole, decimals);
+  for (std::size_t n = text.size(); n < fixed_number(whole, decimals).size(); ++n) text.insert(0, "\u2007");
   return text;
 }
 

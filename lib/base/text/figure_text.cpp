@@ -20,4 +20,10 @@ std::string figure_row(const std::string& name, double value, const std::string&
   return line;
 }
 
+std::string fixed_number(double value, int decimals) {
+  char text[400];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
 }  // namespace vam

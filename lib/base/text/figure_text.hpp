@@ -12,4 +12,7 @@ namespace vam {
 /// An aligned line "name value meaning" of a table.
 [[nodiscard]] std::string figure_row(const std::string& name, double value, const std::string& meaning);
 
+/// With so many digits behind the point: "2.50".
+[[nodiscard]] std::string fixed_number(double value, int decimals);
+
 }  // namespace vam

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "base/log/log.hpp"
+#include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "device/port/serial_port.hpp"
@@ -24,12 +23,6 @@ constexpr int stopped_by_command = 10;
 std::string stop_bytes(const GcsSettings& settings) {
   const std::string now = addressed("\x18", settings);
   return settings.address ? "\n" + now + addressed("STP\n", settings) + now : now + "\nSTP\n" + now;
-}
-
-std::string decimal(double value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.6f", value);
-  return text.data();
 }
 
 class GcsStage final : public Stage {
@@ -101,17 +94,17 @@ class GcsStage final : public Stage {
     return found;
   }
 
-  void set_speed(double deg_s) override { order("VEL " + axis_ + " " + decimal(deg_s)); }
+  void set_speed(double deg_s) override { order("VEL " + axis_ + " " + fixed_number(deg_s, 6)); }
 
   // The controller takes a set position for a reference, too: spin() asks for the reference before.
   void set_angle(double angle_deg) override {
     order("RON " + axis_ + " 0");
-    order("POS " + axis_ + " " + decimal(angle_deg));
+    order("POS " + axis_ + " " + fixed_number(angle_deg, 6));
   }
 
   void start_move(double angle_deg) override {
     watch();
-    order("MOV " + axis_ + " " + decimal(angle_deg));
+    order("MOV " + axis_ + " " + fixed_number(angle_deg, 6));
   }
 
   StageSample sample() override {
