@@ -18,6 +18,7 @@
 #include "device/projector/display_backends.hpp"
 #include "device/projector/private/drm_buffer.hpp"
 #include "device/projector/private/drm_output.hpp"
+#include "device/safety/stop_order.hpp"
 
 namespace vam::device {
 
@@ -39,7 +40,7 @@ class DrmDisplay final : public Display {
  public:
   DrmDisplay(const std::string& connector, const std::string& mode, std::optional<int> bits, Clock& clock,
              Guardian* guardian)
-      : clock_(clock), guardian_(guardian), output_(open_drm_output(connector, mode)), name_("drm:" + connector) {
+      : clock_(clock), order_(guardian), output_(open_drm_output(connector, mode)), name_("drm:" + connector) {
     if (drmSetMaster(output_.card) != 0) {
       const std::string why = reason();
       close(output_.card);
@@ -60,7 +61,7 @@ class DrmDisplay final : public Display {
   // gone, too.
   ~DrmDisplay() override {
     try {
-      if (show_black()) unwatch();
+      if (show_black()) order_.withdraw();
     } catch (...) {
       // The guardian is gone; black is on.
     }
@@ -94,7 +95,7 @@ class DrmDisplay final : public Display {
     }
     wait_for_flip();
     require_connected();
-    if (index < 0) unwatch();
+    if (index < 0) order_.withdraw();
     if (!again) prepare(index + 1);
     return flip_;
   }
@@ -161,24 +162,19 @@ class DrmDisplay final : public Display {
 
   // The guardian shares the opened card, so that the images outlive the tool until black is on.
   void watch(bool lit) {
-    if (guardian_ == nullptr) return;
-    if (lit && action_ == 0) {
-      action_ = guardian_->add({{"do", "drm"},
-                                {"order", 0},
-                                {"name", "screen"},
-                                {"crtc", output_.crtc},
-                                {"framebuffer", black_->framebuffer()}},
-                               output_.card);
+    if (lit) {
+      order_.give({{"do", "drm"},
+                   {"order", 0},
+                   {"name", "screen"},
+                   {"crtc", output_.crtc},
+                   {"framebuffer", black_->framebuffer()}},
+                  output_.card);
     }
-    guardian_->beat();
-  }
-  void unwatch() {
-    if (action_ != 0) guardian_->forget(action_);
-    action_ = 0;
+    order_.beat();
   }
 
   Clock& clock_;
-  Guardian* guardian_;
+  StopOrder order_;
   DrmOutput output_;
   std::string name_;
   DisplayMode mode_;
@@ -189,7 +185,6 @@ class DrmDisplay final : public Display {
   std::uint64_t asked_ = 0;                           // flips so far
   Flip flip_;
   double connected_s_ = 0;  // when it was looked at last
-  int action_ = 0;
 };
 
 }  // namespace

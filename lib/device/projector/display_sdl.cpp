@@ -9,6 +9,7 @@
 #include "base/text/json.hpp"
 #include "device/projector/display_backends.hpp"
 #include "device/projector/private/sdl_library.hpp"
+#include "device/safety/stop_order.hpp"
 
 namespace vam::device {
 
@@ -48,7 +49,7 @@ struct Library {
 
 class SdlDisplay final : public Display {
  public:
-  SdlDisplay(int screen, Clock& clock, Guardian* guardian) : clock_(clock), guardian_(guardian) {
+  SdlDisplay(int screen, Clock& clock, Guardian* guardian) : clock_(clock), order_(guardian) {
     SDL_Rect bounds{};
     if (sdl::api().SDL_GetDisplayBounds(screen, &bounds) != 0) {
       throw Error{Fault::absent, "sdl:" + std::to_string(screen) + ": no such screen; number of screens: " +
@@ -96,7 +97,7 @@ class SdlDisplay final : public Display {
     answer_events();
     sdl::api().SDL_RenderPresent(renderer_.get());
     pace();
-    if (index < 0) unwatch();
+    if (index < 0) order_.withdraw();
     const double now_s = clock_.now_s();
     const long sequence = std::lround((now_s - origin_s_) * mode_.hz);
     next_s_ =
@@ -143,19 +144,13 @@ class SdlDisplay final : public Display {
 
   // While an image is on, a tool that hangs must be killed: its window goes with it.
   void watch(bool lit) {
-    if (guardian_ == nullptr) return;
-    if (lit && action_ == 0) action_ = guardian_->add({{"do", "nothing"}, {"order", 0}, {"name", "window"}});
-    guardian_->beat();
-  }
-  void unwatch() {
-    if (action_ != 0) guardian_->forget(action_);
-    action_ = 0;
+    if (lit) order_.give({{"do", "nothing"}, {"order", 0}, {"name", "window"}});
+    order_.beat();
   }
 
   Library library_;
   Clock& clock_;
-  Guardian* guardian_;
-  int action_ = 0;
+  StopOrder order_;
   DisplayMode mode_;
   std::unique_ptr<SDL_Window, WindowCloser> window_;
   std::unique_ptr<SDL_Renderer, RendererCloser> renderer_;

@@ -18,6 +18,7 @@
 #include "device/projector/light_engine.hpp"
 #include "device/projector/private/dlp_link.hpp"
 #include "device/safety/guardian_actions.hpp"
+#include "device/safety/stop_order.hpp"
 
 namespace vam::device {
 
@@ -54,7 +55,7 @@ void unless_refused(const std::function<void()>& words) {
 class DlpLight final : public LightEngine {
  public:
   DlpLight(std::unique_ptr<UsbLink> usb, const LightSettings& settings, Clock& clock, Guardian* guardian)
-      : link_(std::move(usb), clock, guardian), settings_(settings), guardian_(guardian) {
+      : link_(std::move(usb), clock, guardian), settings_(settings), order_(guardian) {
     if (settings.current_percent.value_or(0) > settings.max_current_percent) {
       throw Error{Fault::usage,
                   link_.name() + ": current of " + in_percent(*settings.current_percent) + " is above the limit of " +
@@ -122,8 +123,7 @@ class DlpLight final : public LightEngine {
 
   void dark() override {
     link_.set(led_enable, {0}, "LED enable");
-    if (action_) guardian_->forget(*action_);
-    action_.reset();
+    order_.withdraw();
   }
 
   // Asleep it is dark, too: an engine that does not confirm the first is told the second.
@@ -204,27 +204,25 @@ class DlpLight final : public LightEngine {
   }
 
   void watch() {
-    if (guardian_ == nullptr || action_) return;
     const Json about = link_.about();
     // Flags 0: no acknowledgement, since no process is left to read it.
     const Json reports =
         Json::array({to_hex(dlp_report(0, 0, led_enable, {0})), to_hex(dlp_report(0, 1, pattern_start_stop, {stop})),
                      to_hex(dlp_report(0, 2, power, {asleep}))});
-    action_ = guardian_->add({{"do", "usb"},
-                              {"order", 0},
-                              {"name", "light"},
-                              {"usb_id", about["usb_id"]},
-                              {"serial", about["serial"]},
-                              {"interface", 0},
-                              {"reports", reports}});
+    order_.give({{"do", "usb"},
+                 {"order", 0},
+                 {"name", "light"},
+                 {"usb_id", about["usb_id"]},
+                 {"serial", about["serial"]},
+                 {"interface", 0},
+                 {"reports", reports}});
   }
 
   DlpLink link_;
   LightSettings settings_;
-  Guardian* guardian_;
+  StopOrder order_;
   int led_bits_ = 0;
   bool awake_ = false;
-  std::optional<int> action_;
 };
 
 }  // namespace
