@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace vam::device {
 
@@ -18,52 +19,36 @@ bool AngleFit::ready() const {
 
 void AngleFit::solve() const {
   if (solved_) return;
-  double sum = 0;
-  double sum_t = 0;
-  double sum_angle = 0;
-  const auto weight = [](const AngleSample& s) { return 1 / std::max(s.sigma_deg * s.sigma_deg, 1e-12); };
+  constexpr double least_sigma_deg = 1e-6;
+  std::vector<stats::Measured> times, angles;
   const double origin_s = samples_.front().t_s;  // keeps the sums small
   for (const auto& s : samples_) {
-    sum += weight(s);
-    sum_t += weight(s) * (s.t_s - origin_s);
-    sum_angle += weight(s) * s.angle_deg;
+    const double sigma_deg = std::max(s.sigma_deg, least_sigma_deg);
+    times.push_back({s.t_s - origin_s, sigma_deg, 1});
+    angles.push_back({s.angle_deg, sigma_deg, 1});
   }
-  mean_t_s_ = origin_s + sum_t / sum;
-  mean_deg_ = sum_angle / sum;
-  double tt = 0;
-  double ta = 0;
-  for (const auto& s : samples_) {
-    const double dt = s.t_s - mean_t_s_;
-    tt += weight(s) * dt * dt;
-    ta += weight(s) * dt * (s.angle_deg - mean_deg_);
-  }
-  slope_ = ta / tt;
-  // The scatter about the line, when it is larger than the samples' own sigmas say, widens the uncertainty.
-  double chi2 = 0;
-  for (const auto& s : samples_) {
-    const double residual = s.angle_deg - mean_deg_ - slope_ * (s.t_s - mean_t_s_);
-    chi2 += weight(s) * residual * residual;
-  }
-  const double widening = std::max(1.0, chi2 / static_cast<double>(samples_.size() - 2));
-  slope_variance_ = widening / tt;
-  mean_variance_ = widening / sum;
+  const double mean_s = stats::weighted_mean(times).value;
+  mean_t_s_ = origin_s + mean_s;
+  std::vector<double> from_mean_s;
+  for (const auto& time : times) from_mean_s.push_back(time.value - mean_s);
+  line_ = stats::weighted_line(from_mean_s, angles);  // about the mean time its two values do not depend on each other
   solved_ = true;
 }
 
 AngleSample AngleFit::at(double t_s) const {
   solve();
   const double dt = t_s - mean_t_s_;
-  return {t_s, mean_deg_ + slope_ * dt, std::sqrt(mean_variance_ + slope_variance_ * dt * dt)};
+  return {t_s, line_.at_zero.value + line_.slope.value * dt, std::hypot(line_.at_zero.sigma, line_.slope.sigma * dt)};
 }
 
 double AngleFit::speed_deg_s() const {
   solve();
-  return slope_;
+  return line_.slope.value;
 }
 
 double AngleFit::speed_sigma_deg_s() const {
   solve();
-  return std::sqrt(slope_variance_);
+  return line_.slope.sigma;
 }
 
 }  // namespace vam::device

@@ -5,6 +5,7 @@
 
 #include <deque>
 
+#include "base/stats/measured.hpp"
 #include "device/os/angle_sample.hpp"
 
 namespace vam::device {
@@ -27,7 +28,8 @@ class AngleFit {
   double window_s_;
   std::deque<AngleSample> samples_;
   mutable bool solved_ = false;
-  mutable double mean_t_s_ = 0, mean_deg_ = 0, slope_ = 0, slope_variance_ = 0, mean_variance_ = 0;
+  mutable double mean_t_s_ = 0;
+  mutable stats::WeightedLine line_;  // over the time from there
 };
 
 }  // namespace vam::device
