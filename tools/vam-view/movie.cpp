@@ -10,7 +10,7 @@
 #include "base/log/progress.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/text.hpp"
-#include "io/image/movie.hpp"
+#include "io/image/video.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/render.hpp"
@@ -122,7 +122,7 @@ void write_movie(const std::string& path, const io::SparseVolume& dose, const io
   const Growth growth(dose, target, insert, exposure, view);
   RgbImage frame = growth.frame(growing - 1, growth.print(growing - 1), dpi);
   const int width = frame.width, height = frame.height;
-  io::Movie movie(path, width, height, fps, history);
+  io::VideoWriter movie(path, {.width = width, .height = height, .fps = fps, .comment = history, .colour = true});
   Progress progress("drawing", growing);
   for (int n = 0; n < growing; n += at_once) {
     const int count = std::min(at_once, growing - n);

@@ -23,7 +23,7 @@ struct Exposure {
 
 /// Six seconds from where the first resin gels to the end of the exposure, which stands for one more: the target, and
 /// beside it the print so far, both with the insert, if any. Memory: the surfaces of eight frames. Throws Fault::data
-/// where nothing prints, and as io::Movie does.
+/// where nothing prints, and as io::VideoWriter does.
 void write_movie(const std::string& path, const io::SparseVolume& dose, const io::SparseVolume& target,
                  const io::SparseVolume* insert, const Exposure& exposure, const plot::ViewOptions& view, double dpi,
                  const std::string& history);

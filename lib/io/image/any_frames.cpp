@@ -16,7 +16,7 @@
 #include "io/image/capture_folder.hpp"
 #include "io/image/frame_folder.hpp"
 #include "io/image/image_file.hpp"
-#include "io/image/private/video.hpp"
+#include "io/image/video.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 

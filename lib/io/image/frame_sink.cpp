@@ -9,7 +9,7 @@
 #include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "io/image/frame_folder.hpp"
-#include "io/image/private/video.hpp"
+#include "io/image/video.hpp"
 
 namespace vam::io {
 

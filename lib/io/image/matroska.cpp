@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "base/error.hpp"
@@ -111,12 +112,25 @@ MatroskaProof check_parts(std::istream& in, const std::string& path, std::uint64
   return proof;
 }
 
+// Passes the head; false where it is none of Matroska.
+bool pass_head(std::istream& in) {
+  if (number(in, true) != ebml_head) return false;
+  if (const auto head = number(in, false)) in.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
+  return true;
+}
+
 }  // namespace
+
+std::optional<std::size_t> segment_size_at(const std::string& head) {
+  std::istringstream in(head);
+  if (!pass_head(in) || number(in, true) != segment) return std::nullopt;
+  const auto at = static_cast<std::size_t>(in.tellg());
+  return in.peek() == 1 && number(in, false) ? std::optional(at) : std::nullopt;
+}
 
 MatroskaProof require_whole_matroska(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (number(in, true) != ebml_head) return {};
-  if (const auto head = number(in, false)) in.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
+  if (!pass_head(in)) return {};
   if (number(in, true) != segment) throw Error{Fault::data, path + ": the video is truncated in its head"};
   const auto size = number(in, false);
   if (!size) return {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // In the place of video_reader.cpp and video_writer.cpp where the tools are built with -DVAM_VIDEO=OFF.
 #include "base/error.hpp"
-#include "io/image/private/video.hpp"
+#include "io/image/video.hpp"
 
 namespace vam::io {
 

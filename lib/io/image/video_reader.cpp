@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "base/text/format_version.hpp"
-#include "io/image/private/av_handles.hpp"
+#include "io/image/private/av_library.hpp"
 #include "io/image/private/matroska.hpp"
-#include "io/image/private/video.hpp"
 #include "io/image/private/video_seal.hpp"
+#include "io/image/video.hpp"
 
 namespace vam::io {
 

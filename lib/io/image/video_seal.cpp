@@ -3,8 +3,6 @@
 
 #include <zlib.h>
 
-#include <array>
-
 namespace vam::io {
 
 namespace {
@@ -58,25 +56,6 @@ std::optional<Digest> parse_seal_element(const std::string& content) {
   Digest digest;
   if (content.substr(sum_bytes) != tag_of(text) || !parse_seal(text, digest)) return std::nullopt;
   return digest;
-}
-
-std::optional<std::size_t> segment_size_at(const std::string& head) {
-  constexpr std::array<char, 5> segment{'\x18', '\x53', '\x80', '\x67', '\x01'};  // and a size of eight bytes
-  constexpr std::size_t header_at = 4;
-  if (head.size() <= header_at) return std::nullopt;
-  const auto first = static_cast<unsigned char>(head[header_at]);  // the size of the EBML header: one byte, or eight
-  std::size_t at = header_at;
-  if (first >= 0x80) {
-    at += 1 + (first & 0x7fU);
-  } else if (first == 0x01 && head.size() > header_at + 8) {
-    at += 8 + static_cast<unsigned char>(head[header_at + 7]);
-  } else {
-    return std::nullopt;
-  }
-  if (head.size() < at + segment.size() + 7 || head.compare(at, segment.size(), segment.data(), segment.size()) != 0)
-    return std::nullopt;
-  if (head.compare(at + segment.size(), 7, std::string(7, '\xff')) == 0) return std::nullopt;  // not known
-  return at + 4;
 }
 
 }  // namespace vam::io

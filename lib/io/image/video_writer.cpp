@@ -12,10 +12,11 @@
 #include "base/compute/parallel.hpp"
 #include "base/text/format_version.hpp"
 #include "base/text/text.hpp"
-#include "io/image/private/av_handles.hpp"
+#include "io/image/private/av_library.hpp"
 #include "io/image/private/ffv1.hpp"
-#include "io/image/private/video.hpp"
+#include "io/image/private/matroska.hpp"
 #include "io/image/private/video_seal.hpp"
+#include "io/image/video.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -220,8 +221,7 @@ struct VideoWriter::State {
     const av::AvFrame tried = frame_of(encoder);
     for (int y = 0; y < trial.height; ++y) {
       const std::uint16_t* from = trial.values.data() + trial.index(0, y);
-      std::transform(from, from + trial.width, tried->data[0] + static_cast<std::ptrdiff_t>(y) * tried->linesize[0],
-                     [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
+      std::copy(from, from + trial.width, tried->data[0] + static_cast<std::ptrdiff_t>(y) * tried->linesize[0]);
     }
     check(av::api().avcodec_send_frame(encoder.get(), tried.get()), "video encoding");
     check(av::api().avcodec_receive_packet(encoder.get(), packet.get()), "video encoding");
@@ -251,45 +251,33 @@ struct VideoWriter::State {
                 sink.file.name() + ": frame " + std::to_string(written) + " has another size or depth than the video"};
   }
 
-  void fill_row(const std::uint16_t* from, int width, std::uint8_t* row) const {
-    if (format.bits == 8) {  // as they are: many at once
-      std::transform(from, from + width, row, [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
-    } else {
-      std::transform(from, from + width, row, [this](std::uint16_t level) { return stored[level]; });
-    }
-  }
-
-  void fill(const GreyImage& image) {
-    for (int y = 0; y < frame->height; ++y) {
-      std::uint8_t* row = frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0];
-      const std::uint16_t* from = image.values.data() + image.index(0, std::min(y, image.height - 1));
+  /// Lossless: the levels.
+  void fill(AVFrame& to, const GreyImage& image) const {
+    for (int y = 0; y < image.height; ++y) {
+      std::uint8_t* row = to.data[0] + static_cast<std::ptrdiff_t>(y) * to.linesize[0];
+      const std::uint16_t* from = image.values.data() + image.index(0, y);
       if (wide) {
         std::memcpy(row, from, sizeof *from * static_cast<std::size_t>(image.width));
       } else {
-        fill_row(from, image.width, row);
-        std::fill(row + image.width, row + frame->width, row[image.width - 1]);  // an odd width
+        std::transform(from, from + image.width, row, [this](std::uint16_t level) { return stored[level]; });
       }
-    }
-    for (int plane = 1; !lossless && plane < 3; ++plane) {  // no colour
-      std::memset(frame->data[plane], 128,
-                  static_cast<std::size_t>(frame->linesize[plane]) * static_cast<std::size_t>(frame->height / 2));
     }
   }
 
   /// Luma of each pixel, colour differences of two by two [ITU-R BT.709].
-  void fill(const RgbImage& image) {
-    for (int y = 0; y < frame->height; y += 2) {
-      for (int x = 0; x < frame->width; x += 2) {
+  void fill(AVFrame& to, const RgbImage& image) const {
+    for (int y = 0; y < to.height; y += 2) {
+      for (int x = 0; x < to.width; x += 2) {
         std::array<double, 3> sum{};
         for (int corner = 0; corner < 4; ++corner) {
           const int i = x + corner % 2, j = y + corner / 2;
           const Rgb& pixel = image(std::min(i, image.width - 1), std::min(j, image.height - 1));
-          frame->data[0][static_cast<std::ptrdiff_t>(j) * frame->linesize[0] + i] = byte_of(luma(pixel));
+          to.data[0][static_cast<std::ptrdiff_t>(j) * to.linesize[0] + i] = byte_of(luma(pixel));
           for (std::size_t c = 0; c < 3; ++c) sum[c] += pixel[c] / 4.0;
         }
         const double mean = luma(sum);
         const auto at = [&](int plane) -> std::uint8_t& {
-          return frame->data[plane][static_cast<std::ptrdiff_t>(y / 2) * frame->linesize[plane] + x / 2];
+          return to.data[plane][static_cast<std::ptrdiff_t>(y / 2) * to.linesize[plane] + x / 2];
         };
         at(1) = byte_of(128 + (sum[2] - mean) / 1.8556);
         at(2) = byte_of(128 + (sum[0] - mean) / 1.5748);
@@ -300,9 +288,17 @@ struct VideoWriter::State {
   template <class Image>
   void put_frame(const Image& image) {
     check(av::api().av_frame_make_writable(frame.get()), "video frame");
-    fill(image);
+    fill(*frame, image);
     frame->pts = written++;
     send(frame.get());
+  }
+
+  [[nodiscard]] RgbImage in_colour(const GreyImage& image) const {
+    RgbImage grey(image.width, image.height);
+    std::transform(image.values.begin(), image.values.end(), grey.values.begin(), [this](std::uint16_t level) {
+      return Rgb{stored[level], stored[level], stored[level]};
+    });
+    return grey;
   }
 
   // Of what the frame is decoded to.
@@ -376,8 +372,12 @@ void VideoWriter::write(int count, const std::function<const GreyImage&(int)>& i
     return;
   }
   for (int i = 0; i < count; ++i) {
-    s.put_frame(image(i));
-    if (s.seal) s.seal->add(s.digest(image(i)));
+    if (s.lossless) {
+      s.put_frame(image(i));
+      s.seal->add(s.digest(image(i)));
+    } else {
+      s.put_frame(s.in_colour(image(i)));
+    }
   }
 }
 

@@ -12,7 +12,7 @@
 #include "io/exr/stack.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
-#include "io/image/private/video.hpp"
+#include "io/image/video.hpp"
 
 namespace vam::io {
 

@@ -11,7 +11,7 @@
 
 #include "io/exr/stack.hpp"
 #include "io/image/image_file.hpp"
-#include "io/image/private/video.hpp"
+#include "io/image/video.hpp"
 #include "io/image/view_source.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"

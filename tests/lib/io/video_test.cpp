@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/image/private/video.hpp"
+#include "io/image/video.hpp"
 
 #include <cstdlib>
 #include <filesystem>

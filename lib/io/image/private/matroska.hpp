@@ -2,6 +2,7 @@
 // Private to the video files: what a Matroska file says of its own wholeness.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -20,5 +21,9 @@ struct MatroskaProof {
 /// as are bytes behind them, and a part of a kind that Matroska does not have). libav checks neither, and takes the end
 /// of a cut file for the end of the film. Nothing speaks for files of other kinds.
 MatroskaProof require_whole_matroska(const std::string& path);
+
+/// Where the eight bytes of the size of the segment begin in the first bytes of a Matroska file; nothing where the size
+/// is not known, or kept in fewer.
+[[nodiscard]] std::optional<std::size_t> segment_size_at(const std::string& head);
 
 }  // namespace vam::io

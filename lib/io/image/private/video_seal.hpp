@@ -39,8 +39,4 @@ class VideoSeal {
 /// Bytes of the content of such an element.
 [[nodiscard]] std::size_t seal_element_bytes();
 
-/// Where the eight bytes of the size of the segment begin in the first bytes of a Matroska file; nothing where the size
-/// is not known, or kept in fewer.
-[[nodiscard]] std::optional<std::size_t> segment_size_at(const std::string& head);
-
 }  // namespace vam::io

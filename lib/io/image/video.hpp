@@ -29,11 +29,10 @@ struct VideoFormat {
 ///  .mkv  FFV1, lossless: gray for up to 8 bits (fewer are spread over 0..255, so that players show the right
 ///        brightness), gray10le for 10 and gray16le for 16 with the levels as they are.
 ///  .mp4  H.264 yuv420p, 8 bits, full range, odd sizes padded with their last row or column. Errs by up to 59 of 255 on
-///  fine
-///        patterns: never print from it.
+///        fine patterns: never print from it.
 /// FFV1 in a file, not in a pipe, ends in a seal of its levels.
 /// The bytes do not depend on the machine or the number of threads. A file appears under its name at commit() only.
-/// Throws Error: usage (another ending), no_output, io.
+/// Throws Error: usage (another ending, a build without video), absent (no H.264 encoder), no_output, io.
 class VideoWriter {
  public:
   VideoWriter(const std::string& path, const VideoFormat& format);
