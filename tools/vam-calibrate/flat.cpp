@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "io/exr/stack.hpp"
+#include "io/image/image_file.hpp"
 #include "io/image/view_source.hpp"
 #include "vam-calibrate/scan.hpp"
 

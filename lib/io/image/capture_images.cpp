@@ -12,7 +12,6 @@
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/capture_manifest.hpp"
-#include "io/image/view_source.hpp"
 #include "io/stream/log_lines.hpp"
 
 namespace vam::io {

@@ -41,6 +41,9 @@ void write_png(const std::string& path, const RgbImage& image, const ImageText& 
 /// Of which files a folder is read: grey images (.png, .tif, .tiff), or images of intensity (.exr).
 enum class FolderOf { grey, exr };
 
+/// By its name.
+[[nodiscard]] bool is_image_file(const std::string& path, FolderOf of = FolderOf::grey);
+
 /// Has the folder EXR images, and no grey ones?
 [[nodiscard]] bool is_exr_folder(const std::string& folder);
 

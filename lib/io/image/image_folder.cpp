@@ -19,13 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_image_file(const fs::path& path, FolderOf of) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (of == FolderOf::exr) return extension == ".exr";
-  return extension == ".png" || extension == ".tif" || extension == ".tiff";
-}
-
 // The last run of digits in the name: "part-2_slice0017.png" is number 17.
 long number_of(const fs::path& path) {
   const std::string stem = path.stem().string();
@@ -71,6 +64,13 @@ void require_no_gaps(const std::vector<Numbered>& images) {
 }
 
 }  // namespace
+
+bool is_image_file(const std::string& path, FolderOf of) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (of == FolderOf::exr) return extension == ".exr";
+  return extension == ".png" || extension == ".tif" || extension == ".tiff";
+}
 
 bool is_exr_folder(const std::string& folder) {
   bool found = false;

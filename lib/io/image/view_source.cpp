@@ -24,10 +24,6 @@ bool is_video(const std::string& path) {
 
 }  // namespace
 
-bool is_image_file(const std::string& path) {
-  return path.ends_with(".png") || path.ends_with(".tif") || path.ends_with(".tiff");
-}
-
 struct ViewSource::State {
   std::string path;
   double step_deg = 0;

@@ -39,9 +39,6 @@ class ViewSource {
   std::unique_ptr<State> state_;
 };
 
-/// By its name: a PNG or TIFF.
-[[nodiscard]] bool is_image_file(const std::string& path);
-
 /// One image or the mean of all images of a stack, for dark and flat fields.
 [[nodiscard]] Image read_field(const std::string& path);
 
