@@ -32,7 +32,8 @@ using ImageText = std::map<std::string, std::string>;
 /// the full range as the PNG specification asks (section 12.5: v << 6 | v >> 4) and marked by an sBIT chunk, so that
 /// viewers show the right brightness and `>> 6` gives the level back.
 [[nodiscard]] std::string encode_png(const GreyImage& image, const ImageText& text = {});
-[[nodiscard]] std::string encode_png(const RgbImage& image, const ImageText& text = {});
+/// dpi: stated in the file (PNG specification, 11.3.5.3); 0: not.
+[[nodiscard]] std::string encode_png(const RgbImage& image, const ImageText& text = {}, double dpi = 0);
 
 /// Writes a PNG; "-" is stdout. Throws Error: no_output, io.
 void write_png(const std::string& path, const GreyImage& image, const ImageText& text = {});

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "base/error.hpp"
@@ -63,8 +64,12 @@ struct PngLayout {
   std::size_t row_bytes;
 };
 
-PngBytes assemble(const PngLayout& layout, const PngBytes& significant_bits, const PngBytes& rows,
-                  const ImageText& text) {
+struct PngRemark {
+  const char* type;
+  PngBytes data;  // empty: none
+};
+
+PngBytes assemble(const PngLayout& layout, const PngRemark& remark, const PngBytes& rows, const ImageText& text) {
   PngBytes png("\x89PNG\r\n\x1a\n", 8);
   PngBytes header;
   put32(header, static_cast<std::uint32_t>(layout.width));
@@ -73,7 +78,7 @@ PngBytes assemble(const PngLayout& layout, const PngBytes& significant_bits, con
   header += static_cast<char>(layout.colour_type);
   header += PngBytes(3, '\0');  // deflate, adaptive filters, not interlaced
   put_chunk(png, "IHDR", header);
-  if (!significant_bits.empty()) put_chunk(png, "sBIT", significant_bits);
+  if (!remark.data.empty()) put_chunk(png, remark.type, remark.data);
   for (const auto& [keyword, words] : text) put_chunk(png, "tEXt", keyword + '\0' + words);
   put_chunk(png, "IDAT", deflated(filtered_up(rows, layout.row_bytes)));
   put_chunk(png, "IEND", "");
@@ -125,15 +130,20 @@ std::string encode_png(const GreyImage& image, const ImageText& text) {
   const int depth = image.bits > 8 ? 16 : image.bits;
   const auto bits = static_cast<std::size_t>(image.width) * depth;
   const PngLayout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
-  const PngBytes significant(image.bits == 10 ? 1 : 0, '\x0a');
+  const PngRemark significant{"sBIT", PngBytes(image.bits == 10 ? 1 : 0, '\x0a')};
   if (depth == 16) return assemble(layout, significant, wide_rows(image), text);
   return assemble(layout, significant, depth == 8 ? byte_rows(image) : packed_rows(image, layout.row_bytes), text);
 }
 
-std::string encode_png(const RgbImage& image, const ImageText& text) {
+std::string encode_png(const RgbImage& image, const ImageText& text, double dpi) {
   const PngLayout layout{image.width, image.height, 8, 2, 3 * static_cast<std::size_t>(image.width)};
   const PngBytes rows(reinterpret_cast<const char*>(image.values.data()), 3 * image.values.size());
-  return assemble(layout, "", rows, text);
+  PngRemark density{"pHYs", {}};
+  constexpr double inches_per_m = 1 / 0.0254;
+  for (int way = 0; way < 2 && dpi > 0; ++way)
+    put32(density.data, static_cast<std::uint32_t>(std::lround(dpi * inches_per_m)));
+  if (dpi > 0) density.data += '\1';  // per metre
+  return assemble(layout, density, rows, text);
 }
 
 void write_png(const std::string& path, const GreyImage& image, const ImageText& text) { write(path, image, text); }
