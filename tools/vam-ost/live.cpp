@@ -7,12 +7,11 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
-#include "base/text/format_version.hpp"
 #include "base/text/json.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "device/os/event_log.hpp"
 #include "io/image/view_queue.hpp"
-#include "io/settings/json_log.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/ost/sliding_turn.hpp"
 #include "model/conditions.hpp"
@@ -55,11 +54,7 @@ std::vector<model::Condition> conditions_of(const Options& options) {
 class Turns {
  public:
   Turns(Session& session, Print& print, const Options& options)
-      : session_(session),
-        print_(print),
-        options_(options),
-        conditions_(conditions_of(options)),
-        log_(io::open_log(options.log)) {
+      : session_(session), print_(print), options_(options), conditions_(conditions_of(options)), log_(options.log) {
     if (options.output != "-") std::filesystem::create_directories(options.output);
   }
 
@@ -98,10 +93,7 @@ class Turns {
     session_.write(volume, (folder / ("scatter" + std::string(number))).string(), origin);
   }
 
-  void say(Json line) {
-    if (!std::exchange(versioned_, true)) line["schema"] = FormatKind("vam-log").schema();
-    if (log_) io::log_line(*log_, line.dump());
-  }
+  void say(const Json& line) { log_.line(line); }
   [[nodiscard]] int count() const { return index_; }
 
  private:
@@ -109,8 +101,7 @@ class Turns {
   Print& print_;
   const Options& options_;
   std::vector<model::Condition> conditions_;
-  io::JsonLog log_;
-  bool versioned_ = false;  // the log states its schema
+  device::EventLog log_;
   int index_ = 0;
 };
 

@@ -4,36 +4,19 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <cmath>
-#include <ctime>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/system_error.hpp"
 #include "base/text/format_version.hpp"
 #include "base/text/json.hpp"
+#include "base/text/utc.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/os/line_writer.hpp"
 
 namespace vam::device {
-
-std::string utc_now(double ago_s) {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  const double back_s = std::ceil(ago_s - 1e-9 * static_cast<double>(now.tv_nsec));
-  now.tv_nsec += std::lround(1e9 * (back_s - ago_s));
-  now.tv_sec -= static_cast<time_t>(back_s);
-  tm parts{};
-  gmtime_r(&now.tv_sec, &parts);
-  std::array<char, 64> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
-  std::array<char, 80> whole{};
-  std::snprintf(whole.data(), whole.size(), "%s.%03ldZ", text.data(), now.tv_nsec / 1000000);
-  return whole.data();
-}
 
 EventLog::EventLog(const std::string& path) : path_(path) {
   if (path.empty()) return;
@@ -61,7 +44,7 @@ void EventLog::operator()(const std::string& event, const Json& facts) { at(real
 
 void EventLog::at(double t_s, const std::string& event, const Json& facts) {
   if (fd_ < 0) return;
-  Json whole{{"utc", utc_now(real_clock().now_s() - t_s)}, {"t_monotonic_s", t_s}, {"event", event}};
+  Json whole{{"utc", utc_text(utc_seconds() - (real_clock().now_s() - t_s))}, {"t_monotonic_s", t_s}, {"event", event}};
   whole.update(facts);
   line(whole);
 }

@@ -49,7 +49,4 @@ class EventLog {
 /// error leaves no log where there was none.
 void logged(const std::string& path, const std::function<void()>& body);
 
-/// "2026-11-21T04:43:00.123Z", or of a moment that many seconds ago.
-[[nodiscard]] std::string utc_now(double ago_s = 0);
-
 }  // namespace vam::device
