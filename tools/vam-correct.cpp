@@ -110,7 +110,7 @@ auto of_file(const std::string& path, const Make& make) {
 }
 
 metrology::ScatterCurve curve_of(const std::string& path) {
-  const Json record = io::sealed_record(path, "vam-working-curve");
+  const Json record = io::sealed_record(path, {"vam-working-curve"});
   return of_file(path, [&] { return metrology::scatter_curve(record); });
 }
 
@@ -119,7 +119,7 @@ metrology::SensitivityField field_before(const Options& options, const model::Vo
   metrology::SensitivityPrior prior;
   prior.axis_px = options.column_offset_px.value_or(0) > 0 ? options.axis_sigma_px : 0;
   if (options.before.empty()) return metrology::expected_sensitivity(dose, curve, prior);
-  const Json report = io::sealed_record(options.before, "vam-correct");
+  const Json report = io::sealed_record(options.before, {"vam-correct"});
   return of_file(options.before, [&] {
     return carried_on(metrology::sensitivity_field(report.value("field", Json::object())), prior);
   });

@@ -12,20 +12,9 @@
 namespace vam::io {
 
 double gelation_isovalue(const std::string& path) {
-  double isovalue = 0;
-  double critical = 1;
-  try {
-    const Json record = parse_distinct(read_all(path, Content::text, most_record_bytes), path);
-    if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
-    if (!is_of(record, "vam-resin") && !is_of(record, "vam-working-curve"))
-      throw Error{Fault::data,
-                  path + ": not a record of vam-calibrate resin, its schema is " + briefly(record.at("schema").dump())};
-    require_seal(record, path);
-    isovalue = record.at("isovalue").get<double>();
-    critical = number_at(record, "critical_dose_mj_cm3", critical);
-  } catch (const Json::exception&) {
-    throw Error{Fault::data, path + ": not a record of vam-calibrate resin, which has schema and isovalue"};
-  }
+  const Json record = sealed_record(path, {"vam-resin", "vam-working-curve"});
+  const double isovalue = number_at(record, "isovalue");
+  const double critical = number_at(record, "critical_dose_mj_cm3", 1);
   if (!(critical > 0)) {
     throw Error{Fault::data, path + ": critical_dose_mj_cm3 is " + format_number(critical) +
                                  "; it must be above 0; measure it again"};
@@ -36,13 +25,16 @@ double gelation_isovalue(const std::string& path) {
   return isovalue;
 }
 
-Json sealed_record(const std::string& path, FormatKind schema) {
+Json sealed_record(const std::string& path, std::initializer_list<FormatKind> schemas) {
   Json record = parse_distinct(read_all(path, Content::text, most_record_bytes), path);
-  if (!is_of(record, schema)) {
-    throw Error{Fault::data, path + ": not JSON of the schema " + schema.schema()};
+  std::vector<std::string> known;
+  for (const FormatKind& schema : schemas) {
+    if (is_of(record, schema)) return (void)require_seal(record, path), record;
+    known.push_back(schema.schema());
   }
-  require_seal(record, path);
-  return record;
+  const std::string stated = text_at(record, "schema");
+  throw Error{Fault::data, path + ": not JSON of the schema " + join(known, " or ") +
+                               (stated.empty() ? "" : ", but of " + briefly(stated))};
 }
 
 }  // namespace vam::io

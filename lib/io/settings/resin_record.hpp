@@ -2,6 +2,7 @@
 // What was measured of a resin, kept in a file for later runs.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 #include "base/text/format_version.hpp"
@@ -13,7 +14,7 @@ namespace vam::io {
 /// data (not such a record, or its isovalue is not above 0).
 [[nodiscard]] double gelation_isovalue(const std::string& path);
 
-/// A JSON file of that schema, its seal held to. Throws Error: no_input, data.
-[[nodiscard]] Json sealed_record(const std::string& path, FormatKind schema);
+/// A JSON file of one of these schemas, its seal held to. Throws Error: no_input, data.
+[[nodiscard]] Json sealed_record(const std::string& path, std::initializer_list<FormatKind> schemas);
 
 }  // namespace vam::io
