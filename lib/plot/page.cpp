@@ -41,6 +41,15 @@ std::string page_plot(Plot plot, const std::string& alt) {
   return page_image(draw(plot).image(), alt);
 }
 
+std::string page_gradient(ColourMap map, int steps) {
+  std::string stops = "linear-gradient(90deg";
+  for (int n = 0; n <= steps; ++n) {
+    const Rgb c = colour(map, static_cast<double>(n) / steps);
+    stops += ",rgb(" + std::to_string(c[0]) + "," + std::to_string(c[1]) + "," + std::to_string(c[2]) + ")";
+  }
+  return stops + ")";
+}
+
 std::string page_figure(const std::string& title, const std::string& content, const std::string& caption) {
   return "<figure><h2>" + page_text(title) + "</h2>" + content + "<figcaption>" + page_text(caption) +
          "</figcaption></figure>\n";

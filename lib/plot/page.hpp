@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/pixels.hpp"
+#include "plot/colour_map.hpp"
 #include "plot/plot.hpp"
 
 namespace vam::plot {
@@ -14,6 +15,9 @@ namespace vam::plot {
 
 /// A plot as such an image, small: its words are read in the columns of a page, and on a telephone.
 [[nodiscard]] std::string page_plot(Plot plot, const std::string& alt);
+
+/// CSS: a gradient to the right over all colours of the map, by so many steps.
+[[nodiscard]] std::string page_gradient(ColourMap map, int steps);
 
 /// <figure> with heading and caption around `content`, which is HTML; the other two are text.
 [[nodiscard]] std::string page_figure(const std::string& title, const std::string& content, const std::string& caption);

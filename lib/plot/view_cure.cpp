@@ -107,14 +107,12 @@ ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& targ
     figure.panels.push_back({std::move(doses[n]), sections.captions[n], {}});
     figure.panels.back().picture = std::move(picture);
   }
-  const auto lines = outlines(target, dose.grid(), options.plane, sections.places_mm);
-  for (std::size_t n = 0; n < lines.size(); ++n) figure.panels[n].outline = lines[n];
+  views::add_outlines(figure, target, dose.grid(), options.plane, sections);
   if (insert != nullptr) {
     for (std::size_t n = 0; n < hidden.size(); ++n) figure.panels[n].hatched = std::move(hidden[n]);
     figure.hatched_name = "insert";
   }
   views::set_section_axes(figure, dose.grid(), options);
-  figure.outline_name = "surface of the target";
   figure.legend = legend_of(counts, insert != nullptr);
   figure.title = options.title.value_or(options.name + ": cured at " + format_number(threshold, 4) + " " + dose.units +
                                         views::sections_text(sections, options.plane));

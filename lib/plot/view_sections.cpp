@@ -48,6 +48,13 @@ void set_section_axes(ImageFigure& figure, const model::Grid& grid, const ViewOp
   figure.size = options.size;
 }
 
+void add_outlines(ImageFigure& figure, const io::SparseVolume& target, const model::Grid& grid, Plane plane,
+                  const Sections& sections) {
+  const auto lines = outlines(target, grid, plane, sections.places_mm);
+  for (std::size_t n = 0; n < lines.size(); ++n) figure.panels[n].outline = lines[n];
+  figure.outline_name = "surface of the target";
+}
+
 std::string sections_text(const Sections& sections, Plane plane) {
   const std::string name = std::string(", ") + plane_name(plane);
   return sections.captions.size() == 1 ? name + " section at " + sections.captions[0] : name + " sections";

@@ -13,13 +13,6 @@ namespace {
 
 bool is_coverage(const std::string& grid) { return grid == "target" || grid == "insert" || grid == "weight"; }
 
-void add_outlines(ImageFigure& figure, const io::SparseVolume& target, const model::Grid& grid, Plane plane,
-                  const std::vector<double>& places) {
-  const auto lines = outlines(target, grid, plane, places);
-  for (std::size_t n = 0; n < lines.size(); ++n) figure.panels[n].outline = lines[n];
-  figure.outline_name = "surface of the target";
-}
-
 void add_insert(ImageFigure& figure, const io::SparseVolume& insert, Plane plane, const std::vector<int>& indices) {
   std::vector<InsertSection> hidden = insert_sections(insert, plane, indices);
   for (std::size_t n = 0; n < hidden.size(); ++n) {
@@ -44,7 +37,7 @@ ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* 
   ImageFigure figure;
   for (std::size_t n = 0; n < images.size(); ++n)
     figure.panels.push_back({std::move(images[n]), sections.captions[n], {}});
-  if (target != nullptr) add_outlines(figure, *target, grid, options.plane, sections.places_mm);
+  if (target != nullptr) views::add_outlines(figure, *target, grid, options.plane, sections);
   if (insert != nullptr) add_insert(figure, *insert, options.plane, sections.indices);
   const bool coverage = is_coverage(volume.name());
   views::choose_colours(figure, options, coverage ? views::Content::coverage : views::Content::amount);

@@ -10,7 +10,7 @@
 #include "base/text/text.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
-#include "plot/deviation_histogram.hpp"
+#include "plot/curves.hpp"
 #include "plot/page.hpp"
 #include "vam-report/names.hpp"
 

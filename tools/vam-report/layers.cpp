@@ -12,6 +12,7 @@
 #include "base/text/text.hpp"
 #include "plot/canvas.hpp"
 #include "plot/colour_map.hpp"
+#include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "vam-report/page_data.hpp"
 
@@ -70,16 +71,10 @@ Json packed(const Layer& layer, const solid::Bounds& box) {
 
 std::string scale(const Layer& layer, bool hidden) {
   if (layer.meaning.empty()) return "<div class=\"scale\"" + std::string(hidden ? " hidden" : "") + "></div>";
-  std::string stops;
-  for (int n = 0; n <= 4; ++n) {
-    const Rgb colour = plot::colour(plot::ColourMap::diverging, 0.25 * n);
-    stops +=
-        ",rgb(" + std::to_string(colour[0]) + "," + std::to_string(colour[1]) + "," + std::to_string(colour[2]) + ")";
-  }
   const std::string limit = format_number(layer.limit, 2) + " " + layer.unit;
   return "<div class=\"scale\"" + std::string(hidden ? " hidden" : "") + "><span>-" + limit +
-         "</span><i style=\"background:linear-gradient(90deg" + stops + ")\"></i><span>+" + limit + "</span><span>" +
-         page_text(layer.meaning) + "</span></div>";
+         "</span><i style=\"background:" + plot::page_gradient(plot::ColourMap::diverging, 4) + "\"></i><span>+" +
+         limit + "</span><span>" + page_text(layer.meaning) + "</span></div>";
 }
 
 std::string choices(const std::vector<Layer>& layers, const std::string& group) {

@@ -14,7 +14,7 @@
 #include "io/settings/csv_table.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
-#include "plot/convergence.hpp"
+#include "plot/curves.hpp"
 #include "plot/page.hpp"
 #include "vam-report/names.hpp"
 

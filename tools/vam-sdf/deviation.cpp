@@ -19,7 +19,7 @@
 #include "metrology/compare/inspection.hpp"
 #include "metrology/compare/uncertainty.hpp"
 #include "model/conditions.hpp"
-#include "plot/deviation_histogram.hpp"
+#include "plot/curves.hpp"
 #include "plot/save.hpp"
 #include "session/surface.hpp"
 #include "solid/mesh/align.hpp"

@@ -13,6 +13,7 @@
 #include "model/metadata.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
+#include "plot/planes.hpp"
 
 namespace vam::status_tool {
 
@@ -21,17 +22,9 @@ namespace {
 // x to the right, z up, in the heights of the print.
 plot::ImageFigure section_of(const io::SparseVolume& volume) {
   const model::Grid& g = volume.grid();
-  Image section(g.nx, g.nz);
-  std::vector<float> slice(g.slice_size());
+  Image section = plot::planes(volume, plot::Plane::coronal, {g.ny / 2}).front();
   double most = 0.02;
-  for (int k = 0; k < g.nz; ++k) {
-    volume.read_slices(k, 1, slice.data());
-    for (int i = 0; i < g.nx; ++i) {
-      const float value = slice[static_cast<std::size_t>(g.ny / 2) * g.nx + i];
-      section(i, g.nz - 1 - k) = value;
-      most = std::max(most, std::abs(static_cast<double>(value) - 1));
-    }
-  }
+  for (const float value : section.values) most = std::max(most, std::abs(static_cast<double>(value) - 1));
   const double stretch = model::stretch_z(volume.metadata);
   plot::ImageFigure figure;
   figure.panels.push_back({std::move(section), "", {}});

@@ -11,6 +11,7 @@
 #include "plot/axis.hpp"
 #include "plot/colour_map.hpp"
 #include "plot/image_figure.hpp"
+#include "plot/page.hpp"
 
 namespace vam::status_tool {
 
@@ -62,14 +63,8 @@ std::string arrow(double x, double from, double to, double size) {
 
 // The bar of dose colours, from 0 to `high`.
 std::string colour_bar(double high, const std::string& unit) {
-  std::string stops;
-  for (int i = 0; i <= 8; ++i) {
-    const Rgb c = plot::colour(plot::ColourMap::viridis, i / 8.0);
-    stops += (i > 0 ? "," : "") + std::string("rgb(") + std::to_string(c[0]) + "," + std::to_string(c[1]) + "," +
-             std::to_string(c[2]) + ")";
-  }
-  return "<div style=\"height:.8em;background:linear-gradient(to right," + stops +
-         ")\"></div><div style=\"display:flex;justify-content:space-between\"><span>0</span><span>" +
+  return "<div style=\"height:.8em;background:" + plot::page_gradient(plot::ColourMap::viridis, 8) +
+         "\"></div><div style=\"display:flex;justify-content:space-between\"><span>0</span><span>" +
          format_number(high, 3) + " " + page_text(unit) + "</span></div>";
 }
 

@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 #include "io/settings/csv_table.hpp"
-#include "plot/convergence.hpp"
+#include "plot/curves.hpp"
 
 namespace vam::view_tool {
 

@@ -42,6 +42,9 @@ struct Sections {
 [[nodiscard]] Sections sections_of(const model::Grid& grid, const ViewOptions& options);
 /// Once the panels are there.
 void set_section_axes(ImageFigure& figure, const model::Grid& grid, const ViewOptions& options);
+/// The target's surface on each of them.
+void add_outlines(ImageFigure& figure, const io::SparseVolume& target, const model::Grid& grid, Plane plane,
+                  const Sections& sections);
 /// ", axial section at z = 1.5 mm", or ", axial sections".
 [[nodiscard]] std::string sections_text(const Sections& sections, Plane plane);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figures of an optimisation over its iterations.
+// Figures with curves that several tools draw: an optimisation over its iterations, a print's deviation.
 #pragma once
 
 #include <string>
@@ -18,5 +18,9 @@ struct Trace {
 
 /// VER and process window of one run, or of two in colours of their own.
 [[nodiscard]] Plot convergence(const std::vector<Trace>& traces);
+
+/// The distances of a print from its design, by area: bins of equal width about 0 in mm; the outermost two hold all
+/// that is beyond, and the legend says how much.
+[[nodiscard]] Plot deviation_histogram(const Histogram& histogram, double rms_mm);
 
 }  // namespace vam::plot
