@@ -73,12 +73,7 @@ std::string report_table(const std::string& path) {
 
 std::string convergence(const std::string& path) {
   const io::CsvTable table = io::read_csv(path, {"iteration", "ver", "pw"});
-  plot::Trace trace;
-  for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    trace.iteration.push_back(table.number(row, 0));
-    trace.ver.push_back(table.number(row, 1));
-    trace.window.push_back(table.number(row, 2));
-  }
+  const plot::Trace trace{"", table.column(0), table.column(1), table.column(2)};
   return plot::page_figure("Convergence", plot::page_plot(plot::convergence({trace}), "figures over the iterations"),
                            file_name(path) + ": the part prints if the process window is positive.");
 }

@@ -16,15 +16,9 @@ namespace vam::view_tool {
 
 namespace {
 
-std::vector<double> column_of(const io::CsvTable& table, std::size_t column) {
-  std::vector<double> values;
-  for (std::size_t row = 0; row < table.rows.size(); ++row) values.push_back(table.number(row, column));
-  return values;
-}
-
 plot::Trace read_trace(const std::string& path, const std::string& name) {
   const io::CsvTable table = io::read_csv(path, {"iteration", "ver", "pw"});
-  return {name, column_of(table, 0), column_of(table, 1), column_of(table, 2)};
+  return {name, table.column(0), table.column(1), table.column(2)};
 }
 
 plot::Plot convergence_plot(const Options& options) {
@@ -72,11 +66,11 @@ plot::Plot table_plot(const io::CsvTable& table, const Options& options) {
   plot.title = options.view.title.value_or(options.view.name);
   plot.x.label = words(table.columns[0]);
   plot.y.label = unit ? unit->shown : "";
-  const std::vector<double> x = column_of(table, 0);
+  const std::vector<double> x = table.column(0);
   for (std::size_t n = 1; n < table.columns.size(); ++n) {
     std::string name = table.columns[n];
     if (unit) name.resize(name.size() - unit->ending.size());
-    plot.series.push_back({words(std::move(name)), x, column_of(table, n), colours[n - 1], plot::SeriesStyle::line});
+    plot.series.push_back({words(std::move(name)), x, table.column(n), colours[n - 1], plot::SeriesStyle::line});
   }
   return plot;
 }

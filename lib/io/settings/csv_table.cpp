@@ -49,6 +49,12 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
                                " is not a number"};
 }
 
+std::vector<double> CsvTable::column(std::size_t column) const {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < rows.size(); ++row) values.push_back(number(row, column));
+  return values;
+}
+
 CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns) {
   CsvTable table{input_name(path), columns, {}, {}};
   std::vector<std::size_t> places;

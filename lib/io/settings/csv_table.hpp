@@ -16,6 +16,7 @@ struct CsvTable {
 
   /// Throws Fault::data with file, line and column when the cell is not a finite number.
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;
+  [[nodiscard]] std::vector<double> column(std::size_t column) const;
 };
 
 /// Reads the named columns, in whatever order the header has them; further columns are ignored. Without names, all that
