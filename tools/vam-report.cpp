@@ -12,8 +12,7 @@
 #include "session/grey_target.hpp"
 #include "session/printer.hpp"
 #include "vam-report/content.hpp"
-#include "vam-report/names.hpp"
-#include "vam-report/page_data.hpp"
+#include "vam-report/page_parts.hpp"
 #include "vam-report/sources.hpp"
 
 namespace {

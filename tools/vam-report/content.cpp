@@ -18,7 +18,7 @@
 #include "vam-report/inspection.hpp"
 #include "vam-report/light.hpp"
 #include "vam-report/meshes.hpp"
-#include "vam-report/names.hpp"
+#include "vam-report/page_parts.hpp"
 #include "vam-report/tables.hpp"
 #include "vam-report/volumes.hpp"
 
@@ -50,10 +50,6 @@ std::optional<Judged> judge(const Volumes& volumes, const cli::PrinterOptions& p
   score::ScoreOptions how;
   session::resolve_exposure(how, *dose, *target, session::printer_of(printer, dose->metadata, "dose"));
   return Judged{how, session::score_print(*dose, *target, how)};
-}
-
-std::string verdict(bool good, const std::string& words) {
-  return "<p class=\"verdict " + std::string(good ? "good" : "bad") + "\">" + page_text(words) + "</p>\n";
 }
 
 std::string images(const std::vector<std::string>& paths) {
@@ -117,9 +113,9 @@ std::string content(const cli::App& app, const Sources& sources, const cli::Prin
   std::string made = "<h1>" + page_text(wanted.title) + "</h1>\n";
   if (judged) {
     const verdict::Verdict found = judged->score.verdict();
-    made += verdict(found.answer == verdict::Answer::yes, found.words);
+    made += report_tool::verdict(found.answer == verdict::Answer::yes, found.words);
   }
-  if (grey) made += verdict(grey->is_met(), grey->verdict());
+  if (grey) made += report_tool::verdict(grey->is_met(), grey->verdict());
   const std::optional<InspectionViews> inspection = inspection_views(sources.reports);
   if (inspection) made += inspection->verdict;
   made += views(sources, volumes, judged, inspection, wanted);

@@ -12,7 +12,7 @@
 #include "io/stream/stream.hpp"
 #include "plot/curves.hpp"
 #include "plot/page.hpp"
-#include "vam-report/names.hpp"
+#include "vam-report/page_parts.hpp"
 
 namespace vam::report_tool {
 
@@ -26,8 +26,7 @@ std::string verdict_of(const Json& report) {
   const std::string words =
       unmet.empty() ? "The print conforms: " + conditions : "The print does not conform: " + join(unmet, "; ");
   const std::string band = require.at("guard_band").get<bool>() ? ", with the uncertainties as a guard band." : ".";
-  return "<p class=\"verdict " + std::string(unmet.empty() ? "good" : "bad") + "\">" + page_text(words + band) +
-         "</p>\n";
+  return verdict(unmet.empty(), words + band);
 }
 
 // Numbers that have an uncertainty, as "print_to_design.rms_mm"; what differs from 0 by rounding is 0.

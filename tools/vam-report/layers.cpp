@@ -14,7 +14,7 @@
 #include "plot/colour_map.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
-#include "vam-report/page_data.hpp"
+#include "vam-report/page_parts.hpp"
 
 namespace vam::report_tool {
 

@@ -13,8 +13,7 @@
 #include "io/image/any_frames.hpp"
 #include "model/metadata.hpp"
 #include "plot/view.hpp"
-#include "vam-report/names.hpp"
-#include "vam-report/series.hpp"
+#include "vam-report/page_parts.hpp"
 
 namespace vam::report_tool {
 

@@ -12,7 +12,7 @@
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "vam-report/layers.hpp"
-#include "vam-report/names.hpp"
+#include "vam-report/page_parts.hpp"
 
 namespace vam::report_tool {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-report/page_data.hpp"
+#include "vam-report/page_parts.hpp"
 
 namespace vam::report_tool {
 

@@ -16,7 +16,7 @@
 #include "io/stream/stream.hpp"
 #include "plot/curves.hpp"
 #include "plot/page.hpp"
-#include "vam-report/names.hpp"
+#include "vam-report/page_parts.hpp"
 
 namespace vam::report_tool {
 

@@ -8,8 +8,7 @@
 #include "model/metadata.hpp"
 #include "plot/page.hpp"
 #include "plot/view.hpp"
-#include "vam-report/names.hpp"
-#include "vam-report/series.hpp"
+#include "vam-report/page_parts.hpp"
 
 namespace vam::report_tool {
 

@@ -1,14 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-report/series.hpp"
+#include "vam-report/page_parts.hpp"
 
 #include "base/text/base64.hpp"
 #include "base/text/json.hpp"
 #include "base/text/printable.hpp"
 #include "io/image/image_file.hpp"
 #include "plot/page.hpp"
-#include "vam-report/page_data.hpp"
 
 namespace vam::report_tool {
+
+std::string page_data(const Json& values) {
+  std::string text;
+  for (const char letter : values.dump(-1, ' ', true, Json::error_handler_t::replace)) {
+    if (letter == '<') {
+      text += "\\u003c";
+    } else {
+      text += letter;
+    }
+  }
+  return "<script type=\"application/json\">" + text + "</script>";
+}
+
+const char* const page_style = R"css(
+figure.wide{width:62em}.control{display:flex;gap:.6em;align-items:center;margin:.2em 0}.control input{flex:1}
+.control output{min-width:8em;font-variant-numeric:tabular-nums}.verdict{padding:.5em .8em;border-left:.5em solid #888;
+background:#f4f4f4;font-size:1.1em}.verdict.good{border-color:#0072b2}.verdict.bad{border-color:#d55e00}
+canvas{width:100%;aspect-ratio:4/3;border:1px solid #ccc;touch-action:none;cursor:grab}
+.scale span:last-child{display:block}.scale i{display:inline-block;width:12em;height:.9em;border:1px solid #888;margin:0 .5em;
+vertical-align:middle}
+details{margin:.3em 0}summary{cursor:pointer;font-weight:600}
+.wrapped{overflow-x:auto}code{font-size:.9em;overflow-wrap:anywhere}h2{break-after:avoid}
+@media print{.control,summary::marker{display:none}figure{break-inside:avoid}body{font-size:11px}}
+)css";
 
 std::string series(const std::string& title, const std::vector<Frame>& frames, const std::string& caption, bool plays) {
   if (frames.empty()) return "";
