@@ -224,9 +224,7 @@ std::string write_record(const model::Calibration& calibration, const std::strin
               {"vial", calibration.vial}};
   record.update(facts);
   seal_json(record);
-  OutputFile file(path, Content::text);
-  file.write(record.dump(2) + "\n");
-  file.commit();
+  write_text(path, record.dump(2) + "\n");
   if (chmod(path.c_str(), 0444) != 0) throw Error{Fault::no_output, path + ": cannot be made read-only"};
   if (record.value("status", "fail") != "fail") make_current(calibration, scan, path);
   return path;

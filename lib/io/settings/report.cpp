@@ -12,9 +12,7 @@ void write_report(const std::string& path, FormatKind schema, const Json& figure
   Json report{{"schema", schema.schema()}};
   report.update(figures);
   seal_json(report);
-  OutputFile file(path, Content::text);
-  file.write(report.dump(2) + "\n");
-  file.commit();
+  write_text(path, report.dump(2) + "\n");
 }
 
 }  // namespace vam::io
