@@ -6,7 +6,7 @@
 
 #include "base/index.hpp"
 #include "sim/bench/private/beams.hpp"
-#include "sim/bench/private/ray_segment.hpp"
+#include "sim/bench/private/ray.hpp"
 
 namespace vam::sim {
 

@@ -7,7 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/index.hpp"
-#include "sim/bench/private/ray_segment.hpp"
+#include "sim/bench/private/ray.hpp"
 
 namespace vam::sim {
 

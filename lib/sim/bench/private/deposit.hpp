@@ -7,7 +7,7 @@
 #include "base/pixels.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
-#include "sim/bench/private/climbing_ray.hpp"
+#include "sim/bench/private/ray.hpp"
 
 namespace vam::sim {
 

@@ -7,7 +7,7 @@
 #include "base/image.hpp"
 #include "model/printer.hpp"
 #include "sim/bench/photoresin.hpp"
-#include "sim/bench/private/climbing_ray.hpp"
+#include "sim/bench/private/ray.hpp"
 
 namespace vam::sim {
 
