@@ -146,7 +146,7 @@ void declare_stopping(cli::App& app, Options& options) {
              "it with bit-identical results; target, printer and all options that affect the result must be the same. "
              "Removed on completion.");
   app.brief("Keep an interrupted run here, and resume from it.");
-  app.excludes(at_once()).not_in_job().writes();
+  app.not_in_job().writes();
   app.option("--trace", "FILE", options.trace,
              "Write the figures of merit after every iteration as CSV; the result may be that of an earlier one than "
              "the last (--patience).")
