@@ -27,14 +27,19 @@ model::Circle scoring_circle(const io::SparseVolume& target, const model::Printe
   return model::judged_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
 }
 
+constexpr int slab = 16;
+
+void require_slabs(const io::SparseVolume& target) {
+  constexpr double copies = 4;  // of both; pieces are counted in copies
+  require_memory(copies * sizeof(float) * slab * static_cast<double>(target.grid().slice_size()),
+                 target.name() + ": " + model::size_text(target.grid()), "use larger voxels");
+}
+
 /// add(first slice, count, dose, coverage) for all, a slab at a time.
 template <class Add>
 void for_each_slab(const io::SparseVolume& dose, const io::SparseVolume& target, const char* title, const Add& add) {
-  constexpr int slab = 16;
+  require_slabs(target);
   const model::Grid& grid = dose.grid();
-  constexpr double copies = 4;  // both; pieces are counted in copies
-  require_memory(copies * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
-                 target.name() + ": " + model::size_text(grid), "use larger voxels");
   std::vector<float> doses(grid.slice_size() * slab), coverage(doses.size());
   Progress progress(title, grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
@@ -51,11 +56,11 @@ void for_each_slab(const io::SparseVolume& dose, const io::SparseVolume& target,
 verdict::Unresolved unresolved(const io::SparseVolume& target) {
   constexpr std::size_t million = 1'000'000;  // voxels at a time
   const model::Grid& grid = target.grid();
-  const int slab = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, 16));
+  const int most = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, slab));
   verdict::UnresolvedFinder finder(grid);
-  std::vector<float> slices(product(slab, grid.slice_size()));
-  for (int k = 0; k < grid.nz; k += slab) {
-    const int count = std::min(slab, grid.nz - k);
+  std::vector<float> slices(product(most, grid.slice_size()));
+  for (int k = 0; k < grid.nz; k += most) {
+    const int count = std::min(most, grid.nz - k);
     target.read_slices(k, count, slices.data());
     finder.add(count, slices.data());
   }
@@ -87,6 +92,7 @@ score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume&
 }
 
 score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& target, score::ScoreOptions how) {
+  require_slabs(target);
   how.unresolved = unresolved(target);
   score::Score result = score_volumes(dose, target, how);
   const double threshold = result.print_threshold();
