@@ -20,9 +20,17 @@ model::Printer printer_of(const cli::PrinterOptions& options, const model::Metad
   const auto stated = facts.find("vam:printer");
   const std::string file = printer_path(options.file);
   if (stated == facts.end() || (role == Role::instrument && !file.empty())) return load_printer(options);
-  const auto own = io::parse_settings(stated->second, name + ": vam:printer", options.sets);
-  if (file.empty()) return own;
+  auto own = io::parse_settings(stated->second, name + ": vam:printer", options.sets);
   const model::Printer other = load_printer(options);
+  if (role == Role::instrument) {  // no device moves or shines because of a file of projections
+    own.stage.device = other.stage.device;
+    own.projector.relay = other.projector.relay;
+    own.projector.max_led_current_percent = other.projector.max_led_current_percent;
+    own.projector.latency_ms = other.projector.latency_ms;
+    own.camera = other.camera;
+    own.calibration = other.calibration;
+  }
+  if (file.empty()) return own;
   std::vector<std::string> differences = io::dose_differences(own, other);
   const auto critical = [](const model::Printer& printer) {
     const auto& dose = printer.resin.critical_dose_mj_cm3;

@@ -17,8 +17,9 @@ namespace vam::session {
 enum class Role { judge, instrument };
 /// The printer of a file with these facts: the one that it states (vam:printer), with --set, in whatever folder it is
 /// judged. A printer file that is given or found is named in a warning, which begins with `name`, where it differs; a
-/// given one counts. For an instrument, which frames are made for, it counts also where it is found. Throws as
-/// load_printer() does, which it is for a file that states none.
+/// given one counts. For an instrument, which frames are made for, it counts also where it is found, and devices, their
+/// limits and calibration are never those of the facts. Throws as load_printer() does, which it is for a file that
+/// states none.
 [[nodiscard]] model::Printer printer_of(const cli::PrinterOptions& options, const model::Metadata& facts,
                                         const std::string& name, Role role = Role::judge);
 
