@@ -51,7 +51,8 @@ Exposure exposure_of(const model::StackInfo& info, const model::Printer& printer
   Exposure exposure;
   exposure.turns = optics::turns_to_show(info, given.turns, turns.value_or(printer.stage.turns));
   exposure.full_scale = given.full_scale.value_or(full_scale.value_or(peak)) / given.multiplier;
-  if (needed) exposure.share = exposure.turns * *rate / (exposure.full_scale * *needed);
+  // What is brighter than full intensity is shown at that, and the brightest places lack it first.
+  if (needed) exposure.share = exposure.turns * *rate / (std::max(exposure.full_scale, peak) * *needed);
   return exposure;
 }
 
