@@ -40,6 +40,8 @@ constexpr MatchedKey keys[] = {
     {"projector.telecentric_columns", [](const Printer& p) { return columns_lens_mm(p.projector) ? 0.0 : 1.0; }, 0},
     {"projector.telecentric_rows", [](const Printer& p) { return rows_lens_mm(p.projector) ? 0.0 : 1.0; }, 0},
     {"projector.axis_column", [](const Printer& p) { return p.projector.axis_column; }, 0.25},
+    {"projector.half_angle_deg", [](const Printer& p) { return p.projector.half_angle_deg.value_or(0); }, 0.02, 0.05},
+    {"projector.focus_mm", [](const Printer& p) { return p.projector.focus_mm.value_or(0); }, 0.2},
     {"vial.radius_mm", [](const Printer& p) { return p.vial.radius_mm; }, 0, 5e-3},
     {"vial.wall_mm", [](const Printer& p) { return p.vial.wall_mm; }, 0.05},
     {"vial.index_glass", [](const Printer& p) { return (p.vial.wall_mm > 0 ? p.vial : model::Vial{}).index_glass; },
@@ -112,6 +114,8 @@ Printer parse_settings(const std::string& text, const std::string& subject, cons
 std::vector<std::string> light_differences(const Printer& computed_for, const Printer& now) {
   std::vector<std::string> differences;
   add_differences(keys, computed_for, now, differences);
+  const std::string& motion = computed_for.stage.motion;
+  if (motion != now.stage.motion) differences.push_back("stage.motion " + motion + ", now " + now.stage.motion);
   return differences;
 }
 

@@ -14,7 +14,7 @@ namespace vam::io {
 [[nodiscard]] model::Printer parse_settings(const std::string& text, const std::string& subject,
                                             const std::vector<std::string>& sets = {});
 
-/// Where two printers differ in what bends, shifts or weakens a projection, by more than a print can bear:
+/// Where two printers differ in what bends, shifts, widens or weakens a projection, by more than a print can bear:
 /// "vial.radius_mm 12.7, now 6". Empty where frames for the one serve the other. What vam-project applies anew (grey
 /// response, rows, orientation, speed) is not compared [formats: Attributes of volumes and prints].
 [[nodiscard]] std::vector<std::string> light_differences(const model::Printer& computed_for, const model::Printer& now);
