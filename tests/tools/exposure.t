@@ -72,12 +72,17 @@ holds 'the dose is that of its printer' "$(json else/other.json critical_dose_mj
 fails 65 'vial.radius_mm 7, now 9' vam-project light.exr --printer else/printer.toml -o x.mkv
 rm else/printer.toml
 
+(cd else && vam-project ../light.exr --print-printer -o own.toml)
+is 'its printer, but no device of its' "$(grep -c '^radius_mm = 7' else/own.toml) $(grep -c '^device = "sim:"' else/own.toml)" '1 0'
+fails 65 'half_angle_deg 0, now 1.*stage.motion stepped, now held' vam-project light.exr --set projector.half_angle_deg=1 --set stage.motion=held -o x.mkv
+
 # Another exposure than the planned one.
 fails 65 'light.exr: 1 turn gives 0[.][0-9]* of the planned dose, which .* turns reach; .*--accept-dose' vam-project light.exr --turns 1 -o x.mkv
 fails 65 'of the planned dose' vam-print light.exr --display null: --uncalibrated --turns 1 --run short
 fails 65 'of the planned dose' vam-project light.exr --speed 45 -o x.mkv
 ok 'is accepted on request' vam-project light.exr --turns 1 --accept-dose -o short.mkv --report short.json
 holds 'and told in the report' "($(json short.json share_of_planned_dose) * $turns - 1) ^ 2 < 1e-6"
+fails 65 '0.[0-9]* of the planned dose' vam-project light.exr --turns 1 --multiplier "$turns" -o x.mkv
 vam-project light.exr --multiplier 0.95 -o x.mkv 2>said
 ok 'a little less is said' grep -q 'warning: light.exr: .* 0.95 of the planned dose' said
 
