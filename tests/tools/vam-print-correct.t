@@ -11,7 +11,7 @@ sed -e 's/^max_intensity_mw_cm2.*/max_intensity_mw_cm2 = 3/' \
 export VAM_PRINTER=$PWD/printer.toml
 vam-slice --shape gyroid:cell=6,sheet=1.2,diameter=7,height=5 --voxel 0.2 -o part.vdb
 vam-optimize --angles 60 part.vdb -o whole.exr
-vam-project whole.exr --fps 10 --turns 1 -o whole.mkv
+vam-project whole.exr --fps 10 --turns 1 --accept-dose -o whole.mkv
 echo '{"schema":"vam-working-curve/1","isovalue":0.04,"saturation":0.08,"critical_dose_mj_cm3":60,"rate_per_mj_cm3":0.07,"delay_s":1}' >curve.json
 print() { vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --view-step 6 --target part.vdb \
     --set stage.device="sim:?acceleration=1000&max_speed=120&log=$PWD/truth.$run" "$@"; }
@@ -63,7 +63,7 @@ ok 'one that is killed then leaves nothing that prints' sh -c "flock -n $killed/
 while ! lit_for lost 360 && kill -0 $lost 2>/dev/null; do sleep 0.1; done
 camera_down
 await grep -q 'open loop from turn' lost.err  # before there is a camera again
-fairly '[ "$(ls dark/views | wc -l)" -gt 58 ]' seen_to_end dark --turns 2 --dark-turns 1 --view-step 18 --set stage.speed_deg_s=120
+fairly '[ "$(ls dark/views | wc -l)" -gt 58 ]' seen_to_end dark --turns 2 --accept-dose --dark-turns 1 --view-step 18 --set stage.speed_deg_s=120
 sed 's/^/# /' dark.err
 is 'the light goes off after two turns, the stage after three' "$(grep '"frame":[0-9]' dark/flips.jsonl | tail -n 1 | sed -E 's/.*"angle_deg":([0-9.]+).*/\1/' | awk '{ print ($1 > 700 && $1 <= 720) }') $(tail -n 1 dark/angles.jsonl | sed -E 's/.*"angle_deg": ?([0-9.]+).*/\1/' | awk '{ print ($1 > 1079) }')" '1 1'
 holds 'with views of all three' "$(ls dark/views | wc -l) > 58"
