@@ -133,7 +133,7 @@ void TileLight::find_posed(AngleTaps& to) {
   posed_nodes_.resize(tile_.voxels.size() * VialRays::most_rays + 1);
   int rays = 0;
   for (int voxel = 0; voxel < count_of(tile_.voxels); ++voxel) {
-    if (bright_only_ && !bright(voxel)) continue;
+    if (bright_only_ && !bright(voxel) && rays_.spread().most() == 0) continue;
     const VoxelColumn& column = tile_.voxels[voxel];
     const int found = rays_.find_posed(column.i, column.j, frame, scale, &posed_nodes_[rays]);
     for (int k = 0; k < found; ++k) to.posed.push_back({rays + k, voxel});
@@ -218,11 +218,12 @@ void TileLight::fetch(const AngleTaps& from, int angle, const Window<const Slab>
   });
 }
 
-/// By how much the light of the tile's middle spreads, and how far between rows it is read.
+/// By how much the light of the tile's middle spreads, and how far between rows it is read; whatever voxels are dark.
 int TileLight::spread_of(const AngleTaps& at) const {
   if (rays_.spread().most() == 0) return 0;
   constexpr int samples = 16;
-  const int ray = rays_of(at)[rays_of(at).size() / 2].ray;
+  const std::vector<VoxelRay>& all = rays_.posed() ? at.posed : tile_.voxel_rays;
+  const int ray = all[all.size() / 2].ray;
   double read = 0;
   for (int i = 0; i < samples; ++i) {
     const double row = static_cast<double>(at.taps.start[ray] + at.taps.zoom[ray] * static_cast<float>(i));

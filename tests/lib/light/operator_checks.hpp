@@ -52,11 +52,12 @@ inline double adjoint_error(const vam::light::Operator& light) {
   return std::abs(dot(projected, g) - dot(f, dose_of(light, g))) / std::sqrt(dot(projected, projected) * dot(g, g));
 }
 
-/// Of a grid of `count` slabs.
-inline double adjoint_error_of_volume(const vam::light::Operator& light, std::size_t count) {
+/// Of a grid of `count` slabs, in which one of `every` values is not 0.
+inline double adjoint_error_of_volume(const vam::light::Operator& light, std::size_t count, std::size_t every = 1) {
   std::vector<vam::Slab> f, g;
   for (unsigned s = 0; s < count; ++s) {
     f.push_back(noise(light.object(), 10 + s));
+    for (std::size_t i = 0; i < f.back().values.size(); ++i) f.back().values[i] *= i % every == 0 ? 1 : 0;
     g.push_back(noise(light.sinogram(), 20 + s));
   }
   std::vector<vam::Slab> projected = vam::slabs(count, light.sinogram().width, light.sinogram().height);
