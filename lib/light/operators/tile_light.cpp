@@ -211,7 +211,7 @@ void TileLight::each_piece(const AngleTaps& from, int angle, const Window<SlabTy
 }
 
 void TileLight::fetch(const AngleTaps& from, int angle, const Window<const Slab>& sinograms) {
-  light_.assign(product(from.columns, from.rows) + 2 * most_spread_rows, 0.0F);
+  light_.assign(product(from.columns, from.rows) + product(2, most_spread_rows), 0.0F);
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));  // the next stage angle
   each_piece(from, angle, sinograms, [&](const float* light, std::size_t at, int columns, int rows) {
     TileKernels::best().copy(light, columns, rows, from.rows, next, light_.data() + most_spread_rows + at);
@@ -307,7 +307,7 @@ void TileLight::give(const TileTaps& taps, const Window<Slab>& sinograms) {
   for (const AngleTaps& to : taps) {
     if (!to.lit) continue;
     const int angle = rays_.turned_angle(to.angle, quarters_);
-    light_.assign(product(to.columns, to.rows) + 2 * most_spread_rows, 0.0F);
+    light_.assign(product(to.columns, to.rows) + product(2, most_spread_rows), 0.0F);
     const std::vector<VoxelRay>& rays = rays_of(to);
     TileKernels::best().scatter(voxels_.data() + voxel_at(0), to.taps, rays.data(), count_of(rays), chunk_.width(),
                                 rays_.climbs(), columns(to, angle, light_));
