@@ -28,8 +28,7 @@ fails 65 'is cut off after .* write it again' vam-slice --print-printer --printe
 printf '[projector]\nfps = 8\n[vial]\nradius_mm = 1' >hand.toml
 vam-slice --print-printer --printer hand.toml -o x.toml 2>err
 is 'a file by hand is warned of' "$? $(grep -c 'hand.toml: ends within a line.*\[bath\], \[resin\]' err)" '0 1'
-mkdir tiny
-(cd tiny && tiny_print ../frames.exr)
+mkdir tiny && (cd tiny && tiny_print ../frames.exr)
 vam-print frames.exr --display null: --uncalibrated --printer hand.toml --run run >out 2>err
 is 'and nothing is printed from it' "$? $(grep -c '^vam-print: hand.toml: ends within a line, as if it was cut off, .*; complete its last line$' err) $(ls -d run 2>/dev/null)" '65 1 '
 { echo '# bench 3, of May'; cat whole.toml; } | head -n 40 >cut.toml

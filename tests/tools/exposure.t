@@ -50,7 +50,10 @@ shown() { (cd else && vam-convert "../$2" --geometry vial -o shown.exr && vam-do
 quiet 'a video' vam-project light.exr -o print.mkv
 shown video print.mkv
 quiet 'images' vam-project light.exr -o frames/
-shown images frames
+shown images frames; cp frames/facts.txt facts
+for damage in 'head -c 150' 'sed s/vam:shown_turns./shown=/' 'head -n -1' 'head -c 0'; do
+  $damage facts >frames/facts.txt; fails 65 'facts.txt: .*; write them again' vam-convert frames --geometry vial -o cut.exr
+done
 mkdir card card/dri; touch card/dri/card0
 FAKE_DRM=$PWD/card LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card.so vam-project light.exr -o drm:HDMI-A-1 --max-missed 1 --max-missed-lit 1 --log flips 2>errors
 is 'a screen' "$? $(cat errors)" '0 '
@@ -71,7 +74,6 @@ ok 'which is named' grep -q 'planned.vdb: made for another printer than printer.
 holds 'the dose is that of its printer' "$(json else/other.json critical_dose_mj_cm3) == 100"
 fails 65 'vial.radius_mm 7, now 9' vam-project light.exr --printer else/printer.toml -o x.mkv
 rm else/printer.toml
-
 (cd else && vam-project ../light.exr --print-printer -o own.toml)
 is 'its printer, but no device of its' "$(grep -c '^radius_mm = 7' else/own.toml) $(grep -c '^device = "sim:"' else/own.toml)" '1 0'
 fails 65 'half_angle_deg 0, now 1.*stage.motion stepped, now held' vam-project light.exr --set projector.half_angle_deg=1 --set stage.motion=held -o x.mkv
@@ -88,11 +90,12 @@ ok 'a little less is said' grep -q 'warning: light.exr: .* 0.95 of the planned d
 
 # Pieces know no plan of the whole; joined, they have that of their threshold.
 vam-optimize part.vdb --geometry parallel --angles 60 -o flat.exr --report flat.json 2>/dev/null
-is 'a piece states no exposure' "$(vam-optimize part.vdb --geometry parallel --angles 60 --slices 1/1 -o piece.exr 2>/dev/null; attr piece.exr vam:shown_turns)" ''
-vam-dose piece.exr --like part.vdb --report piece.json -o piece.vdb
-holds 'of which the turns follow from its light' "$(json piece.json turns) == $(json flat.json turns)"
+for n in 1 2; do quiet "piece $n" vam-optimize part.vdb --geometry parallel --angles 60 --slices $n/2 -o piece-$n.exr; done
+is 'states no exposure' "$(attr piece-2.exr vam:shown_turns 2>&1 | tail -n 1)" "KeyError: 'vam:shown_turns'"
+quiet 'joined' vam-convert join piece-1.exr piece-2.exr -o joined.exr
+vam-dose joined.exr --like part.vdb --report joined.json -o joined.vdb
+holds 'the turns follow from their light' "$(json joined.json turns) == $(json flat.json turns)"
 
 vam-optimize part.vdb --angles 60 --iterations 2 --set resin.absorption_per_mm=0 --verbose -o x.exr 2>said
 ok 'without a known resin dose and time are relative' grep -q 'dose and time are relative: vam-calibrate critical-dose measures' said
-
 done_testing

@@ -9,8 +9,7 @@ value() { json "$1" "$2"; }
 methods=$(vam-optimize --completion bash | sed -n "s/.*--method) .*-W .auto \([^']*\).*/\1/p")
 holds "there are methods" "$(echo $methods | wc -w) >= 7"
 for method in $methods; do
-  few='--iterations 3'
-  [ $method != fbp ] || few=
+  few='--iterations 3'; [ $method != fbp ] || few=
   quiet "$method" vam-optimize --method $method --angles 90 $few --report $method.json part.vdb -o $method.exr
   holds "$method separates most of the part" "$(value $method.json iou) > 0.9"
 done

@@ -51,7 +51,7 @@ class VideoSource : public ImageSource {
  public:
   explicit VideoSource(const std::string& path) : reader_(path) {
     info_ = frames_of(reader_.format().width, reader_.format().height, count_video_frames(path));
-    take_frame_facts(reader_.format().facts, info_, path);
+    if (!reader_.format().facts.empty()) take_frame_facts(reader_.format().facts, info_, path);
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return about_; }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
@@ -39,19 +40,21 @@ std::string frame_facts(const model::StackInfo& info) {
 }
 
 void take_frame_facts(const std::string& text, model::StackInfo& info, const std::string& name) {
-  for (const std::string& line : split(text, '\n')) {
+  std::optional<double> step;
+  for (const std::string& line : split(trimmed(text), '\n')) {
     const std::size_t blank = line.find(' ');
-    if (!line.starts_with("vam:") || blank == std::string::npos) continue;
+    if (!line.starts_with("vam:") || blank == std::string::npos || step)
+      throw Error{Fault::data, name + ": states '" + excerpt(line) + "', which is no fact of frames; write them again"};
     const std::string value = trimmed(line.substr(blank));
-    info.extra[line.substr(0, blank)] = value;
-    if (line.substr(0, blank) != step_name) continue;
-    info.extra.erase(step_name);
-    const auto step = parse_number(value);
-    if (!step || !(std::abs(*step) <= 360))
-      throw Error{Fault::data,
-                  name + ": states " + step_name + " " + excerpt(value) + ", not an angle; write it again"};
-    info.angle_step_deg = *step;
+    if (line.substr(0, blank) == step_name)
+      step = parse_number(value);
+    else
+      info.extra[line.substr(0, blank)] = value;
   }
+  if (!step || !(std::abs(*step) <= 360))
+    throw Error{Fault::data, name + ": the facts of its frames do not end with an angle as " + step_name +
+                                 "; they are damaged or cut off; write them again"};
+  info.angle_step_deg = *step;
 }
 
 FrameFolder::FrameFolder(const std::string& path) : folder_(path, is_frame) {}

@@ -13,9 +13,10 @@
 namespace vam::io {
 
 /// What frames state beside their pixels, where a format has no attributes: those of the stack and its
-/// vam:angle_step_deg, a line each, "vam:printer ...".
+/// vam:angle_step_deg, the last, a line each, "vam:printer ...".
 [[nodiscard]] std::string frame_facts(const model::StackInfo& info);
-/// Takes them into `info`. Throws Fault::data, beginning with `name`, for a step that is no angle.
+/// Takes them into `info`. Throws Fault::data, beginning with `name`, for other lines, and where the step is no angle
+/// or not the last, as of a text that was cut off.
 void take_frame_facts(const std::string& text, model::StackInfo& info, const std::string& name);
 
 /// 00000.png, 00001.png, ..., frames.csv (file,time_s,angle_deg) and facts.txt (frame_facts()). An older folder is
