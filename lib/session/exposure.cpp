@@ -64,7 +64,7 @@ void require_dose(const Exposure& exposure, bool accepted, const std::string& na
                            format_number(exposure.turns / *exposure.share, 4) + " turns reach";
   const bool near = *exposure.share >= 0.9 && *exposure.share <= 1.1;
   if (!near && !accepted) throw Error{Fault::data, what + "; omit what differs from the plan, or give --accept-dose"};
-  warn(what + (near ? "" : "; accepted"));
+  warn(what);
 }
 
 std::string how_to_show(bool planned, const std::string& sinogram) {
