@@ -2,12 +2,13 @@
 #include "io/exr/private/intensities.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
-#include "base/compute/simd.hpp"
 #include "base/text/text.hpp"
-#include "io/exr/private/range_kernel.hpp"
+#include "io/stream/finite.hpp"
 
 namespace vam::io::exr {
 
@@ -17,12 +18,20 @@ namespace {
 // would leave all others dark.
 constexpr float most_intensity = 1e9F;
 
+// On the bits, which order positive numbers as their values do, without an early exit: vector code. most: above 0.
+bool all_within(const Image& image, float most) {
+  bool above = false;
+  for (const float value : image.values)
+    above |= std::bit_cast<std::int32_t>(value) > std::bit_cast<std::int32_t>(most);
+  return !above && all_finite(image.values.data(), image.size());
+}
+
 }  // namespace
 
 std::string objection(const Image& image, std::size_t index, model::Space space) {
   constexpr float largest = std::numeric_limits<float>::max();
   const float most = space == model::Space::camera ? largest : most_intensity;
-  if (VAM_KERNEL(all_within, simd_level())(image.values.data(), image.size(), -largest, most)) return "";
+  if (all_within(image, most)) return "";
   const auto is_good = [most](float value) { return value >= -largest && value <= most; };  // NaN is not
   const auto bad = std::find_if_not(image.values.begin(), image.values.end(), is_good);
   const auto at = bad - image.values.begin();

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cstdio>
 
-#include "base/compute/simd.hpp"
-#include "io/stream/private/hash_kernel.hpp"
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 namespace vam::io {
 
@@ -15,10 +15,7 @@ constexpr std::string_view seal_head = "xxh3:";
 constexpr std::string_view chain_head = "# sealed ";
 constexpr std::size_t digits = 16;  // of one half
 
-// The library itself is compiled for the oldest machines.
-const HashKernels& kernels() { return VAM_KERNEL(hash_kernels, simd_level()); }
-
-Digest digest_from(const HashHalves& hash) { return {hash.high, hash.low}; }
+Digest digest_from(const XXH128_hash_t& hash) { return {hash.high64, hash.low64}; }
 
 std::string hexadecimal(std::uint64_t half) {
   char text[digits + 1];
@@ -34,14 +31,14 @@ bool parse_half(std::string_view text, std::uint64_t& half) {
 }  // namespace
 
 struct Sealer::State {
-  HashState hash;
+  XXH3_state_t hash;
 };
 
-Sealer::Sealer() : state_(std::make_unique<State>()) { kernels().begin(state_->hash); }
+Sealer::Sealer() : state_(std::make_unique<State>()) { XXH3_128bits_reset(&state_->hash); }
 Sealer::~Sealer() = default;
 
 void Sealer::add(const void* bytes, std::size_t size) {
-  if (size > 0) kernels().add(state_->hash, bytes, size);
+  if (size > 0) XXH3_128bits_update(&state_->hash, bytes, size);
 }
 
 void Sealer::add(const std::string& text) {
@@ -49,9 +46,9 @@ void Sealer::add(const std::string& text) {
   add(text.data(), text.size());
 }
 
-Digest Sealer::digest() const { return digest_from(kernels().end(state_->hash)); }
+Digest Sealer::digest() const { return digest_from(XXH3_128bits_digest(&state_->hash)); }
 
-Digest digest_of(const void* bytes, std::size_t size) { return digest_from(kernels().of(bytes, size)); }
+Digest digest_of(const void* bytes, std::size_t size) { return digest_from(XXH3_128bits(bytes, size)); }
 
 std::string seal_text(const Digest& digest) {
   return std::string(seal_head) + hexadecimal(digest.high) + hexadecimal(digest.low);
