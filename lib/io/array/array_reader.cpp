@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "base/compute/memory.hpp"
@@ -22,7 +23,6 @@
 #include "io/array/private/nrrd_head.hpp"
 #include "io/image/tiff_pages.hpp"
 #include "io/stream/sandboxed_reader.hpp"
-#include "io/stream/serialisation.hpp"
 #include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
@@ -32,7 +32,6 @@ namespace {
 
 constexpr std::uint64_t most_held = std::uint64_t{16} << 30;  // bytes of a file that is not read front to back
 constexpr std::uint64_t most_ratio = 1032;                    // bytes of which deflate makes one
-constexpr std::uint64_t most_angles = 1 << 20;
 
 constexpr const char* known_formats = "an array (NumPy, HDF5, NRRD, TIFF)";
 
@@ -84,18 +83,11 @@ std::shared_ptr<const char> mapped_bytes(const InputFile& file) {
   return {static_cast<const char*>(bytes), [size = file.size(), bytes](const char*) { munmap(bytes, size); }};
 }
 
-template <class Pass, class Views>
-void pass(const Pass& member, Views& views) {
-  member(views.top_first);
-  member(views.source);
-  member(views.voxel_mm);
-}
+auto members(StatedViews& views) { return std::tie(views.top_first, views.source, views.angles_deg, views.voxel_mm); }
 
-void send(arrays::Parser parser, Sender& out, const StatedViews& views = {}) {
+void send(arrays::Parser parser, Sender& out, StatedViews views = {}) {
   for (const std::size_t size : parser.size()) out.put(std::uint64_t{size});
-  pass(Writer{out}, views);
-  out.put(std::uint64_t{views.angles_deg.size()});
-  for (const double angle : views.angles_deg) out.put(angle);
+  out.put(members(views));
   out.flush();
   Image image;
   for (std::size_t k = 0; k < parser.size()[0]; ++k) {
@@ -177,8 +169,7 @@ struct ArrayReader::State {
     if (product(size.rows, size.columns) > arrays::most_image) {
       throw Error{Fault::data, file.name() + ": is damaged (its parser failed)"};
     }
-    pass(Reader{in}, views);
-    for (auto left = in.get_count(most_angles); left > 0; --left) views.angles_deg.push_back(in.get<double>());
+    in.fill(members(views));
   }
 
   InputFile file;

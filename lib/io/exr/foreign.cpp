@@ -2,9 +2,9 @@
 #include "io/exr/private/foreign.hpp"
 
 #include <cstdint>
+#include <tuple>
 
 #include "base/error.hpp"
-#include "io/stream/serialisation.hpp"
 
 namespace vam::io::exr {
 
@@ -13,47 +13,10 @@ namespace {
 using model::ImageInfo;
 using model::StackInfo;
 
-constexpr std::uint64_t most_parts = 1 << 24;
-
-// Both directions from one list of members.
-template <class Pass>
-void pass_facts(const Pass& pass, StackInfo& info) {
-  pass(info.kind);
-  pass(info.space);
-  for (int* number : {&info.width, &info.height, &info.count}) pass(*number);
-  for (double* number : {&info.pixel_mm, &info.row_mm, &info.z_start_mm, &info.angle_start_deg, &info.angle_step_deg}) {
-    pass(*number);
-  }
-  pass(info.units);
-  pass(info.history);
-  pass(info.extra);
-  for (int* number : {&info.piece.images.from, &info.piece.images.to, &info.piece.of}) pass(*number);
-}
-
-template <class Pass>
-void pass_facts(const Pass& pass, model::Pose& pose) {
-  for (double* number : {&pose.angle_deg, &pose.dx_mm, &pose.dy_mm, &pose.dz_mm}) pass(*number);
-  pass(pose.moves);
-}
-
-template <class Pass>
-void pass_facts(const Pass& pass, ImageInfo& about) {
-  for (double* number : {&about.z_mm, &about.angle_deg, &about.time_s, &about.time_sigma_s}) pass(*number);
-  for (bool* truth : {&about.has_angle, &about.has_time, &about.has_number, &about.incomplete}) pass(*truth);
-  pass(about.number);
-}
-
-template <class Facts>
-void send_all(std::vector<Facts> list, Sender& out) {
-  out.put(std::uint64_t{list.size()});
-  for (Facts& facts : list) pass_facts(Writer{out}, facts);
-}
-
-template <class Facts>
-std::vector<Facts> receive_all(Receiver& in) {
-  std::vector<Facts> list;
-  for (auto left = in.get_count(most_parts); left > 0; --left) pass_facts(Reader{in}, list.emplace_back());
-  return list;
+auto members(StackInfo& info) {
+  return std::tie(info.kind, info.space, info.width, info.height, info.count, info.pixel_mm, info.row_mm,
+                  info.z_start_mm, info.angle_start_deg, info.angle_step_deg, info.units, info.history, info.extra,
+                  info.piece, info.poses);
 }
 
 enum class MessageKind : std::uint8_t { nothing, stack };
@@ -62,9 +25,8 @@ void send_stack(StackParser& parser, Sender& out) {
   parser.read_head();
   StackInfo info = parser.info();
   out.put(MessageKind::stack);
-  pass_facts(Writer{out}, info);
-  send_all(info.poses, out);
-  send_all(parser.about(), out);
+  out.put(members(info));
+  out.put(parser.about());
   out.put(std::uint8_t{parser.seals().sealed()});
   out.put(parser.seals().chained());
   out.flush();
@@ -110,11 +72,10 @@ bool ForeignStacks::next_stack() {
     follows = in.get<MessageKind>();
     if (follows != MessageKind::stack) return;
     info_ = {};
-    pass_facts(Reader{in}, info_);
-    info_.poses = receive_all<model::Pose>(in);
-    about_ = receive_all<ImageInfo>(in);
+    in.fill(members(info_));
+    about_ = in.get<std::vector<ImageInfo>>();
     sealed_ = in.get<std::uint8_t>() != 0;
-    seal_ = chained_seal(in.get_text());
+    seal_ = chained_seal(in.get<std::string>());
   });
   done_ = 0;
   if (follows != MessageKind::stack) {
@@ -130,7 +91,7 @@ bool ForeignStacks::next(Image& image, ImageInfo& about) {
   image = Image(info_.width, info_.height);
   apart_.take([&](Receiver& in) { in.get(image.values.data(), image.values.size() * sizeof(float)); });
   about = about_[done_++];
-  if (done_ == about_.size()) apart_.take([&](Receiver& in) { seal_ = chained_seal(in.get_text()); });
+  if (done_ == about_.size()) apart_.take([&](Receiver& in) { seal_ = chained_seal(in.get<std::string>()); });
   return true;
 }
 

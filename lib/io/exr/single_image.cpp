@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <exception>
+#include <tuple>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text/printable.hpp"
 #include "io/exr/private/format.hpp"
 #include "io/stream/finite.hpp"
@@ -35,17 +37,11 @@ Image read_exr_image(const std::string& path) {
       {path, bytes.size(), -1, std::uint64_t{exr::max_pixels} * 8},
       [&](Sender& out) {
         const Image read = decoded(bytes, path);
-        out.put(std::uint64_t{static_cast<std::uint64_t>(read.width)});
-        out.put(std::uint64_t{static_cast<std::uint64_t>(read.height)});
-        out.put(read.values.data(), read.values.size() * sizeof(float));
+        out.put(std::tie(read.width, read.height, read.values));
       },
-      [&](Receiver& in) {
-        const auto width = in.get_count(exr::max_side);
-        const auto height = in.get_count(width == 0 ? 0 : exr::max_pixels / width);
-        image = Image(static_cast<int>(width), static_cast<int>(height));
-        in.get(image.values.data(), image.values.size() * sizeof(float));
-      });
-  if (image.values.empty()) throw Error{Fault::data, path + ": is damaged (its parser failed)"};
+      [&](Receiver& in) { in.fill(std::tie(image.width, image.height, image.values)); });
+  if (image.width < 1 || image.height < 1 || product(image.width, image.height) != image.values.size())
+    throw Error{Fault::data, path + ": is damaged (its parser failed)"};
   if (!all_finite(image.values.data(), image.size())) {
     throw Error{Fault::data, path + ": has a pixel that is not a finite number"};
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <system_error>
+#include <tuple>
 #include <vector>
 
 #include "base/error.hpp"
@@ -65,32 +66,31 @@ std::uint64_t size_of(const std::vector<File>& files) {
   return bytes;
 }
 
-void send(const GreyImage& image, Sender& out) {
-  out.put(static_cast<std::uint64_t>(image.width));
-  out.put(static_cast<std::uint64_t>(image.height));
-  out.put(std::uint64_t{image.bits == 16 ? 1U : 0U});
-  out.put(image.values.data(), image.values.size() * sizeof image.values[0]);
+auto members(GreyImage& image) { return std::tie(image.width, image.height, image.bits, image.values); }
+
+void send(GreyImage image, Sender& out) {
+  out.put(members(image));
   out.flush();
 }
 
 // What a child sends is not believed.
-GreyImage received(Receiver& in) {
-  const auto width = in.get_count(max_pixels);
-  const auto height = in.get_count(max_pixels / std::max<std::uint64_t>(width, 1));
-  GreyImage image(static_cast<int>(width), static_cast<int>(height), in.get_count(1) == 1 ? 16 : 8);
-  in.get(image.values.data(), image.values.size() * sizeof image.values[0]);
-  return image;
+bool plausible(const GreyImage& image) {
+  return image.width > 0 && image.height > 0 && (image.bits == 8 || image.bits == 16) &&
+         product(image.width, image.height) == image.values.size();
 }
 
 }  // namespace
 
 struct ImageBatch::State {
   explicit State(const std::vector<File>& files)
-      : count(count_of(files)), apart({files.front().name, size_of(files), -1, most_unpacked}, [&](Sender& out) {
+      : name(files.front().name),
+        count(count_of(files)),
+        apart({files.front().name, size_of(files), -1, most_unpacked}, [&](Sender& out) {
           for (const File& file : files) {
             send(is_png(file.bytes) ? decode_png(file.bytes, file.name) : decode_tiff(file.bytes, file.name), out);
           }
         }) {}
+  std::string name;
   int count;
   int taken = 0;
   SandboxedReader apart;
@@ -115,7 +115,8 @@ void require_png(const std::string& bytes, const std::string& name) {
 
 GreyImage ImageBatch::next() {
   GreyImage image;
-  state_->apart.take([&](Receiver& in) { image = received(in); });
+  state_->apart.take([&](Receiver& in) { in.fill(members(image)); });
+  if (!plausible(image)) throw Error{Fault::data, state_->name + ": is damaged (its parser failed)"};
   if (++state_->taken == state_->count) state_->apart.finish();
   return image;
 }

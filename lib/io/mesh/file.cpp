@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "base/compute/memory.hpp"
@@ -155,32 +156,8 @@ ColouredMesh parsed(const std::string& bytes, const std::string& name, const std
   }
 }
 
-template <class Item>
-void send(const std::vector<Item>& items, Sender& out) {
-  out.put(std::uint64_t{items.size()});
-  out.put(items.data(), items.size() * sizeof items[0]);
-}
-
-template <class Item>
-void receive(Receiver& in, std::vector<Item>& items) {
-  items.resize(in.get_count(std::numeric_limits<int>::max()));
-  in.get(items.data(), items.size() * sizeof items[0]);
-}
-
-void send_mesh(const ColouredMesh& made, Sender& out) {
-  send(made.mesh.points, out);
-  send(made.mesh.triangles, out);
-  send(made.colours, out);
-  send(made.uncertainty, out);
-}
-
-ColouredMesh received(Receiver& in) {
-  ColouredMesh made;
-  receive(in, made.mesh.points);
-  receive(in, made.mesh.triangles);
-  receive(in, made.colours);
-  receive(in, made.uncertainty);
-  return made;
+auto members(ColouredMesh& made) {
+  return std::tie(made.mesh.points, made.mesh.triangles, made.colours, made.uncertainty);
 }
 
 // Once more, as what a child sends is not believed.
@@ -224,8 +201,12 @@ ColouredMesh read_coloured_mesh(const std::string& path, const std::string& othe
   if (has_binary_stl_size(bytes)) return parsed(bytes, name, others);
   ColouredMesh made;
   read_apart(
-      {name, bytes.size()}, [&](Sender& out) { send_mesh(parsed(bytes, name, others), out); },
-      [&](Receiver& in) { made = received(in); });
+      {name, bytes.size()},
+      [&](Sender& out) {
+        ColouredMesh there = parsed(bytes, name, others);
+        out.put(members(there));
+      },
+      [&](Receiver& in) { in.fill(members(made)); });
   check_indices(made, name);
   made.in_mm = is_3mf(bytes);
   return made;

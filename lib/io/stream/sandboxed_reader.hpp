@@ -3,18 +3,35 @@
 // else.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <ranges>
 #include <string>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace vam::io {
 
 /// Memory that parent and child share: two slots, of which one is filled while the other is read. Words on a socket
 /// say whose turn it is.
 struct SharedBuffers;
+
+/// Bytes, texts, lists and maps of these cross as they are; a struct as std::tie() of its members, its members().
+template <class Value>
+inline constexpr bool is_tie = false;
+template <class... Parts>
+inline constexpr bool is_tie<std::tuple<Parts...>> = true;
+template <class First, class Second>
+inline constexpr bool is_tie<std::pair<First, Second>> = true;
+template <class Value>
+concept PlainList = std::ranges::contiguous_range<Value> && requires {
+  typename Value::allocator_type;
+} && std::is_trivially_copyable_v<typename Value::value_type>;
 
 /// The child's end. What is put in comes out of Receiver::get() in the same order.
 class Sender {
@@ -23,10 +40,19 @@ class Sender {
   void put(const void* bytes, std::size_t size);
   template <class Value>
   void put(const Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    put(&value, sizeof value);
+    if constexpr (is_tie<Value>) {
+      std::apply([this](const auto&... parts) { (this->put(parts), ...); }, value);
+    } else if constexpr (std::is_trivially_copyable_v<Value>) {
+      put(&value, sizeof value);
+    } else {
+      put(std::uint64_t{value.size()});
+      if constexpr (PlainList<Value>) {
+        put(value.data(), value.size() * sizeof *value.data());
+      } else {
+        for (const auto& item : value) put(item);
+      }
+    }
   }
-  void put(const std::string& text);
   /// Hands over what is still in the slot: at the end, or to a reader that waits for it.
   void flush();
 
@@ -45,15 +71,41 @@ class Receiver {
   void get(void* to, std::size_t size);
   template <class Value>
   [[nodiscard]] Value get() {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    Value value;
-    get(&value, sizeof value);
+    Value value{};
+    fill(value);
     return value;
+  }
+  /// Up to 2^31 numbers and characters, 2^20 of other things. Throws as get().
+  template <class Value>
+  void fill(Value&& value) {
+    using Plain = std::remove_cvref_t<Value>;
+    if constexpr (is_tie<Plain>) {
+      std::apply([this](auto&... parts) { (this->fill(parts), ...); }, value);
+    } else if constexpr (std::is_trivially_copyable_v<Plain>) {
+      get(&value, sizeof value);
+    } else if constexpr (PlainList<Plain>) {
+      value.clear();
+      constexpr std::uint64_t together = (std::uint64_t{1} << 26) / sizeof(typename Plain::value_type);
+      for (auto left = get_count(std::numeric_limits<int>::max()); left > 0;) {  // no more memory than what has come
+        const auto step = std::min(left, together);
+        value.resize(value.size() + step);
+        get(value.data() + value.size() - step, step * sizeof *value.data());
+        left -= step;
+      }
+    } else {
+      value.clear();
+      for (auto left = get_count(1 << 20); left > 0; --left) {
+        if constexpr (requires { typename Plain::mapped_type; }) {
+          auto key = get<typename Plain::key_type>();
+          fill(value[std::move(key)]);
+        } else {
+          fill(value.emplace_back());
+        }
+      }
+    }
   }
   /// A number of things that follow; more than `limit` are taken for a child that failed.
   [[nodiscard]] std::uint64_t get_count(std::uint64_t limit);
-  /// At most 64 MiB.
-  [[nodiscard]] std::string get_text();
   /// Passes over what is left; false when the child has ended without its verdict.
   bool drain();
 

@@ -47,11 +47,6 @@ void Sender::put(const void* bytes, std::size_t size) {
   }
 }
 
-void Sender::put(const std::string& text) {
-  put(std::uint64_t{text.size()});
-  put(text.data(), text.size());
-}
-
 void Sender::flush() {
   if (filled_ > 0) submit();
 }
@@ -110,12 +105,6 @@ std::uint64_t Receiver::get_count(std::uint64_t limit) {
   const auto count = get<std::uint64_t>();
   if (count > limit) throw ChildEnded{};
   return count;
-}
-
-std::string Receiver::get_text() {
-  std::string text(get_count(std::uint64_t{64} << 20), '\0');
-  get(text.data(), text.size());
-  return text;
 }
 
 }  // namespace vam::io

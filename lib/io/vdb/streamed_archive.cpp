@@ -51,8 +51,7 @@ class StreamedGrid : public FloatGrid {
     GridHead head;
     head.facts = head_of(*this);
     head.unique_name = unique_name_;
-    add_seal(seals_, head.facts);
-    send_head(std::move(head), out_);
+    send_head(head);
   }
   void take_seals() { seals_ = judged_seals(*this); }
 
@@ -83,8 +82,7 @@ class StreamedGrid : public FloatGrid {
     head.zero_mm = {zero.x(), zero.y(), zero.z()};
     first_ = head.first;
     if (!std::isfinite(head.facts.background)) refuse("a background");
-    add_seal(seals_, head.facts);
-    send_head(std::move(head), out_);
+    send_head(head);
   }
 
   // A grid that shares the voxels of another has seals of its own.
@@ -104,6 +102,12 @@ class StreamedGrid : public FloatGrid {
     const Coord place = at - first_;
     refuse("a value in voxel (" + std::to_string(place.x()) + ", " + std::to_string(place.y()) + ", " +
            std::to_string(place.z()) + ")");
+  }
+
+  void send_head(GridHead& head) const {
+    add_seal(seals_, head.facts);
+    out_.put(Record::grid);
+    out_.put(members(head));
   }
 
   void send_tiles() const {

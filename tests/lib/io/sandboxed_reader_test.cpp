@@ -51,7 +51,7 @@ TEST_CASE("a ring returns the bytes that were put in, across many slots, in piec
         }
       },
       [&](Receiver& in) {
-        text = in.get_text();
+        text = in.get<std::string>();
         for (std::size_t at = 0, step = 1; at < got.size(); at += step, step = step * 3 % 77'777 + 1) {
           in.get(&got[at], std::min(step, got.size() - at) * sizeof got[0]);
         }

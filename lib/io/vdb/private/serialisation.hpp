@@ -11,6 +11,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "io/stream/sandboxed_reader.hpp"
@@ -60,9 +62,11 @@ void send_archives(InputFile& file, const WantedGrids& wanted, Sender& out);
 /// The same; `kept` takes what a child must not destroy.
 void pass_archives(InputFile& file, const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept);
 
-void send_head(GridHead head, Sender& out);
-/// After its Record.
-[[nodiscard]] GridHead receive_head(Receiver& in);
+inline auto members(GridHead& head) {
+  VolumeFacts& facts = head.facts;
+  return std::tie(facts.name, facts.grid, facts.background, facts.units, facts.level_set, facts.seal, facts.history,
+                  facts.metadata, head.unique_name, head.shares, head.first, head.zero_mm);
+}
 
 /// Hands on all records: start(GridHead), other(text), tile(TileRecord) of a level that there is, whatever is sent, and
 /// leaf(), which receives the LeafRecord itself.
@@ -70,11 +74,14 @@ template <class Taker>
 void receive_records(Receiver& in, Taker& taker) {
   while (true) {
     switch (in.get<Record>()) {
-      case Record::grid:
-        taker.start(receive_head(in));
+      case Record::grid: {
+        GridHead head;
+        in.fill(members(head));
+        taker.start(std::move(head));
         break;
+      }
       case Record::other:
-        taker.other(in.get_text());
+        taker.other(in.get<std::string>());
         break;
       case Record::tile: {
         auto tile = in.get<TileRecord>();
