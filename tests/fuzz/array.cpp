@@ -28,22 +28,23 @@ void read_bare(const std::string& file) {
     at += step;
     return step;
   };
-  Bytes bytes(read, "array");
+  Bytes bytes(read);
   double voxel_mm = 0;
   const auto head = file.starts_with(io::arrays::npy_magic) ? take_npy_head(bytes) : take_nrrd_head(bytes, voxel_mm);
   read_all({head, std::move(bytes), {2, 0, 1}});
 }
 
 void read_archive(const std::string& file) {
-  io::arrays::PackedArray array(file, "", "archive");
-  Bytes bytes([&](void* to, std::size_t count) { return array.read(to, count); }, "array");
+  io::ZipArchive archive(file, ".npz", false);
+  std::uint64_t stated = 0;
+  Bytes bytes = io::arrays::open_array(archive, "", "archive", stated);
   const auto head = take_npy_head(bytes);
-  array.require(head);
+  io::arrays::require_values(head, stated);
   read_all({head, std::move(bytes), {0, 1, 2}});
 }
 
 void read_pages(const std::string& file) {
-  io::TiffPages pages(file, "pages");
+  io::TiffPages pages(file);
   std::string row(4096, ' ');
   while (pages.read(row.data(), row.size()) == row.size()) {
   }

@@ -9,7 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
-#include <new>
+#include <exception>
 #include <string>
 
 #include "base/error.hpp"
@@ -75,12 +75,12 @@ int attempt(const Work& work) {
   return 0;
 }
 
-/// The same in the child that parses a file, whose bounds of memory may be what ends it.
+/// The same in the child that parses a file, whose answers are a library's exceptions, too, as of bounds of memory.
 template <class Work>
 int attempt_in_child(const Work& work) {
   try {
     return attempt(work);
-  } catch (const std::bad_alloc&) {
+  } catch (const std::exception&) {
     return 0;
   }
 }

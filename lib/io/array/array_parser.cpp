@@ -31,7 +31,7 @@ Parser::Parser(const Head& head, Bytes values, std::array<int, 3> axes) : head_(
     size_[i] = head_.shape[axes[i]];
     stride_[i] = own[axes[i]];
   }
-  if (size_[1] * size_[2] > most_image) bytes_.fail("has images of more than 2^28 values");
+  if (size_[1] * size_[2] > most_image) throw std::runtime_error("has images of more than 2^28 values");
   streams_ = stride_[2] == 1 && stride_[1] == size_[2] && (stride_[0] == size_[1] * size_[2] || size_[0] == 1);
 }
 
@@ -66,15 +66,15 @@ void Parser::check(const Image& image) const {
   if (all_finite(image.values.data(), image.size())) return;
   const auto bad = std::find_if(image.values.begin(), image.values.end(), [](float v) { return !std::isfinite(v); });
   const auto at = bad - image.values.begin();
-  bytes_.fail("column " + std::to_string(at % image.width) + ", row " + std::to_string(at / image.width) +
-              " of image " + std::to_string(done_) +
-              " is not a finite number; numpy.nan_to_num() replaces such values");
+  throw std::runtime_error("column " + std::to_string(at % image.width) + ", row " + std::to_string(at / image.width) +
+                           " of image " + std::to_string(done_) +
+                           " is not a finite number; numpy.nan_to_num() replaces such values");
 }
 
 void Parser::require_end() {
   if (bytes_.ended()) return;
-  bytes_.fail("has bytes behind its " + std::to_string(head_.values()) +
-              " values; it is damaged, or several arrays in one");
+  throw std::runtime_error("has bytes behind its " + std::to_string(head_.values()) +
+                           " values; it is damaged, or several arrays in one");
 }
 
 void Parser::next(Image& image) {

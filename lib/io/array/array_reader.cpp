@@ -60,19 +60,6 @@ std::optional<Format> format_of(std::string_view head) {
   return std::nullopt;
 }
 
-// All of a file whose list of contents may be at its end.
-std::string whole(InputFile& file) {
-  std::string bytes;
-  for (auto piece = file.peek(); !piece.empty(); piece = file.peek()) {
-    if (bytes.size() + piece.size() > most_held) {
-      throw Error{Fault::data, file.name() + ": is larger than 16 GiB; save its array as .npy"};
-    }
-    bytes.append(piece.data(), piece.size());
-    file.skip(piece.size());
-  }
-  return bytes;
-}
-
 // Those of a file, which take addresses and no memory; the child inherits them.
 std::shared_ptr<const char> mapped_bytes(const InputFile& file) {
   void* bytes = mmap(nullptr, file.size(), PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
@@ -109,7 +96,7 @@ struct ArrayReader::State {
     if (format == Format::hdf5) arrays::load_hdf5();
     const bool mapped = format == Format::hdf5 && file.size() > 0;
     const bool held = format == Format::npz || format == Format::tiff || (format == Format::hdf5 && !mapped);
-    if (held) bytes = whole(file);
+    if (held) bytes = read_all(file, most_held);  // its list of contents may be at the end
     if (mapped) map = mapped_bytes(file);
     // What repeats packs well: an array may unpack to as much as its bytes can hold, and as there is memory for.
     const std::uint64_t length = held ? bytes.size() : file.size();
@@ -133,23 +120,24 @@ struct ArrayReader::State {
   void parse(const ArrayOptions& options, Sender& out) {
     using arrays::Bytes;
     if (format == Format::npz) {
-      arrays::PackedArray array(bytes, options.name, file.name());
-      Bytes unpacked([&](void* to, std::size_t wanted) { return array.read(to, wanted); }, file.name());
+      ZipArchive archive(bytes, ".npz", false);
+      std::uint64_t stated = 0;
+      Bytes unpacked = arrays::open_array(archive, options.name, file.name(), stated);
       const arrays::Head head = take_npy_head(unpacked);
-      array.require(head);
+      arrays::require_values(head, stated);
       return send({head, std::move(unpacked), options.axes}, out);
     }
     if (format == Format::tiff) {
-      TiffPages pages(std::move(bytes), file.name());
-      Bytes values([&](void* to, std::size_t wanted) { return pages.read(to, wanted); }, file.name());
+      TiffPages pages(std::move(bytes));
+      Bytes values([&](void* to, std::size_t wanted) { return pages.read(to, wanted); });
       arrays::Head head;
       head.kind = pages.kind();
       head.bytes = pages.value_bytes();
-      set_shape(values, {pages.pages(), pages.rows(), pages.columns()}, head);
+      set_shape({pages.pages(), pages.rows(), pages.columns()}, head);
       return send({head, std::move(values), options.axes}, out);
     }
     if (format == Format::hdf5) return parse_hdf5(options, out);
-    Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); }, file.name());
+    Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); });
     StatedViews stated;
     const arrays::Head head = format == Format::npy ? take_npy_head(front) : take_nrrd_head(front, stated.voxel_mm);
     send({head, std::move(front), options.axes}, out, stated);
@@ -158,7 +146,7 @@ struct ArrayReader::State {
   void parse_hdf5(const ArrayOptions& options, Sender& out) {
     const std::string_view all = map == nullptr ? std::string_view(bytes) : std::string_view(map.get(), file.size());
     arrays::Hdf5Images array = arrays::open_hdf5(all, options, images_memory, file.name());
-    send({array.head, arrays::Bytes(std::move(array.read), file.name()), {0, 1, 2}}, out, array.views);
+    send({array.head, arrays::Bytes(std::move(array.read)), {0, 1, 2}}, out, array.views);
   }
 
   // What a child sends is not believed.

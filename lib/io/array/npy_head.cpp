@@ -102,17 +102,13 @@ Head take_npy_head(Bytes& bytes) {
   bytes.take(length.data(), start[6] == 1 ? 2 : 4);
   if (start[6] < 1 || start[6] > 3 ||
       std::string_view(reinterpret_cast<const char*>(start.data()), npy_magic.size()) != npy_magic) {
-    bytes.fail("is not a NumPy array of version 1 to 3");
+    throw std::runtime_error("is not a NumPy array of version 1 to 3");
   }
   const std::size_t size = length[0] | length[1] << 8 | length[2] << 16 | std::size_t{length[3]} << 24;
-  if (size > most_text) bytes.fail("its NumPy header is damaged; save the array again with numpy.save()");
+  if (size > most_text) damaged();
   std::string text(size, '\0');
   bytes.take(text.data(), text.size());
-  try {
-    return parse_npy_head(text);
-  } catch (const std::runtime_error& problem) {
-    bytes.fail(problem.what());
-  }
+  return parse_npy_head(text);
 }
 
 Head parse_npy_head(std::string_view text) {

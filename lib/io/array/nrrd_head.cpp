@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -34,44 +35,44 @@ double edge_of(const std::string& text) {
   return cubes ? parse_number(e).value_or(0) : 0;
 }
 
-[[noreturn]] void refuse(const Bytes& bytes, const std::string& what) {
-  bytes.fail(what + "; NRRD is read as vam-view --export writes it: save other volumes as .npy");
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::runtime_error(what + "; NRRD is read as vam-view --export writes it: save other volumes as .npy");
 }
 
 }  // namespace
 
 Head take_nrrd_head(Bytes& bytes, double& voxel_mm) {
-  if (!bytes.line().starts_with(nrrd_magic)) bytes.fail("is no NRRD volume");
+  if (!bytes.line().starts_with(nrrd_magic)) throw std::runtime_error("is no NRRD volume");
   std::map<std::string, std::string> fields;
   for (std::string line = bytes.line(); !line.empty(); line = bytes.line()) {
     if (line.starts_with(version_name + std::string(":="))) {
       const std::string why = FormatKind("NRRD").objection(line.substr(line.find('=') + 1));
-      if (!why.empty()) bytes.fail(why);
+      if (!why.empty()) throw std::runtime_error(why);
     }
     if (line.starts_with('#') || line.find(":=") != std::string::npos) continue;
     const std::string name = line.substr(0, line.find(": "));
     const std::string value = line.substr(std::min(name.size() + 2, line.size()));
-    if (!is_known(name, value)) refuse(bytes, "its header has " + excerpt(line));
-    if (!fields.try_emplace(name, value).second) refuse(bytes, "its header states " + excerpt(name) + " twice");
+    if (!is_known(name, value)) refuse("its header has " + excerpt(line));
+    if (!fields.try_emplace(name, value).second) refuse("its header states " + excerpt(name) + " twice");
   }
   const bool bits = fields["type"] == "uint8";
   for (const char* name : {"type", "sizes", "dimension", "encoding", "endian"}) {
     if (fields[name].empty() && !(bits && name == std::string("endian"))) {
-      refuse(bytes, "its header has no '" + std::string(name) + "'");
+      refuse("its header has no '" + std::string(name) + "'");
     }
   }
-  if (!bits && fields["type"] != "float") refuse(bytes, "has values of type " + excerpt(fields["type"]));
+  if (!bits && fields["type"] != "float") refuse("has values of type " + excerpt(fields["type"]));
   std::vector<std::uint64_t> shape;
   std::istringstream sizes(fields["sizes"]);  // the fastest first
   for (std::uint64_t size = 0; sizes >> size;) shape.insert(shape.begin(), size);
-  if (!sizes.eof() || shape.size() != 3) refuse(bytes, "its header has sizes " + excerpt(fields["sizes"]));
+  if (!sizes.eof() || shape.size() != 3) refuse("its header has sizes " + excerpt(fields["sizes"]));
   const std::string edges = fields["space directions"] + fields["spacings"];
   const bool are_lengths = !edges.empty() && fields["units"].empty();  // the axes of stacks have units
   voxel_mm = are_lengths ? edge_of(edges) : 0;
-  if (are_lengths && !(voxel_mm > 0)) refuse(bytes, "has voxels " + excerpt(edges) + ", no cubes along x, y and z");
+  if (are_lengths && !(voxel_mm > 0)) refuse("has voxels " + excerpt(edges) + ", no cubes along x, y and z");
   Head head;
   if (bits) head.kind = 'u', head.bytes = 1;
-  set_shape(bytes, shape, head);
+  set_shape(shape, head);
   return head;
 }
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "io/image/private/tiff_memory.hpp"
 
 namespace vam::io {
@@ -36,7 +36,7 @@ bool is_plain(TIFF* tiff) {
 }  // namespace
 
 struct TiffPages::State {
-  State(std::string bytes, std::string file_name) : file{std::move(bytes)}, name(std::move(file_name)) {
+  explicit State(std::string bytes) : file{std::move(bytes)} {
     if (!tiff) fail("is a truncated or damaged TIFF");
     constexpr std::uint32_t most_side = 1 << 16;
     layout = layout_of(tiff.get());
@@ -60,7 +60,7 @@ struct TiffPages::State {
     require_page();
   }
 
-  [[noreturn]] void fail(const std::string& why) const { throw Error{Fault::data, name + ": " + why}; }
+  [[noreturn]] static void fail(const std::string& why) { throw std::runtime_error(why); }
 
   void require_page() {
     if (!(layout_of(tiff.get()) == layout)) {
@@ -93,7 +93,6 @@ struct TiffPages::State {
   }
 
   TiffMemory file;
-  std::string name;
   Tiff tiff = open_tiff(file);
   PageLayout layout;
   std::uint32_t count = 0;
@@ -104,8 +103,7 @@ struct TiffPages::State {
   bool has_row = false;
 };
 
-TiffPages::TiffPages(std::string bytes, std::string name)
-    : state_(std::make_unique<State>(std::move(bytes), std::move(name))) {}
+TiffPages::TiffPages(std::string bytes) : state_(std::make_unique<State>(std::move(bytes))) {}
 
 TiffPages::~TiffPages() = default;
 

@@ -11,8 +11,9 @@ namespace vam::io {
 
 class TiffPages {
  public:
-  /// Pages of one size and type; grey, one sample a pixel, in strips. Throws Fault::data, beginning with `name`.
-  TiffPages(std::string bytes, std::string name);
+  /// Pages of one size and type; grey, one sample a pixel, in strips. Throws std::runtime_error, to stand behind
+  /// the file's name.
+  explicit TiffPages(std::string bytes);
   ~TiffPages();
 
   [[nodiscard]] std::uint32_t pages() const;
@@ -21,7 +22,7 @@ class TiffPages {
   [[nodiscard]] char kind() const;        // u, i or f
   [[nodiscard]] int value_bytes() const;  // 1, 2, 4 or 8
   /// The values of all pages, row by row, in this machine's byte order; fewer than `size` bytes only at the end. Throws
-  /// Fault::data for a page that is damaged.
+  /// std::runtime_error for a page that is damaged.
   std::size_t read(void* to, std::size_t size);
 
  private:

@@ -2,15 +2,18 @@
 // 3MF: the objects of a package, placed as its build says. What they expand to is counted before it is made.
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/compute/memory.hpp"
 #include "base/index.hpp"
 #include "base/text/printable.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/model_part.hpp"
-#include "io/mesh/private/zip_archive.hpp"
+#include "io/zip/zip_archive.hpp"
 
 namespace vam::io {
 
@@ -21,6 +24,8 @@ constexpr std::uint64_t point_bytes = 24;
 constexpr std::uint64_t triangle_bytes = 68;                    // as a face of a soup and as a triangle
 constexpr std::uint64_t room_bytes = std::uint64_t{160} << 20;  // of what the child may take: sandboxed_reader.hpp
 constexpr std::uint64_t room_ratio = 48;
+constexpr std::uint64_t most_unpacked = std::uint64_t{64} << 20;  // and as often what the archive has
+constexpr std::uint64_t most_ratio = 64;
 constexpr std::uint64_t plenty = std::uint64_t{1} << 40;  // sums end here, before they overflow
 constexpr int max_depth = 64;
 
@@ -36,11 +41,16 @@ std::string without_slash(const std::string& path) { return path.starts_with('/'
 
 class Package {
  public:
-  explicit Package(std::string_view bytes) : archive_(bytes), room_(room_bytes + room_ratio * bytes.size()) {
+  explicit Package(std::string_view bytes)
+      : archive_(bytes, "3MF", true),
+        room_(room_bytes + room_ratio * bytes.size()),
+        left_(most_unpacked + most_ratio * bytes.size()) {
     if (archive_.has("_rels/.rels")) {
-      root_ = without_slash(model_target([&](const auto& take) { archive_.read("_rels/.rels", take); }));
+      root_ = without_slash(model_target([&](const auto& take) { read("_rels/.rels", take); }));
     }
-    if (root_.empty()) root_ = archive_.first_with(".model");
+    for (const std::string& name : archive_.names()) {
+      if (root_.empty() && name.ends_with(".model")) root_ = name;
+    }
     if (root_.empty()) throw MeshProblem{"not a 3MF file: the zip archive has no 3D model"};
   }
 
@@ -58,6 +68,19 @@ class Package {
   }
 
  private:
+  // Passes a file by, unpacked.
+  void read(const std::string& name, const std::function<void(std::string_view)>& take) {
+    archive_.open(name);
+    std::vector<char> piece(std::size_t{1} << 16);
+    while (const std::size_t got = archive_.read(piece.data(), piece.size())) {
+      if (got > left_) {
+        throw MeshProblem{"unpacks to more than 64 MiB and 64 times its size; it is damaged, or save it as STL"};
+      }
+      left_ -= got;
+      take({piece.data(), got});
+    }
+  }
+
   void require_room(const Expanded& all) const {
     const std::string expands = "its components expand to " + number(all.instances) + " objects of " +
                                 number(all.triangles) + " triangles and " + number(all.points) + " vertices; ";
@@ -76,7 +99,7 @@ class Package {
   const ModelPart& part(const std::string& name) {
     const auto known = parts_.find(name);
     if (known != parts_.end()) return known->second;
-    return parts_[name] = parse_model_part([&](const auto& take) { archive_.read(name, take); });
+    return parts_[name] = parse_model_part([&](const auto& take) { read(name, take); });
   }
   static std::string part_name(const std::string& from, const Instance& instance) {
     return instance.part.empty() ? from : without_slash(instance.part);
@@ -141,6 +164,7 @@ class Package {
 
   ZipArchive archive_;
   std::uint64_t room_;  // bytes for what the components expand to
+  std::uint64_t left_;  // bytes that may yet be unpacked
   std::string root_;
   std::map<std::string, ModelPart> parts_;
   std::map<std::pair<std::string, unsigned>, Expanded> counted_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -151,8 +152,8 @@ ColouredMesh parsed(const std::string& bytes, const std::string& name, const std
     PolygonSoup soup = parse(bytes, others);
     check_points(soup);
     return triangulated(std::move(soup));
-  } catch (const MeshProblem& problem) {
-    throw Error{Fault::data, name + ": " + problem.text};
+  } catch (const std::runtime_error& problem) {
+    throw Error{Fault::data, name + ": " + problem.what()};
   }
 }
 

@@ -106,6 +106,10 @@ std::size_t InputFile::read(void* to, std::size_t size) {
 
 std::string read_all(const std::string& path, Content content, std::uint64_t limit) {
   InputFile file(path, content);
+  return read_all(file, limit);
+}
+
+std::string read_all(InputFile& file, std::uint64_t limit) {
   std::string bytes;
   for (auto ready = file.peek(); !ready.empty(); ready = file.peek()) {
     if (std::max<std::uint64_t>(bytes.size() + ready.size(), file.size()) > limit) {

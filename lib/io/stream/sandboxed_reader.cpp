@@ -14,6 +14,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "base/compute/memory.hpp"
@@ -118,8 +119,10 @@ void send_verdict(int socket, int fault, const std::string& line) {
     fault = static_cast<int>(refused.fault);
     line = refused.what();
   } catch (const std::exception& error) {
+    const bool sentence = dynamic_cast<const std::runtime_error*>(&error) != nullptr;
     fault = static_cast<int>(Fault::data);
-    line = source.name + ": is damaged: " + error.what();
+    line = source.name + (sentence ? ": " : ": is damaged: ") + error.what();
+    std::replace(line.begin(), line.end(), '\n', ' ');
   }
   send_verdict(slots.socket, fault, line);
   _exit(0);  // nothing is destroyed, nobody else's buffers are flushed

@@ -131,8 +131,8 @@ struct Foreign {
 /// that of processor time (a pipe: the memory that is left, 10 min), and dies with this thread.
 class SandboxedReader {
  public:
-  /// Starts parse() there, which must be single-threaded, destructors included. Throws Fault::memory when no process
-  /// can be made, or less than 16 MiB are left.
+  /// Starts parse() there, which must be single-threaded, destructors included; the std::runtime_error that it throws
+  /// stands behind the name. Throws Fault::memory when no process can be made, or less than 16 MiB are left.
   SandboxedReader(Foreign source, const std::function<void(Sender&)>& parse);
   ~SandboxedReader();
   SandboxedReader(const SandboxedReader&) = delete;

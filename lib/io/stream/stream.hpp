@@ -105,6 +105,9 @@ class OutputFile {
 [[nodiscard]] std::string read_all(const std::string& path, Content content = Content::text,
                                    std::uint64_t limit = std::uint64_t{4} << 30);
 
+/// The same of what is left of it.
+[[nodiscard]] std::string read_all(InputFile& file, std::uint64_t limit);
+
 /// The SHA-256 of a file's bytes, as sha256sum(1) prints it. Throws what InputFile throws.
 [[nodiscard]] std::string sha256_of(const std::string& path);
 

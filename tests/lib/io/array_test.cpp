@@ -211,7 +211,7 @@ TEST_CASE("archives: the only array, one of several by name") {
       whole.substr(0, whole.size() - 2) + little(static_cast<std::uint16_t>(comment.size())) + comment;
   CHECK(read_array(noted).values == std::vector<float>{0, 1});
   two.add("dose.npy", array_of(dictionary("|u1", "False", "1, 2"), counted(2)));
-  CHECK(has(array_refusal(two.done(), {"plan/e", {0, 1, 2}}), "holds two arrays called 'dose', of which only one"));
+  CHECK(has(array_refusal(two.done(), {"plan/e", {0, 1, 2}}), "holds two files called 'dose.npy', of which only one"));
   std::string flipped = one.done();
   flipped[flipped.find('\1', 60)] = '\3';
   CHECK(has(array_refusal(flipped), "truncated or damaged"));

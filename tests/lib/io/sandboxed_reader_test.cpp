@@ -64,7 +64,8 @@ TEST_CASE("the crash of a child is a one-line error, and this process continues"
   CHECK(has(line_of([] { std::abort(); }), "part.vdb: is damaged: its reader was ended by signal 6 (Aborted); "));
   CHECK(has(line_of([] { (void)std::raise(SIGKILL); }), "signal 9"));
   CHECK(has(line_of([] { _exit(0); }), "ended early"));
-  CHECK(has(line_of([] { throw std::runtime_error("no such thing"); }), "part.vdb: is damaged: no such thing"));
+  CHECK(has(line_of([] { throw std::logic_error("no such thing"); }), "part.vdb: is damaged: no such thing"));
+  CHECK(has(line_of([] { throw std::runtime_error("has no such thing"); }), "part.vdb: has no such thing"));
 #ifndef __SANITIZE_ADDRESS__
   CHECK(has(line_of([] { *static_cast<volatile int*>(nullptr) = 1; }), "signal 11 (Segmentation fault)"));
   CHECK(has(line_of([] {

@@ -14,26 +14,20 @@ namespace vam::io::arrays {
 
 class Bytes {
  public:
-  /// `read(to, size)` returns fewer only at the end; `name` begins messages.
+  /// `read(to, size)` returns fewer only at the end.
   using Read = std::function<std::size_t(void*, std::size_t)>;
-  Bytes(Read read, std::string name);
+  explicit Bytes(Read read) : read_(std::move(read)) {}
 
-  /// Throws Fault::data where fewer are left.
+  /// Throws std::runtime_error, to stand behind the file's name, where fewer are left.
   void take(void* to, std::size_t size);
-  /// Up to and without the next line feed, and without a carriage return before it. Throws Fault::data for a line of
+  /// Up to and without the next line feed, and without a carriage return before it. Throws as take() for a line of
   /// more than 64 KiB.
   [[nodiscard]] std::string line();
   [[nodiscard]] bool ended();
-  /// Throws Fault::data: the name, then why.
-  [[noreturn]] void fail(const std::string& why) const;
 
  private:
   Read read_;
-  std::string name_;
   std::size_t taken_ = 0;
 };
-
-/// set_shape() of a head whose values follow. Throws Fault::data.
-void set_shape(const Bytes& bytes, const std::vector<std::uint64_t>& shape, Head& head);
 
 }  // namespace vam::io::arrays

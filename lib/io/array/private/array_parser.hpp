@@ -15,11 +15,12 @@ namespace vam::io::arrays {
 /// The values front to back.
 class Parser {
  public:
-  /// Which axis of the array counts images, rows and columns. Throws Fault::data.
+  /// Which axis of the array counts images, rows and columns. Throws std::runtime_error.
   Parser(const Head& head, Bytes values, std::array<int, 3> axes);
   /// Images, rows, columns.
   [[nodiscard]] const std::array<std::size_t, 3>& size() const { return size_; }
-  /// Image `k`, in ascending order. Throws Fault::data: cut off, more bytes than values, a value that is not finite.
+  /// Image `k`, in ascending order. Throws std::runtime_error: cut off, more bytes than values, a value that is not
+  /// finite.
   void next(Image& image);
 
  private:

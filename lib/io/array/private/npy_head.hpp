@@ -13,7 +13,7 @@ namespace vam::io::arrays {
 
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
 
-/// Throws Fault::data: not such a file, and as parse_npy_head().
+/// Throws std::runtime_error: not such a file, and as parse_npy_head().
 [[nodiscard]] Head take_npy_head(Bytes& bytes);
 
 /// From the header text. Throws std::runtime_error, to stand behind the file's name: not numbers (Python objects, text,

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,8 @@ struct PolygonSoup {
 };
 
 /// What a parser has to say about bytes it cannot read: the rest of the sentence that begins with the file's name.
-struct MeshProblem {
-  std::string text;
+struct MeshProblem : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// Throws MeshProblem where a header states more than its file can hold: every vertex and face takes at least two
