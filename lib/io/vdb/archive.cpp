@@ -3,13 +3,10 @@
 
 #include <openvdb/openvdb.h>
 
-#include <algorithm>
 #include <iostream>
-#include <new>
 #include <stdexcept>
 #include <string>
 
-#include "base/error.hpp"
 #include "io/stream/stream_buffers.hpp"
 #include "io/vdb/private/head.hpp"
 
@@ -47,21 +44,13 @@ void for_archives(InputFile& file, const std::function<void(std::istream&)>& arc
       stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
       archive(stream);
     }
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
   } catch (const std::ios_base::failure&) {
-    throw Error{Fault::data, file.name() + ": is cut off after " + std::to_string(file.position()) +
-                                 " bytes; the program that wrote it did not finish"};
+    throw std::runtime_error("is cut off after " + std::to_string(file.position()) +
+                             " bytes; the program that wrote it did not finish");
   } catch (const openvdb::ArithmeticError&) {
-    throw Error{Fault::data, file.name() +
-                                 ": a grid has a transform with a number that is not finite, or without an inverse; "
-                                 "mend it in the program that wrote it"};
-  } catch (const std::exception& problem) {
-    std::string line = file.name() + ": " + problem.what();
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    throw Error{Fault::data, line};
+    throw std::runtime_error(
+        "a grid has a transform with a number that is not finite, or without an inverse; mend it in the program that "
+        "wrote it");
   }
 }
 

@@ -107,43 +107,6 @@ std::vector<SparseVolume> read_volumes(const std::string& path) {
   return volumes;
 }
 
-namespace {
-
-// Looks at the heads and lets the voxels go.
-struct HeaderCollector {
-  Receiver& in;
-  std::vector<VolumeFacts> facts;
-  LeafRecord passed{};
-
-  void start(GridHead head) { facts.push_back(std::move(head.facts)); }
-  void other(const std::string& text) {
-    VolumeFacts unknown;
-    unknown.name = text;
-    facts.push_back(std::move(unknown));
-  }
-  void tile(const TileRecord&) {}
-  void leaf() { in.get(&passed, sizeof passed); }
-};
-
-}  // namespace
-
-std::vector<VolumeFacts> check_volumes(const std::string& path, bool fast) {
-  InputFile file(path);
-  openvdb::initialize();
-  std::vector<VolumeFacts> facts;
-  read_apart(
-      {file.name(), file.size(), file.descriptor()},
-      [&](Sender& out) {
-        send_archives(file, {std::nullopt, fast}, out);
-      },
-      [&](Receiver& in) {
-        HeaderCollector heads{in, {}, {}};
-        receive_records(in, heads);
-        facts = std::move(heads.facts);
-      });
-  return facts;
-}
-
 SparseVolume& choose_volume(std::vector<SparseVolume>& volumes, const std::string& name, const std::string& path) {
   const std::string subject = input_name(path);
   SparseVolume* found = nullptr;

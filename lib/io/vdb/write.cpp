@@ -4,7 +4,6 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <map>
@@ -146,24 +145,23 @@ void set_metadata(SparseVolume& volume) {
 }
 
 // OpenVDB marks every archive with a random UUID, so that no two runs would give the same bytes. Here it follows from
-// what the grids are (FNV-1a, as a UUID of version 8: RFC 9562).
+// what the grids are, seals included (a UUID of version 8: RFC 9562).
 constexpr std::uint64_t uuid_offset = 21;  // after magic (8), format (4), library version (8), has-offsets (1)
 
-std::string uuid_of(const openvdb::GridCPtrVec& grids) {
-  std::ostringstream facts;
-  for (const auto& grid : grids) {
-    facts << grid->baseTree().activeVoxelCount() << ' ' << grid->baseTree().leafCount() << ' ' << grid->transform();
-    for (auto it = grid->beginMeta(); it != grid->endMeta(); ++it)
-      facts << it->first << ' ' << it->second->str() << ' ';
+std::string uuid_of(const std::vector<SparseVolume>& volumes) {
+  Sealer all;
+  for (const SparseVolume& volume : volumes) {
+    const FloatGrid& grid = *volume.state().sparse;
+    for (auto it = grid.beginMeta(); it != grid.endMeta(); ++it) {
+      all.add(it->first);
+      all.add(it->second->str());
+    }
   }
-  std::array<std::uint64_t, 2> hash = {14695981039346656037ULL, 14695981039346656037ULL ^ 0x5bd1e995ULL};
-  for (const char byte : facts.str()) {
-    for (auto& half : hash) half = (half ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
-  }
+  const Digest hash = all.digest();
   char text[40];
-  std::snprintf(text, sizeof text, "%08x-%04x-8%03x-8%03x-%012llx", static_cast<unsigned>(hash[0] >> 32),
-                static_cast<unsigned>(hash[0] >> 16 & 0xffff), static_cast<unsigned>(hash[0] & 0xfff),
-                static_cast<unsigned>(hash[1] >> 52), static_cast<unsigned long long>(hash[1] & 0xffffffffffffULL));
+  std::snprintf(text, sizeof text, "%08x-%04x-8%03x-8%03x-%012llx", static_cast<unsigned>(hash.high >> 32),
+                static_cast<unsigned>(hash.high >> 16 & 0xffff), static_cast<unsigned>(hash.high & 0xfff),
+                static_cast<unsigned>(hash.low >> 52), static_cast<unsigned long long>(hash.low & 0xffffffffffffULL));
   return text;
 }
 
@@ -174,14 +172,12 @@ void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes) 
   OutputFile file(path);
   const std::uint32_t blosc = file.is_stream() ? openvdb::io::COMPRESS_NONE : openvdb::io::COMPRESS_BLOSC;
   const std::uint32_t compression = openvdb::io::COMPRESS_ACTIVE_MASK | blosc;
-  openvdb::GridCPtrVec grids;
   for (SparseVolume& volume : volumes) {
     volume.prune();
     set_metadata(volume);
-    grids.push_back(volume.state().sparse);
   }
   OutputBuffer buffer(file);
-  buffer.replace(uuid_offset, uuid_of(grids));
+  buffer.replace(uuid_offset, uuid_of(volumes));
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
   ArchiveToWrite(compression).put(stream, volumes, !file.is_stream());
