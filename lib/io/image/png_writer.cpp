@@ -85,34 +85,19 @@ PngBytes assemble(const PngLayout& layout, const PngRemark& remark, const PngByt
   return png;
 }
 
-// Several pixels share a byte, the leftmost in the highest bits; every row begins on a byte.
-PngBytes packed_rows(const GreyImage& image, std::size_t row_bytes) {
-  PngBytes rows(row_bytes * static_cast<std::size_t>(image.height), '\0');
-  const int per_byte = 8 / image.bits;
+// Of fewer than 8 bits several share a byte, the leftmost in the highest bits; every row begins on a byte.
+PngBytes packed_rows(const GreyImage& image, const PngLayout& layout) {
+  PngBytes rows(layout.row_bytes * static_cast<std::size_t>(image.height), '\0');
   for (int y = 0; y < image.height; ++y) {
+    char* row = rows.data() + static_cast<std::size_t>(y) * layout.row_bytes;
     for (int x = 0; x < image.width; ++x) {
-      const int shift = 8 - image.bits * (x % per_byte + 1);
-      char& byte = rows[static_cast<std::size_t>(y) * row_bytes + x / per_byte];
-      byte = static_cast<char>(byte | image(x, y) << shift);
+      const int level = image(x, y);
+      const int value = image.bits == 10 ? level << 6 | level >> 4 : level;
+      const std::ptrdiff_t bit = std::ptrdiff_t{x} * layout.depth;
+      if (layout.depth == 16) row[bit / 8 + 1] = static_cast<char>(value & 0xFF);
+      const int first = layout.depth == 16 ? value >> 8 : value << (8 - layout.depth - bit % 8);
+      row[bit / 8] = static_cast<char>(row[bit / 8] | first);
     }
-  }
-  return rows;
-}
-
-PngBytes byte_rows(const GreyImage& image) {
-  PngBytes rows(image.values.size(), '\0');
-  std::transform(image.values.begin(), image.values.end(), rows.begin(),
-                 [](std::uint16_t level) { return static_cast<char>(level); });
-  return rows;
-}
-
-PngBytes wide_rows(const GreyImage& image) {
-  PngBytes rows;
-  rows.reserve(2 * image.values.size());
-  for (const std::uint16_t level : image.values) {
-    const int value = image.bits == 10 ? level << 6 | level >> 4 : level;
-    rows += static_cast<char>(value >> 8);
-    rows += static_cast<char>(value & 0xFF);
   }
   return rows;
 }
@@ -131,8 +116,7 @@ std::string encode_png(const GreyImage& image, const ImageText& text) {
   const auto bits = static_cast<std::size_t>(image.width) * depth;
   const PngLayout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
   const PngRemark significant{"sBIT", PngBytes(image.bits == 10 ? 1 : 0, '\x0a')};
-  if (depth == 16) return assemble(layout, significant, wide_rows(image), text);
-  return assemble(layout, significant, depth == 8 ? byte_rows(image) : packed_rows(image, layout.row_bytes), text);
+  return assemble(layout, significant, packed_rows(image, layout), text);
 }
 
 std::string encode_png(const RgbImage& image, const ImageText& text, double dpi) {
