@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     vam::model::ImageInfo about;
     do {
       parser.read_head();
-      while (parser.next(image, about, true)) {
+      while (parser.next(image, about)) {
       }
     } while (parser.next_stack());
   });

@@ -85,7 +85,7 @@ for i in range(0, 4 * n, 4): print("3 %d %d %d\n3 %d %d %d\n3 %d %d %d\n3 %d %d 
   vam-optimize --printer small.toml part.vdb --method fbp --angles 24 -o light.exr
   while read -r command; do
     for kib in $(seq 70000 400 100000); do
-      sh -c "ulimit -v $kib; exec timeout 60 $command" >bounded 2>&1 </dev/null
+      sh -c "ulimit -v $kib; exec timeout 60 $command" 2>bounded >found </dev/null
       status=$?
       case "$status $(grep -vc warning: bounded)" in '0 '* | '71 1' | '127 1') ;;
         '139 '*) sh -c "ulimit -v $kib; exec ${command%% *} --version" >/dev/null 2>&1  # the system's loader may end so

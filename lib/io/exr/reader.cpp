@@ -1,60 +1,133 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stack with seals is read in this process; any other, which some other program has made, in a child, and so is all
-// that follows it.
+// Stacks are parsed in a child, one after the other; what it sends is not believed.
+#include <cstdint>
 #include <optional>
+#include <tuple>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "io/exr/private/attributes.hpp"
-#include "io/exr/private/foreign.hpp"
 #include "io/exr/private/stack_parser.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/sandboxed_reader.hpp"
 
 namespace vam::io {
 
 using model::ImageInfo;
 using model::StackInfo;
 
-struct StackReader::State {
-  State(const std::string& path, bool several, bool to_end) : parser(path, several, to_end) { read_head(); }
+namespace {
 
-  void read_head() {
-    if (parser.has_seals()) {
-      parser.read_head();
-    } else {
-      foreign.emplace(parser);
+auto members(StackInfo& info) {
+  return std::tie(info.kind, info.space, info.width, info.height, info.count, info.pixel_mm, info.row_mm,
+                  info.z_start_mm, info.angle_start_deg, info.angle_step_deg, info.units, info.history, info.extra,
+                  info.piece, info.poses);
+}
+
+enum class MessageKind : std::uint8_t { nothing, stack };
+
+void send_stack(exr::StackParser& parser, Sender& out) {
+  parser.read_head();
+  StackInfo info = parser.info();
+  out.put(MessageKind::stack);
+  out.put(members(info));
+  out.put(parser.about());
+  out.put(std::uint8_t{parser.seals().sealed()});
+  out.put(parser.seals().chained());
+  out.flush();
+  Image image;
+  for (ImageInfo about; parser.next(image, about); out.flush()) {
+    out.put(image.values.data(), image.values.size() * sizeof(float));
+  }
+  out.put(parser.seals().chained());
+}
+
+void send_stacks(exr::StackParser& parser, Sender& out) {
+  do {
+    send_stack(parser, out);
+  } while (parser.next_stack());
+  out.put(MessageKind::nothing);
+}
+
+bool plausible(const StackInfo& info, std::size_t images) {
+  const model::Piece& piece = info.piece;
+  if (!piece.whole() && (model::parse_piece(model::piece_text(piece)) != piece || piece.images.count() != info.count)) {
+    return false;
+  }
+  return info.width > 0 && info.width <= exr::max_side && info.height > 0 && info.height <= exr::max_side &&
+         std::int64_t{info.width} * info.height <= exr::max_pixels && static_cast<std::size_t>(info.count) == images &&
+         (info.kind == model::Kind::sinogram || info.kind == model::Kind::frames) &&
+         (info.space == model::Space::virtual_ || info.space == model::Space::projector ||
+          info.space == model::Space::camera);
+}
+
+}  // namespace
+
+struct StackReader::State {
+  State(const std::string& path, bool several, bool to_end) : name(input_name(path)) {
+    {
+      exr::StackParser parser(path, several, to_end);  // the child's
+      const InputFile& file = parser.file();
+      apart.emplace(Foreign{name, file.size(), file.descriptor(), exr::max_pixels * 8},
+                    [&](Sender& out) { send_stacks(parser, out); });
     }
+    (void)next_stack();
   }
 
-  exr::StackParser parser;
-  std::optional<exr::ForeignStacks> foreign;  // from this stack on
+  bool next_stack() {
+    MessageKind follows = MessageKind::nothing;
+    apart->take([&](Receiver& in) {
+      follows = in.get<MessageKind>();
+      if (follows != MessageKind::stack) return;
+      info = {};
+      in.fill(members(info));
+      about = in.get<std::vector<ImageInfo>>();
+      sealed = in.get<std::uint8_t>() != 0;
+      seal = chained_seal(in.get<std::string>());
+    });
+    done = 0;
+    if (follows != MessageKind::stack) {
+      apart->finish();
+      return false;
+    }
+    if (plausible(info, about.size())) return true;
+    throw Error{Fault::data, name + ": is damaged (its parser failed)"};
+  }
+
+  bool next(Image& image, ImageInfo& own) {
+    if (done == about.size()) return false;
+    image.width = info.width;
+    image.height = info.height;
+    image.values.resize(product(info.width, info.height));
+    apart->take([&](Receiver& in) { in.get(image.values.data(), image.values.size() * sizeof(float)); });
+    own = about[done++];
+    if (done == about.size()) apart->take([&](Receiver& in) { seal = chained_seal(in.get<std::string>()); });
+    return true;
+  }
+
+  std::string name;
+  std::optional<SandboxedReader> apart;
+  StackInfo info;
+  std::vector<ImageInfo> about;
+  std::size_t done = 0;
+  bool sealed = false;
+  std::string seal;
 };
 
 StackReader::StackReader(const std::string& path, bool several, bool to_end)
     : state_(std::make_unique<State>(path, several, to_end)) {}
 StackReader::~StackReader() = default;
 
-std::string StackReader::seal() const {
-  return state_->foreign ? state_->foreign->seal() : chained_seal(state_->parser.seals().chained());
-}
-bool StackReader::is_sealed() const {
-  return state_->foreign ? state_->foreign->is_sealed() : state_->parser.seals().sealed();
-}
-
-const StackInfo& StackReader::info() const { return state_->foreign ? state_->foreign->info() : state_->parser.info(); }
-const std::vector<ImageInfo>& StackReader::about() const {
-  return state_->foreign ? state_->foreign->about() : state_->parser.about();
-}
-
-bool StackReader::next(Image& image, ImageInfo& about) {
-  return state_->foreign ? state_->foreign->next(image, about) : state_->parser.next(image, about, false);
-}
+std::string StackReader::seal() const { return state_->seal; }
+bool StackReader::is_sealed() const { return state_->sealed; }
+const StackInfo& StackReader::info() const { return state_->info; }
+const std::vector<ImageInfo>& StackReader::about() const { return state_->about; }
+bool StackReader::next(Image& image, ImageInfo& about) { return state_->next(image, about); }
 
 bool StackReader::next_stack() {
-  if (state_->foreign) return state_->foreign->next_stack();
-  if (!state_->parser.next_stack()) return false;
-  state_->read_head();
-  return true;
+  if (state_->done != state_->about.size()) throw Error{Fault::bug, state_->name + ": images are left unread"};
+  return state_->next_stack();
 }
 
 void require(const std::string& path, const StackInfo& info, model::Kind kind) {

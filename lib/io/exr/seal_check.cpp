@@ -39,12 +39,9 @@ bool SealCheck::note_image(std::size_t index, const Image& image) {
   return seals_[index].values == read_[index];
 }
 
-void SealCheck::judge(std::size_t first, std::size_t end) const {
-  for (std::size_t index = first; index < end && sealed(); ++index) {
-    const auto& values = seals_[index].values;
-    if (!values || *values == read_[index]) continue;
-    throw std::runtime_error(mismatch("image " + std::to_string(index), *values, read_[index]));
-  }
+void SealCheck::judge(std::size_t index) const {
+  if (!sealed() || !seals_[index].values || *seals_[index].values == read_[index]) return;
+  throw std::runtime_error(mismatch("image " + std::to_string(index), *seals_[index].values, read_[index]));
 }
 
 void SealCheck::finish(const std::function<void(char* to, std::size_t size)>& take) {
@@ -59,8 +56,10 @@ void SealCheck::finish(const std::function<void(char* to, std::size_t size)>& ta
   if (mark != seal_mark) throw std::runtime_error("has lost the seals after its last image; make the file again");
   take(bytes.data(), bytes.size());
   const auto values = parse_trailer(bytes);
-  for (std::size_t i = 0; i < values.size(); ++i) seals_[i].values = values[i];
-  judge(0, seals_.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    seals_[i].values = values[i];
+    judge(i);
+  }
 }
 
 std::string SealCheck::chained() const {

@@ -11,8 +11,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/compute/parallel.hpp"
-#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/format_version.hpp"
 #include "io/exr/private/attributes.hpp"
@@ -28,7 +26,6 @@ using model::StackInfo;
 
 // Parts may be interleaved; what has come too early waits in memory up to here.
 constexpr std::size_t max_waiting_bytes = std::size_t{1} << 30;
-constexpr std::size_t batch = 16;  // compressed images decoded at a time, in parallel
 constexpr std::size_t absent = ~std::size_t{0};
 
 void decode_whole(const Imf::Header& layout, const Chunks& chunks, std::size_t index, Image& image) {
@@ -61,31 +58,15 @@ void require_own_poses(const StackInfo& info) {
 
 }  // namespace
 
-// What OpenEXR and the checks throw becomes an Error that names the file.
-template <class Work>
-void StackParser::as_data_fault(const Work& work) const {
-  try {
-    work();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& problem) {
-    std::string line = in_.name() + ": " + problem.what();
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    throw Error{Fault::data, line};
-  }
-}
-
 void StackParser::take(void* to, std::size_t size) {
   if (in_.read(to, size) == size) return;
   std::string where = "in its header";
   if (info_.count > 0) where = "in image " + std::to_string(complete_) + " of " + std::to_string(info_.count);
-  throw Error{Fault::data, in_.name() + ": is cut off after " + std::to_string(in_.position()) + " bytes, " + where +
-                               "; the program that wrote it did not finish"};
+  throw std::runtime_error("is cut off after " + std::to_string(in_.position()) + " bytes, " + where +
+                           "; the program that wrote it did not finish");
 }
 
-// What OpenEXR has not seen yet: magic, flags and the bytes of the first header.
+// Magic and flags.
 void StackParser::begin() {
   info_ = {};
   about_.clear();
@@ -94,9 +75,14 @@ void StackParser::begin() {
   arriving_.clear();
   seals_.emplace();
   waiting_bytes_ = 0;
-  complete_ = done_ = 0;
+  complete_ = 0;
   begin_ = in_.position();
-  as_data_fault([this] { take_first_header(); });
+  if (in_.at_end()) throw std::runtime_error("is empty; the program that should have written it failed");
+  std::int32_t first = 0;
+  if (in_.read(&first, sizeof first) != sizeof first || first != magic) refuse_foreign(first);
+  flags_ = take_number<std::int32_t>();
+  if ((flags_ & 0xff) != version) throw std::runtime_error("is of an OpenEXR version that is not known");
+  if ((flags_ & (tiled_flag | deep_flag)) != 0) throw std::runtime_error("holds tiles or deep pixels");
 }
 
 void StackParser::refuse_foreign(std::int32_t first) {
@@ -108,28 +94,10 @@ void StackParser::refuse_foreign(std::int32_t first) {
                                            : "is " + foreign + ", not a stack (OpenEXR)" + foreign_remedy(head));
 }
 
-void StackParser::take_first_header() {
-  if (in_.at_end()) throw std::runtime_error("is empty; the program that should have written it failed");
-  std::int32_t first = 0;
-  if (in_.read(&first, sizeof first) != sizeof first || first != magic) refuse_foreign(first);
-  flags_ = take_number<std::int32_t>();
-  if ((flags_ & 0xff) != version) throw std::runtime_error("is of an OpenEXR version that is not known");
-  if ((flags_ & (tiled_flag | deep_flag)) != 0) throw std::runtime_error("holds tiles or deep pixels");
-  first_header_ = take_header([this](char* to, std::size_t size) { take(to, size); });
-}
-
-bool StackParser::has_seals() const {
-  using namespace std::string_literals;
-  return first_header_.find(values_seal_key + "\0string\0"s) != std::string::npos;
-}
-
 void StackParser::read_head() {
-  as_data_fault([this] { parse_head(); });
-}
-
-void StackParser::parse_head() {
+  begin();
   const auto take_bytes = [this](char* to, std::size_t size) { take(to, size); };
-  for (std::string bytes = std::move(first_header_); !bytes.empty(); bytes = take_header(take_bytes)) {
+  for (std::string bytes = take_header(take_bytes); !bytes.empty(); bytes = take_header(take_bytes)) {
     add_part(parse_header(bytes, flags_));
     if (!multi_part()) break;
   }
@@ -204,10 +172,8 @@ void StackParser::take_chunk() {
   const auto place = static_cast<std::size_t>(row / rows);
   Arriving& image = arriving_[index];
   if (image.chunks.starts.empty()) {
-    if (!emptied_.empty()) {
-      image.chunks.bytes = std::move(emptied_.back());
-      emptied_.pop_back();
-    }
+    image.chunks.bytes = std::move(emptied_);
+    image.chunks.bytes.clear();
     image.chunks.starts.assign(layout.chunks, absent);
     image.missing = layout.chunks;
   }
@@ -243,36 +209,23 @@ StackParser::Arriving StackParser::complete_part() {
   return image;
 }
 
-// Uncompressed images come one by one, so that a live stream is not held up; compressed ones are decoded in parallel.
-void StackParser::refill(bool alone) {
-  const std::size_t first = complete_;
-  const bool raw = layouts_[layout_of_[first]].header.compression() == Imf::NO_COMPRESSION;
-  const std::size_t count = std::min(raw || alone ? 1 : batch, about_.size() - first);
-  std::vector<Chunks> taken;
-  for (std::size_t i = 0; i < count; ++i) taken.push_back(complete_part().chunks);
-  ready_.swap(used_);
-  ready_.resize(count);
-  const auto decode_one = [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
-    take_size(ready_[at], info_);
-    decode_whole(layouts_[layout_of_[first + at]].header, taken[at], first + at, ready_[at]);
-    if (seals_->note_image(first + at, ready_[at])) return;  // as they were when the writer looked at them
-    const std::string why = objection(ready_[at], first + at, info_.space);
-    if (!why.empty()) throw std::runtime_error(why);
-  };
-  if (count == 1) {
-    decode_one(0);
-  } else {
-    parallel_for(static_cast<int>(count), decode_one);
+bool StackParser::next(Image& image, ImageInfo& about) {
+  if (complete_ == about_.size()) return false;
+  const std::size_t index = complete_;
+  about = about_[index];
+  Chunks chunks = complete_part().chunks;
+  take_size(image, info_);
+  decode_whole(layouts_[layout_of_[index]].header, chunks, index, image);
+  emptied_ = std::move(chunks.bytes);
+  const bool as_written = seals_->note_image(index, image);  // when the writer looked at the values
+  if (const std::string why = as_written ? "" : objection(image, index, info_.space); !why.empty()) {
+    throw std::runtime_error(why);
   }
-  for (Chunks& image : taken) {
-    image.bytes.clear();
-    emptied_.push_back(std::move(image.bytes));
-  }
-  seals_->judge(first, first + count);
-  if (complete_ < about_.size()) return;
+  seals_->judge(index);
+  if (complete_ < about_.size()) return true;
   seals_->finish([this](char* to, std::size_t size) { take(to, size); });
   require_clean_end();
+  return true;
 }
 
 // By the offset of the last chunk, of whose image nothing else is read.
@@ -321,23 +274,6 @@ void StackParser::require_clean_end() {
 void StackParser::refuse_rest(std::uint64_t from) {
   throw std::runtime_error("trailing data after the last image, from byte " + std::to_string(from) +
                            " on, is not a stack; write the file again, or truncate it there");
-}
-
-bool StackParser::next(Image& image, ImageInfo& about, bool alone) {
-  if (done_ == about_.size()) return false;
-  if (ready_.empty()) as_data_fault([&] { refill(alone); });
-  std::swap(image, ready_.front());
-  used_.push_back(std::move(ready_.front()));
-  ready_.pop_front();
-  about = about_[done_++];
-  return true;
-}
-
-bool StackParser::next_stack() {
-  if (done_ != about_.size()) throw Error{Fault::bug, in_.name() + ": images are left unread"};
-  if (in_.at_end()) return false;
-  begin();
-  return true;
 }
 
 }  // namespace vam::io::exr

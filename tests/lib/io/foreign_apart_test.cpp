@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Images, and stacks of other programs, are parsed in a child; what comes out is the same as without one.
+// Images and stacks are parsed in a child.
 #include <sys/resource.h>
 
 #include "io/image/image_file.hpp"
@@ -56,7 +56,7 @@ TEST_CASE("an image is decoded in a child") {
   CHECK(has_child([&] { (void)read_image(folder / "a.png"); }));
 }
 
-TEST_CASE("a stack without seals is parsed in a child, and is the same") {
+TEST_CASE("a stack is parsed in a child, and is the same without seals") {
   const scratch::Folder folder;
   for (const char* compression : {"none", "zip", "piz"}) {
     model::StackInfo info = sinogram(9, 35, 20);
@@ -83,7 +83,7 @@ TEST_CASE("a stack without seals is parsed in a child, and is the same") {
     std::vector<double> other_z;
     std::vector<float> own_values;
     std::vector<float> other_values;
-    CHECK(!has_child([&] { own_values = values_of(folder / "own.exr", own, own_z); }));
+    CHECK(has_child([&] { own_values = values_of(folder / "own.exr", own, own_z); }));
     CHECK(has_child([&] { other_values = values_of(folder / "other.exr", other, other_z); }));
     CHECK(own_values == other_values);
     CHECK(own_values.size() == std::size_t{9} * 35 * 20);

@@ -36,10 +36,9 @@ class SealCheck {
   /// tables' order, and are not compared then.
   void note_offset(std::uint64_t announced) { table_.add(announced); }
   void note_chunk(std::uint64_t start, bool in_order);
-  /// Whether its values are those of its seal, if that is known yet. Several threads may note different images. They
-  /// are judged from first to end once all of those are noted.
+  /// Whether its values are those of its seal, if that is known yet; it is judged once they are noted.
   bool note_image(std::size_t index, const Image& image);
-  void judge(std::size_t first, std::size_t end) const;
+  void judge(std::size_t index) const;
   /// After the last image; take(to, size) gets the bytes that follow it. A reader need not ask for more than images.
   void finish(const std::function<void(char* to, std::size_t size)>& take);
 

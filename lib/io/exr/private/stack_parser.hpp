@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to the EXR files: the headers are parsed by OpenEXR from memory, the chunks are taken in the order of the
-// stream, and the pixels of one image at a time are decoded by OpenEXR from memory. So a pipe does, memory is one image
-// whatever the number of parts (Imf::MultiPartInputFile keeps the buffers of every part it has opened), and no size is
-// believed before it is checked.
+// Private to the EXR files, in the process that parses them: the headers are parsed by OpenEXR from memory, the chunks
+// are taken in the order of the stream, and the pixels of one image at a time are decoded by OpenEXR from memory. So a
+// pipe does, memory is one image whatever the number of parts (Imf::MultiPartInputFile keeps the buffers of every part
+// it has opened), and no size is believed before it is checked.
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,23 +20,20 @@
 
 namespace vam::io::exr {
 
-/// Of a stack after the other on one stream. All throw Fault::data, with one line, for what is no stack.
+/// Of a stack after the other on one stream. All throw std::runtime_error, to stand behind the file's name, for what is
+/// no stack, and what OpenEXR throws.
 class StackParser {
  public:
   /// to_end: read_head() looks where the last image of a file ends, too, which next() would find.
   StackParser(const std::string& path, bool several, bool to_end = false)
-      : in_(path), several_(several), to_end_(to_end) {
-    begin();
-  }
+      : in_(path), several_(several), to_end_(to_end) {}
 
-  /// Whether the stack bears seals, by its first header, of which OpenEXR has seen nothing yet.
-  [[nodiscard]] bool has_seals() const;
   /// Parses the headers. Once for each stack, before what follows.
   void read_head();
-  /// The next image; false after the last. Alone: without other threads.
-  bool next(Image& image, model::ImageInfo& about, bool alone);
-  /// After the last image: goes to the stack that follows; false at the end of the stream.
-  bool next_stack();
+  /// The next image; false after the last.
+  bool next(Image& image, model::ImageInfo& about);
+  /// After the last image: whether a stack follows.
+  bool next_stack() { return !in_.at_end(); }
 
   [[nodiscard]] InputFile& file() { return in_; }
   [[nodiscard]] const model::StackInfo& info() const { return info_; }
@@ -52,11 +48,8 @@ class StackParser {
 
   [[nodiscard]] bool multi_part() const { return (flags_ & multi_part_flag) != 0; }
   void begin();
-  void take_first_header();
   [[noreturn]] void refuse_foreign(std::int32_t first);  // its first bytes
-  void parse_head();
   void add_part(const Imf::Header& header);
-  void refill(bool alone);
   void require_end(std::uint64_t last);
   void require_clean_end();
   [[noreturn]] static void refuse_rest(std::uint64_t from);
@@ -69,8 +62,6 @@ class StackParser {
     take(&value, sizeof value);
     return value;
   }
-  template <class Work>
-  void as_data_fault(const Work& work) const;
 
   InputFile in_;
   bool several_;
@@ -78,19 +69,15 @@ class StackParser {
   model::StackInfo info_;
   std::vector<model::ImageInfo> about_;
   std::int32_t flags_ = 0;
-  std::string first_header_;
   int announced_ = 0;                   // vam:count, 0 where it is absent
   std::vector<Layout> layouts_;         // distinct ones; nearly always one
   std::vector<std::size_t> layout_of_;  // of every part
   std::map<std::size_t, Arriving> arriving_;
   std::size_t waiting_bytes_ = 0;
-  std::optional<SealCheck> seals_;    // of this stack
-  std::uint64_t begin_ = 0;           // of the stack on the stream
-  std::size_t complete_ = 0;          // parts taken off the stream
-  std::deque<Image> ready_;           // decoded images
-  std::deque<Image> used_;            // earlier ones, whose memory the next take
-  std::vector<std::string> emptied_;  // of chunks, likewise
-  std::size_t done_ = 0;              // images handed out
+  std::optional<SealCheck> seals_;  // of this stack
+  std::uint64_t begin_ = 0;         // of the stack on the stream
+  std::size_t complete_ = 0;        // parts taken off the stream
+  std::string emptied_;             // of chunks, whose memory the next take
 };
 
 }  // namespace vam::io::exr
