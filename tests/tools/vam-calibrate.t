@@ -76,9 +76,9 @@ near 'axis: the column' "$(value cal/current-axis.json axis_column)" 61.25 0.02
 near 'axis: the wobble' "$(value cal/current-axis.json wobble)" 2 0.02
 near 'axis: its phase' "$(value cal/current-axis.json wobble_phase)" 40 1
 vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 \
-  --speed 90 --view-step 9 -o turn.exr && vam-calibrate axis turn.exr --heights 3 --set calibration.folder= >simulated.json
-is 'a record of simulated frames is marked, one of others is not' \
-  "$(json simulated.json simulated) $(grep -c simulated cal/current-axis.json)" 'true 0'
+  --speed 90 --view-step 9 --exposure 7000 -o simulated/ && vam-calibrate axis simulated --heights 3 --set calibration.folder= >simulated.json
+is 'a record of simulated frames is marked, with their own exposure, one of others is not' \
+  "$(json simulated.json simulated) $(json simulated.json settings.exposure_us) $(grep -c simulated cal/current-axis.json)" 'true 7000.0 0'
 is 'records are read-only' "$(find cal -name 'cal-*.json' -perm 0444 | wc -l)" 4
 
 # The tools use the records.

@@ -5,7 +5,10 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 #include "base/text/utc.hpp"
+#include "io/image/capture_folder.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/printer_file.hpp"
 #include "metrology/cure/bodies.hpp"
@@ -41,6 +44,10 @@ void run_scan(const cli::App& app, const std::string& command, Scan scan, ScanOp
   // A latency measured before decides which pattern frame a camera frame shows.
   if (const auto latency = usable_record(printer.calibration, "latency", command)) {
     printer.projector.latency_ms = latency->value("latency");
+  }
+  if (options.from != "-" && io::is_capture_folder(options.from)) {  // which states how its frames were exposed
+    double& exposure_us = printer.camera.exposure_us;
+    exposure_us = number_at(Json::parse(io::read_manifest(options.from).head), "exposure_us", exposure_us);
   }
   Finding finding = scan(options, printer);
   finding.facts["settings"]["exposure_us"] = printer.camera.exposure_us;
