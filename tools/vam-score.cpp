@@ -66,12 +66,6 @@ void require_files_for_outputs(const cli::App& app, const Options& options) {
   }
 }
 
-void require_met(const std::vector<model::Condition>& conditions,
-                 const std::function<double(const std::string&)>& value) {
-  const auto failures = model::unmet(conditions, value);
-  if (!failures.empty()) throw Error{Fault::judged, join(failures, "; ")};
-}
-
 std::vector<model::Condition> conditions_of(const Options& options) {
   if (options.require.empty()) return {};
   return model::parse_conditions(options.require,
@@ -86,7 +80,7 @@ void score_grey(const Options& options, const std::vector<model::Condition>& con
       session::score_grey(dose, in.target_around(), options.grey, in.tolerance(), printer, options.input);
   io::write_report(options.report, "vam-score-grey", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
-  require_met(conditions, [&](const std::string& name) { return result.figure(name); });
+  model::require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }
 
 void run(const cli::App& app, Options& options) {
@@ -113,7 +107,7 @@ void run(const cli::App& app, Options& options) {
     const bool planned = options.how.exposure.has_value();
     io::write_text("-", result.table(options.grid == "dose" ? session::how_to_show(planned, sinogram) : ""));
   }
-  require_met(conditions, [&](const std::string& name) { return result.figure(name); });
+  model::require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }
 
 }  // namespace

@@ -68,17 +68,21 @@ bool holds(const Condition& condition, double value) {
   return value == condition.bound;
 }
 
-std::vector<std::string> unmet(const std::vector<Condition>& conditions,
-                               const std::function<double(const std::string&)>& value) {
+std::vector<std::string> unmet(const std::vector<Condition>& conditions, const FigureOf& value) {
   std::vector<std::string> lines;
   for (const auto& c : conditions) {
     const double is = value(c.name);
     if (!holds(c, is)) {
-      lines.push_back(c.name + " = " + format_number(is) + ", but " + c.name + c.relation + format_number(c.bound) +
-                      " is required");
+      lines.push_back(c.name + (std::isnan(is) ? " is not known" : " = " + format_number(is)) + ", but " + c.name +
+                      c.relation + format_number(c.bound) + " is required");
     }
   }
   return lines;
+}
+
+void require_met(const std::vector<Condition>& conditions, const FigureOf& value) {
+  const auto failures = unmet(conditions, value);
+  if (!failures.empty()) throw Error{Fault::judged, join(failures, "; ")};
 }
 
 }  // namespace vam::model

@@ -23,8 +23,12 @@ struct Condition {
 
 [[nodiscard]] bool holds(const Condition& condition, double value);
 
-/// "ver = 0.02, but ver<=0.01 is required" for every condition that does not hold (or whose figure is not a number).
-[[nodiscard]] std::vector<std::string> unmet(const std::vector<Condition>& conditions,
-                                             const std::function<double(const std::string&)>& value);
+using FigureOf = std::function<double(const std::string& name)>;  // not a number: not known
+
+/// "ver = 0.02, but ver<=0.01 is required" for every condition that does not hold (or whose figure is not known).
+[[nodiscard]] std::vector<std::string> unmet(const std::vector<Condition>& conditions, const FigureOf& value);
+
+/// Throws Fault::judged with what is unmet.
+void require_met(const std::vector<Condition>& conditions, const FigureOf& value);
 
 }  // namespace vam::model

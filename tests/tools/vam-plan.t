@@ -5,7 +5,7 @@
 
 # A box of 10 x 10 x 4 mm: its corners are 7.07 mm from the axis, within the 8.3 mm of the default printer.
 box 10 10 4 >box.off
-ok 'a plan' sh -c 'vam-plan box.off --report plan.json >plan'
+ok 'a plan that is to print' sh -c 'vam-plan box.off --require "prints>=1, slices<70" --report plan.json >plan'
 is 'it fits' "$(json plan.json fits)" true
 is 'at the size that it has' "$(json plan.json size_mm.0) $(json plan.json size_mm.2)" '10.0 4.0'
 holds 'slices of a pixel' "$(json plan.json slices) >= 4 / 0.065 - 1 && $(json plan.json slices) < 1.1 * 4 / 0.065 + 2"
@@ -20,6 +20,7 @@ ok 'without the resin no duration' grep -q '^duration  *not known; set resin.cri
 box 40 40 9 >large.off
 ok 'a part that is too large' sh -c 'vam-plan large.off --no-preview --report large.json >large'
 is 'does not fit' "$(json large.json fits)" false
+fails 1 'fits = 0, .*; prints is not known, ' vam-plan large.off --no-preview --require 'fits>=1,prints>=1'
 scale=$(json large.json scale)
 ok 'vam-slice takes the scale' vam-slice large.off --scale "$scale" --voxel 0.065 -o large.vdb
 fails 65 'large.off' vam-slice large.off --scale "$(awk "BEGIN { print 1.02 * $scale }")" --voxel 0.065 -o none.vdb

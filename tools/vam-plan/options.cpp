@@ -21,10 +21,14 @@ void declare(cli::App& app, Options& options) {
       "Size of the voxels, as in vam-slice, and of those of the estimate, however long it takes. Default: a pixel "
       "of the projector, and as much larger in the estimate as takes seconds.");
   app.flag("--no-preview", options.no_preview, "Omit the estimate of the print.");
+  app.option(
+      "--require", "CONDITIONS", options.require,
+      "Exit with status 1 unless all conditions hold, e.g. 'prints>=1,duration_s<=120', on numbers of the report.");
   cli::add_report(app, options.report);
   cli::add_printer(app, options.printer);
   cli::add_threads(app);
-  app.usual({"--shape", "--unit", "--up", "--scale", "--voxel", "--no-preview", "--report", "--printer", "--set"});
+  app.usual({"--shape", "--unit", "--up", "--scale", "--voxel", "--no-preview", "--require", "--report", "--printer",
+             "--set"});
 }
 
 }  // namespace vam::plan_tool

@@ -20,7 +20,7 @@ struct Options {
   bool unit_given = false;
   bool unit_known = false;  // it or the scale is given
   bool no_preview = false;
-  std::string report;
+  std::string require, report;
   cli::PrinterOptions printer;
 };
 

@@ -115,8 +115,7 @@ void height(const HeightOptions& options) {
   note("shrinkage " + format_number(100 * (1 - found.placing.scale), 3) + " %, outline RMS " +
        format_number(found.outline_rms_mm, 3) + " mm, height " + format_number(found.height_mm, 3) + " mm of " +
        format_number(found.design_height_mm, 3) + " mm, overlap " + format_number(100 * found.iou, 3) + " %");
-  const auto failed = model::unmet(conditions, [&](const std::string& name) { return metrology::figure(found, name); });
-  if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
+  model::require_met(conditions, [&](const std::string& name) { return metrology::figure(found, name); });
 }
 
 }  // namespace vam::sdf_tool
