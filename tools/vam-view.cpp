@@ -69,7 +69,7 @@ double threshold_of(const Options& options, const score::Score& result) {
   (void)result.figures();  // refuses a part without voxels, and doses of 0
   throw Error{Fault::data, io::input_name(options.input) +
                                ": no threshold follows from the doses, as part of the part receives none; give "
-                               "--threshold, or compute the projections again"};
+                               "--isovalue, or compute the projections again"};
 }
 
 bool is_movie(const Options& options) { return options.output.ends_with(".mp4"); }

@@ -31,7 +31,7 @@ vam-sinogram small.vdb --angles 24 --filter ram-lak -o small.exr; vam-dose small
 ok "the histogram of a dose with a margin" vam-view wider.vdb --target small.vdb --dose-histogram -o wider.png
 
 ok "what it cures" vam-view wider.vdb --target small.vdb --cure-map --sheet 4 -o cure.png
-ok "at another threshold" vam-view wider.vdb --target small.vdb --cure-map --threshold 0.2 -o cure2.png
+ok "at another threshold" vam-view wider.vdb --target small.vdb --cure-map --isovalue 0.2 -o cure2.png
 holds "another map" "$($png sum cure.png) != $($png sum cure2.png)"
 ok "the print beside the target" vam-view wider.vdb --target small.vdb --render -o print.png
 ok "a movie of the print as it grows" vam-view wider.vdb --target small.vdb --render --image-size 200 -o growth.mp4
@@ -57,11 +57,11 @@ movie_label() {
 }
 stated=$(movie_label planned.vdb)
 is "turns that are stated, and that are planned" "$(movie_label turn.vdb)" "$stated"
-is "also at another threshold" "$(movie_label planned.vdb --threshold 50)" "$stated"
-ok "of a dose without them a percentage" test "$(movie_label turn.vdb --threshold 15)" != "$stated"
+is "also at another threshold" "$(movie_label planned.vdb --isovalue 50)" "$stated"
+ok "of a dose without them a percentage" test "$(movie_label turn.vdb --isovalue 15)" != "$stated"
 fails 64 'requires --render and --target' vam-view small.vdb -o x.mp4
 fails 64 'requires --render and --target' vam-view small.vdb --render -o x.mp4
-fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.mp4
+fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --isovalue 99 -o x.mp4
 box 2 3 1 >box.off
 ok "a mesh" vam-view box.off -o box.png
 printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' \

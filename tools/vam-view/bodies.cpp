@@ -59,7 +59,7 @@ plot::ImageFigure body_figure(const io::SparseVolume& volume, double level, cons
   plot::Body body{session::fine_surface(volume, level, volume.metadata), {}};
   if (body.mesh.triangles.empty()) {
     throw Error{Fault::data, view.name + ": grid " + excerpt(volume.name()) + " reaches " + format_number(level, 4) +
-                                 " nowhere; choose another --threshold"};
+                                 " nowhere; choose another --isovalue"};
   }
   return single(body, view, ": " + volume.name() + " at " + format_number(level, 4) + " " + volume.units,
                 insert_body(insert, volume));
@@ -72,7 +72,7 @@ plot::ImageFigure print_figure(const io::SparseVolume& dose, const io::SparseVol
   if (part.mesh.triangles.empty()) throw Error{Fault::data, view.name + ": the target is empty"};
   if (print.mesh.triangles.empty()) {
     throw Error{Fault::data, view.name + ": nothing prints at a threshold of " + format_number(threshold, 4) + " " +
-                                 dose.units + "; choose a lower --threshold"};
+                                 dose.units + "; choose a lower --isovalue"};
   }
   const double voxel_mm = target.grid().voxel_mm;
   const std::vector<float> away = solid::Surface(part.mesh).signed_distances(print.mesh.points);

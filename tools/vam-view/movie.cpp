@@ -75,7 +75,7 @@ class Growth {
     if (print.mesh.triangles.empty()) {
       throw Error{Fault::data, view.name + ": nothing prints at a threshold of " +
                                    format_number(exposure.threshold, 4) + " " + dose.units +
-                                   "; choose a lower --threshold"};
+                                   "; choose a lower --isovalue"};
     }
     sight_ = sight_of({&part_, &print, &insert_});
     first_ = exposure.threshold / largest(dose);

@@ -81,7 +81,7 @@ void declare(cli::App& app, Options& options) {
            "colour.")
       .excludes({"--dose-histogram", "--cure-map", "--plane", "--at", "--sheet", "--colours", "--low", "--high"})
       .not_for(not_volumes);
-  app.option("--threshold", "DOSE", options.threshold, cli::positive,
+  app.option("--isovalue", "VALUE", options.threshold, cli::positive,
              "Dose, or other value of the grid, from which on it prints.")
       .only_with({"--cure-map", "--render"});
   app.default_is("as by vam-score; 0.5 without a target");
