@@ -120,6 +120,7 @@ void show_volume(Options options, const std::string& history) {
   if (!options.exported.empty()) return io::write_nrrd(options.exported, shown.volume());
   if (options.histogram) {
     const score::ScoreOptions how = judged(options, shown);
+    options.view.critical = how.threshold;
     const plot::Plot plot =
         plot::dose_histogram(shown.volume(), shown.target(), how.circle, options.view, shown.insert());
     return plot::save(options.output, plot::draw(plot), history, options.dpi);

@@ -90,6 +90,9 @@ Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target
                  {"inside the part", bars_in.edges, bars_in.percent, paint::vermilion, SeriesStyle::bars}};
   plot.markers = {{inner.low, "minimum inside " + format_number(inner.low, 4), paint::vermilion},
                   {outer.high, "maximum outside " + format_number(outer.high, 4), paint::blue}};
+  if (options.critical) {
+    plot.markers.push_back({*options.critical, "critical dose " + format_number(*options.critical, 4), paint::black});
+  }
   return plot;
 }
 

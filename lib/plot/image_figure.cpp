@@ -167,6 +167,10 @@ void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Spot corner, doub
     canvas.text({right + 8, y}, tick_label(value), label_size);
     widest = std::max(widest, Canvas::text_width(tick_label(value), label_size));
   }
+  if (scale.mark && *scale.mark > scale.low && *scale.mark < scale.high) {
+    const double y = frame.spot_y(*scale.mark);
+    canvas.line({corner.x - 4, y}, {right, y}, paint::vermilion, 2);
+  }
   canvas.text({right + 8 + widest + 10, corner.y + 0.5 * height}, scale.label, label_size, paint::black, Align::middle,
               Align::begin, true);
 }

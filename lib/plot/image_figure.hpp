@@ -19,7 +19,8 @@ struct ColourScale {
   ColourMap map = ColourMap::viridis;
   double low = 0;  // value at the lower end of the colours
   double high = 1;
-  std::string label;  // beside the colour bar: "dose (mJ/cm3)"; no bar when empty
+  std::string label;                // beside the colour bar: "dose (mJ/cm3)"; no bar when empty
+  std::optional<double> mark = {};  // a red line across the bar
 };
 
 struct Panel {

@@ -24,7 +24,8 @@ struct ViewOptions {
   int sheet = 1;  // number of images, evenly spread
   std::optional<double> low;  // values of the ends of the colours
   std::optional<double> high;
-  std::string colours = "auto";  // auto, grey, viridis, diverging
+  std::optional<double> critical;  // dose from which on the resin gels, marked where doses are told
+  std::string colours = "auto";    // auto, grey, viridis, diverging
   int size = 720;
   bool crop = true;  // sinograms to the columns that are lit
 };

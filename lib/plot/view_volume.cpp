@@ -43,6 +43,7 @@ ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* 
   views::choose_colours(figure, options, coverage ? views::Content::coverage : views::Content::amount);
   views::set_section_axes(figure, grid, options);
   figure.scale.label = coverage ? volume.name() + " (covered fraction)" : views::with_unit(volume.name(), volume.units);
+  figure.scale.mark = options.critical;
   figure.title =
       options.title.value_or(options.name + ": " + volume.name() + views::sections_text(sections, options.plane));
   return figure;

@@ -82,7 +82,8 @@ std::string views(const Sources& sources, const Volumes& volumes, const std::opt
   }
   progress.tick();
   if (inspection) made += inspection->histogram;
-  made += section_views(volumes, wanted.sections, !wanted.grey.is_target);
+  made +=
+      section_views(volumes, wanted.sections, !wanted.grey.is_target, judged ? judged->how.threshold : std::nullopt);
   if (judged) made += cure_views(volumes, judged->how, judged->score.print_threshold(), wanted.sections);
   progress.tick();
   const auto show = [&](const std::vector<std::string>& paths, io::FileType type) {

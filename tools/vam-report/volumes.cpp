@@ -16,8 +16,9 @@ namespace {
 
 constexpr int shown_px = 400;
 
-/// Overlays on the sections of a volume; null for none.
+/// Marks on the sections of a volume; null for none.
 struct SectionOverlays {
+  std::optional<double> critical;  // dose
   const io::SparseVolume* target = nullptr;
   const io::SparseVolume* insert = nullptr;
 };
@@ -29,11 +30,13 @@ std::string sections(const io::SparseVolume& volume, const std::string& file, co
   options.plane = plane;
   options.sheet = std::min(count, plot::plane_count(volume.grid(), plane));
   options.size = shown_px;
+  options.critical = within.critical;
   options.stretch_z = model::stretch_z(volume.metadata);
   const plot::PlaneAxes axes = plot::plane_axes(plane);
   const std::string title = volume.name() + ", sections across " + axes.across;
   return series(title, frames_of(plot::view_volume(volume, within.target, options, within.insert)),
-                file + ": grid " + excerpt(volume.name()) + ".");
+                file + ": grid " + excerpt(volume.name()) +
+                    (within.critical ? "; red on the colour bar: the critical dose." : "."));
 }
 
 }  // namespace
@@ -56,11 +59,12 @@ Volumes read_volumes(const std::vector<std::string>& paths, io::TargetKind kind)
   return all;
 }
 
-std::string section_views(const Volumes& volumes, int count, bool outlined) {
+std::string section_views(const Volumes& volumes, int count, bool outlined, std::optional<double> critical) {
   std::string views;
   for (std::size_t n = 0; n < volumes.grids.size(); ++n) {
     const io::SparseVolume& volume = volumes.grids[n];
     SectionOverlays within;
+    if (volume.name() == "dose") within.critical = critical;
     if (outlined && volume.name() == "dose") within.target = volumes.find("target");
     const io::SparseVolume* insert = volumes.find("insert");
     const bool around = volume.name() == "dose" || volume.name() == "target";
@@ -90,6 +94,7 @@ std::string histogram(const Volumes& volumes, const score::ScoreOptions& how) {
   const io::SparseVolume* insert = volumes.find("insert");
   plot::ViewOptions options;
   options.name = "dose";
+  options.critical = how.threshold;
   return plot::page_figure(
       "Dose in part and void",
       plot::page_plot(plot::dose_histogram(dose, *volumes.find("target"), how.circle, options, insert),

@@ -2,6 +2,7 @@
 // Sections of volumes, and a dose judged against its target.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,10 @@ struct Volumes {
 /// voxels of target and dose lie elsewhere.
 [[nodiscard]] Volumes read_volumes(const std::vector<std::string>& paths, io::TargetKind kind);
 
-/// HTML: axial and coronal sections of every grid, the dose with the target's outline if `outlined`, both with the
-/// insert.
-[[nodiscard]] std::string section_views(const Volumes& volumes, int count, bool outlined);
+/// HTML: axial and coronal sections of every grid, the dose with the target's outline if `outlined` and the critical
+/// dose on its colour bar where it is known, both with the insert.
+[[nodiscard]] std::string section_views(const Volumes& volumes, int count, bool outlined,
+                                        std::optional<double> critical);
 
 /// HTML: axial sections of what the dose cures at the threshold, and of what is missing; both must be there.
 [[nodiscard]] std::string cure_views(const Volumes& volumes, const score::ScoreOptions& how, double threshold,

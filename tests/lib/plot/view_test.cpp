@@ -168,6 +168,7 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   dose.write_slices(0, grid.nz, doses.data());
   const vam::model::Circle circle{19.5, 19.5, 18};
   ViewOptions options{.name = "dose.vdb"};
+  options.critical = 0.5;
   const Plot plot = dose_histogram(dose, target, circle, options);
   REQUIRE(plot.series.size() == 2);
   CHECK(plot.x.high == doctest::Approx(0.9));
@@ -183,6 +184,7 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   }
   CHECK(plot.markers[0].words == "minimum inside 0.9");
   CHECK(plot.markers[1].words == "maximum outside 0.2");
+  CHECK(plot.markers[2].words == "critical dose 0.5");
   keep(draw(plot).image(), "dose-histogram.png");
   SparseVolume insert("insert", grid);  // it absorbs no dose, and is no void
   std::vector<float> opaque(grid.size(), 0.0F);
