@@ -10,6 +10,9 @@
 
 namespace vam::plot {
 
+/// The bytes of a PNG, in at most 256 colours, as base64.
+[[nodiscard]] std::string page_png(const RgbImage& image);
+
 /// <img> with the PNG within.
 [[nodiscard]] std::string page_image(const RgbImage& image, const std::string& alt);
 

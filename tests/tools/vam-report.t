@@ -24,7 +24,7 @@ import array, base64, json, math, re, sys
 box = re.search(r'class="body".*?<script[^>]*>(.*?)</script>', open(sys.argv[1]).read(), re.S).group(1)
 low, high, layers = json.loads(box)
 for places, _, corners in layers:
-    places, corners = array.array("H", base64.b64decode(places)), array.array("I", base64.b64decode(corners))
+    places, corners = array.array("H", base64.b64decode(places)), array.array("H", base64.b64decode(corners))
     points = [[a + (b - a) * n / 65535 for a, b, n in zip(low, high, places[at:at + 3])] for at in range(0, len(places), 3)]
     print(max(math.dist(points[corners[at]], points[corners[at + 1]]) for at in range(0, len(corners), 3)) < 3 * 0.25)
 PY

@@ -23,7 +23,6 @@ namespace vam::report_tool {
 namespace {
 
 constexpr std::size_t most_voxels = 2'000'000;
-constexpr std::size_t most_vertices = 100'000;  // of a surface, some 4.5 MB of the page
 
 /// Means of by x by x by voxels; beyond the volume is nothing.
 model::Volume averaged(const io::SparseVolume& volume, int by) {

@@ -13,6 +13,7 @@
 #include "plot/canvas.hpp"
 #include "plot/colour_map.hpp"
 #include "plot/page.hpp"
+#include "plot/render.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "vam-report/page_parts.hpp"
 
@@ -33,14 +34,14 @@ Rgb colour_of(const Layer& layer, std::size_t vertex) {
   return plot::colour(plot::ColourMap::diverging, 0.5 + 0.5 * layer.values[vertex] / layer.limit);
 }
 
-/// What WebGL takes of bodies in one box.
+/// What WebGL takes of bodies in one box, of at most `most_vertices`.
 class Packing {
  public:
   explicit Packing(const solid::Bounds& box) : box_(box) {}
   /// colour(vertex)
   template <class Colour>
   void add(const model::TriangleSoup& mesh, const Colour& colour) {
-    const auto first = static_cast<std::uint32_t>(positions_.size() / 3);
+    const std::size_t first = positions_.size() / 3;
     for (std::size_t n = 0; n < mesh.points.size(); ++n) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double place = (mesh.points[n][axis] - box_.low[axis]) / (box_.high[axis] - box_.low[axis]);
@@ -50,7 +51,7 @@ class Packing {
       colours_.insert(colours_.end(), paint.begin(), paint.end());
     }
     for (const auto& triangle : mesh.triangles) {
-      for (const auto corner : triangle) corners_.push_back(first + static_cast<std::uint32_t>(corner));
+      for (const auto corner : triangle) corners_.push_back(static_cast<std::uint16_t>(first + corner));
     }
   }
   [[nodiscard]] Json packed() const { return Json::array({encoded(positions_), encoded(colours_), encoded(corners_)}); }
@@ -59,7 +60,7 @@ class Packing {
   solid::Bounds box_;
   std::vector<std::uint16_t> positions_;
   std::vector<std::uint8_t> colours_;
-  std::vector<std::uint32_t> corners_;
+  std::vector<std::uint16_t> corners_;
 };
 
 Json packed(const Layer& layer, const solid::Bounds& box) {
@@ -96,6 +97,19 @@ solid::Bounds box_of(const std::vector<Layer>& layers) {
   return box;
 }
 
+/// For where nothing can be turned.
+std::string drawn(const Layer& layer, const solid::Bounds& box) {
+  plot::Body body{layer.mesh, {}};
+  for (std::size_t n = 0; n < layer.mesh.points.size(); ++n) body.colours.push_back(colour_of(layer, n));
+  const plot::Body beside{layer.beside, std::vector<Rgb>(layer.beside.points.size(), plot::paint::green)};
+  const Vector3 centre = 0.5 * (box.low + box.high);
+  constexpr int pixels = 480;
+  const std::vector<const plot::Body*> bodies{&body, &beside};
+  return "<template>" +
+         plot::page_image(plot::render(bodies, centre, plot::side_mm(bodies, centre, {}), {}, pixels), layer.name) +
+         "</template>";
+}
+
 }  // namespace
 
 std::string layers_view(const std::vector<Layer>& layers, const std::string& group) {
@@ -108,7 +122,7 @@ std::string layers_view(const std::vector<Layer>& layers, const std::string& gro
   }
   return "<div class=\"body\">" + choices(layers, group) +
          "<canvas tabindex=\"0\" aria-label=\"three-dimensional view of the part\"></canvas>" + scales +
-         page_data(Json::array({box.low, box.high, packed_layers})) + "</div>";
+         drawn(layers.back(), box) + page_data(Json::array({box.low, box.high, packed_layers})) + "</div>";
 }
 
 }  // namespace vam::report_tool

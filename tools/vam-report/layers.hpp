@@ -10,6 +10,8 @@
 
 namespace vam::report_tool {
 
+inline constexpr std::size_t most_vertices = 65'536;  // of a view, as corners are of 16 bits
+
 struct Layer {
   std::string name;
   model::TriangleSoup mesh;

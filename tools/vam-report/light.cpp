@@ -19,7 +19,7 @@ namespace vam::report_tool {
 
 namespace {
 
-constexpr int most_pixels = 320;  // columns and slices of a projection
+constexpr int most_pixels = 800;  // columns and slices of a projection
 constexpr int shown_px = 400;
 constexpr int most_sinograms = 12;
 

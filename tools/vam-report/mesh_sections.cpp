@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "base/text/printable.hpp"
+#include "base/index.hpp"
 #include "base/text/text.hpp"
+#include "plot/canvas.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "vam-report/meshes.hpp"
@@ -91,21 +92,21 @@ struct Sheet {
   Point low;
   Point high;
   double scale;
-  [[nodiscard]] std::string x(double mm) const { return format_number(margin_px + (mm - low[0]) * scale, 6); }
-  [[nodiscard]] std::string y(double mm) const { return format_number(0.5 * margin_px + (high[1] - mm) * scale, 6); }
+  [[nodiscard]] plot::Spot at(const Point& mm) const {
+    return {margin_px + (mm[0] - low[0]) * scale, 0.5 * margin_px + (high[1] - mm[1]) * scale};
+  }
 };
 
-std::string path_of(const Outline& outline, const Sheet& sheet, const std::string& style) {
-  std::string path;
-  for (const auto& [a, b] : outline.segments) {
-    path += "M" + sheet.x(a[0]) + " " + sheet.y(a[1]) + "L" + sheet.x(b[0]) + " " + sheet.y(b[1]);
+Sheet sheet_around(const std::vector<Outline>& outlines) {
+  Sheet sheet{outlines[0].low, outlines[0].high, 1};
+  for (const Outline& outline : outlines) {
+    for (std::size_t k = 0; k < 2 && !outline.segments.empty(); ++k) {
+      sheet.low[k] = std::min(sheet.low[k], outline.low[k]);
+      sheet.high[k] = std::max(sheet.high[k], outline.high[k]);
+    }
   }
-  return "<path d=\"" + path + "\" fill=\"none\" " + style + "/>";
-}
-
-std::string line(double x0, double y0, double x1, double y1) {
-  return "<line x1=\"" + format_number(x0, 6) + "\" y1=\"" + format_number(y0, 6) + "\" x2=\"" + format_number(x1, 6) +
-         "\" y2=\"" + format_number(y1, 6) + "\" stroke=\"#444\"/>";
+  sheet.scale = drawn_px / std::max({sheet.high[0] - sheet.low[0], sheet.high[1] - sheet.low[1], 1e-9});
+  return sheet;
 }
 
 using Errors = std::optional<DimensionErrors>;
@@ -119,55 +120,41 @@ std::string words(const std::vector<Outline>& outlines, std::size_t axis, const 
   return text;
 }
 
-// The extent of the first outline, below it and on its left.
-std::string dimensions(const std::vector<Outline>& outlines, const Sheet& sheet, const Errors& errors) {
-  const double left = margin_px + (outlines[0].low[0] - sheet.low[0]) * sheet.scale;
-  const double right = margin_px + (outlines[0].high[0] - sheet.low[0]) * sheet.scale;
-  const double top = 0.5 * margin_px + (sheet.high[1] - outlines[0].high[1]) * sheet.scale;
-  const double bottom = 0.5 * margin_px + (sheet.high[1] - outlines[0].low[1]) * sheet.scale;
-  const double below = 0.5 * margin_px + (sheet.high[1] - sheet.low[1]) * sheet.scale + 14;
-  constexpr double tick = 5;
-  const double beside = margin_px - 16;
-  const auto text = [](double x, double y, const std::string& turn, const std::string& what) {
-    return "<text x=\"" + format_number(x, 6) + "\" y=\"" + format_number(y, 6) +
-           "\" text-anchor=\"middle\" font-size=\"12\"" + turn + ">" + page_text(what) + "</text>";
-  };
-  const double middle = 0.5 * (top + bottom);
-  return line(left, below, right, below) + line(left, below - tick, left, below + tick) +
-         line(right, below - tick, right, below + tick) +
-         text(0.5 * (left + right), below + 16, "", words(outlines, 0, errors)) + line(beside, top, beside, bottom) +
-         line(beside - tick, top, beside + tick, top) + line(beside - tick, bottom, beside + tick, bottom) +
-         text(beside - 8, middle,
-              " transform=\"rotate(-90 " + format_number(beside - 8, 6) + " " + format_number(middle, 6) + ")\"",
-              words(outlines, 1, errors));
-}
-
 std::string drawing(const std::vector<Outline>& outlines, const Errors& errors) {
-  Sheet sheet{outlines[0].low, outlines[0].high, 1};
-  for (const Outline& outline : outlines) {
-    for (std::size_t k = 0; k < 2 && !outline.segments.empty(); ++k) {
-      sheet.low[k] = std::min(sheet.low[k], outline.low[k]);
-      sheet.high[k] = std::max(sheet.high[k], outline.high[k]);
-    }
-  }
-  const double wide_mm = sheet.high[0] - sheet.low[0];
-  const double high_mm = sheet.high[1] - sheet.low[1];
-  sheet.scale = drawn_px / std::max({wide_mm, high_mm, 1e-9});
-  std::string made = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " +
-                     format_number(1.5 * margin_px + std::max(wide_mm * sheet.scale, 160.0), 6) + " " +
-                     format_number(1.5 * margin_px + std::max(high_mm * sheet.scale, 160.0), 6) +
-                     "\" role=\"img\" font-family=\"sans-serif\">";
+  const Sheet sheet = sheet_around(outlines);
+  const plot::Spot end = sheet.at({sheet.high[0], sheet.low[1]});
+  plot::Canvas canvas(round_int(std::max(end.x, margin_px + 160) + 0.5 * margin_px),
+                      round_int(std::max(end.y, 0.5 * margin_px + 160) + margin_px));
   for (std::size_t n = outlines.size(); n-- > 0;) {
-    made += path_of(outlines[n], sheet,
-                    n == 0 ? "stroke=\"#0072b2\" stroke-width=\"1.5\""
-                           : "stroke=\"#999\" stroke-width=\"1.5\" stroke-dasharray=\"4 3\"");
+    std::vector<plot::SpotPair> lines;
+    for (const auto& [from, to] : outlines[n].segments) lines.emplace_back(sheet.at(from), sheet.at(to));
+    canvas.lines(lines, n == 0 ? plot::paint::blue : plot::paint::grey, 1.5);
   }
-  return made + dimensions(outlines, sheet, errors) + "</svg>";
+  // The extent of the first outline, below it and on its left.
+  const auto [left, bottom] = sheet.at(outlines[0].low);
+  const auto [right, top] = sheet.at(outlines[0].high);
+  const double below = end.y + 14;
+  constexpr double beside = margin_px - 16;
+  constexpr double tick = 5;
+  canvas.lines({{{left, below}, {right, below}},
+                {{left, below - tick}, {left, below + tick}},
+                {{right, below - tick}, {right, below + tick}},
+                {{beside, top}, {beside, bottom}},
+                {{beside - tick, top}, {beside + tick, top}},
+                {{beside - tick, bottom}, {beside + tick, bottom}}},
+               plot::paint::black);
+  const std::string across = words(outlines, 0, errors);
+  const std::string upwards = words(outlines, 1, errors);
+  constexpr double size = 12;
+  canvas.text({0.5 * (left + right), below + 8}, across, size, plot::paint::black, plot::Align::middle);
+  canvas.text({beside - 8, 0.5 * (top + bottom)}, upwards, size, plot::paint::black, plot::Align::middle,
+              plot::Align::end, true);
+  return plot::page_image(canvas.image(2 * plot::screen_dpi), across + " wide, " + upwards + " high");
 }
 
 std::string caption(const std::vector<ShownMesh>& meshes, std::size_t outlines, const Errors& errors) {
   const std::string lines =
-      outlines > 1 ? "Solid: " + meshes[0].name + "; dashed: " + meshes[1].name + "." : "Dimensions of the section.";
+      outlines > 1 ? "Blue: " + meshes[0].name + "; grey: " + meshes[1].name + "." : "Dimensions of the section.";
   return lines + (errors ? " Dimensions have expanded uncertainties, k = 2." : "");
 }
 

@@ -18,8 +18,6 @@ namespace vam::report_tool {
 
 namespace {
 
-constexpr std::size_t most_mesh_vertices = 60'000;
-
 /// The vertices of each cell as their mean; triangles within a cell are left out.
 ShownMesh clustered(const ShownMesh& fine, double cell_mm) {
   struct Sum {
@@ -56,10 +54,10 @@ ShownMesh clustered(const ShownMesh& fine, double cell_mm) {
 }
 
 ShownMesh shown(const ShownMesh& mesh) {
-  if (mesh.mesh.points.size() <= most_mesh_vertices) return mesh;
+  if (mesh.mesh.points.size() <= most_vertices) return mesh;
   double cell_mm = solid::bounding_box(mesh.mesh).largest_side() / 200;
   ShownMesh coarse = clustered(mesh, cell_mm);
-  while (coarse.mesh.points.size() > most_mesh_vertices) coarse = clustered(mesh, cell_mm *= 1.3);
+  while (coarse.mesh.points.size() > most_vertices) coarse = clustered(mesh, cell_mm *= 1.3);
   return coarse;
 }
 

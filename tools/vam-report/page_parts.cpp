@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-report/page_parts.hpp"
 
-#include "base/text/base64.hpp"
 #include "base/text/json.hpp"
 #include "base/text/printable.hpp"
-#include "io/image/image_file.hpp"
 #include "plot/page.hpp"
 
 namespace vam::report_tool {
@@ -30,6 +28,7 @@ canvas{width:100%;aspect-ratio:4/3;border:1px solid #ccc;touch-action:none;curso
 vertical-align:middle}
 details{margin:.3em 0}summary{cursor:pointer;font-weight:600}
 .wrapped{overflow-x:auto}code{font-size:.9em;overflow-wrap:anywhere}h2{break-after:avoid}
+@media(prefers-color-scheme:dark){.verdict{background:#2a2a2a}}
 @media print{.control,summary::marker{display:none}figure{break-inside:avoid}body{font-size:11px}}
 )css";
 
@@ -40,7 +39,7 @@ std::string series(const std::string& title, const std::vector<Frame>& frames, c
   const std::string seen = plot::page_image(first.image, title);
   if (frames.size() == 1) return plot::page_figure(title, seen, caption);
   Json all = Json::array();
-  for (const Frame& frame : frames) all.push_back({frame.label, base64(io::encode_png(frame.image))});
+  for (const Frame& frame : frames) all.push_back({frame.label, plot::page_png(frame.image)});
   std::string content = seen + "<div class=\"control\">";
   if (plays) content += "<button type=\"button\">play</button>";
   content += "<input type=\"range\" min=\"0\" max=\"" + std::to_string(frames.size() - 1) + "\" value=\"" +

@@ -72,7 +72,7 @@ function programOf(gl) {
 function loaded(gl, low, side, [positions, colours, corners]) {
   const places = new Uint16Array(bytes(positions).buffer), points = new Float32Array(places.length);
   for (let i = 0; i < places.length; ++i) points[i] = low[i % 3] + side[i % 3] * places[i] / 65535;
-  const triangles = new Uint32Array(bytes(corners).buffer), array = gl.createVertexArray();
+  const triangles = new Uint16Array(bytes(corners).buffer), array = gl.createVertexArray();
   gl.bindVertexArray(array);
   const attribute = (at, values, type, scaled) => {
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
@@ -126,7 +126,7 @@ function body(box) {
   const [low, high, packed] = JSON.parse(box.querySelector('script').textContent);
   const canvas = box.querySelector('canvas');
   const gl = canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
-  if (!gl) { canvas.replaceWith('This browser does not support the 3-D view (WebGL 2).'); return; }
+  if (!gl) { canvas.replaceWith(box.querySelector('template').content); return; }
   const side = high.map((end, i) => end - low[i]);
   const view = {canvas, gl, low, side, program: programOf(gl), shown: 0, yaw: -0.6, pitch: 0.45, zoom: 1};
   view.layers = packed.map(layer => loaded(gl, low, side, layer));

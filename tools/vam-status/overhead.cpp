@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/text/base64.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/image/image_file.hpp"
 #include "plot/axis.hpp"
 #include "plot/colour_map.hpp"
 #include "plot/image_figure.hpp"
@@ -77,7 +75,7 @@ std::string drawing_of(const RunFolder& run, const LightView& light, bool lit, d
   const double half = 1.35 * vial;
   const double size = 0.11 * vial;  // of letters
   const Image dose = light.dose(run.shown());
-  const std::string png = base64(io::encode_png(plot::coloured(dose, {plot::ColourMap::viridis, 0, high, ""})));
+  const std::string png = plot::page_png(plot::coloured(dose, {plot::ColourMap::viridis, 0, high, ""}));
   // The stage turns the vial clockwise, seen from above, which is what a positive angle is to SVG.
   const std::string turned = mm(std::fmod(progress.angle_deg, 360) * printer.stage.direction);
   const std::string radius = mm(resin);

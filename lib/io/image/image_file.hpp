@@ -34,6 +34,8 @@ using ImageText = std::map<std::string, std::string>;
 [[nodiscard]] std::string encode_png(const GreyImage& image, const ImageText& text = {});
 /// dpi: stated in the file (PNG specification, 11.3.5.3); 0: not.
 [[nodiscard]] std::string encode_png(const RgbImage& image, const ImageText& text = {}, double dpi = 0);
+/// As indices of a palette, of at most 256 colours; throws Fault::bug of more.
+[[nodiscard]] std::string encode_indexed_png(const RgbImage& image);
 
 /// Writes a PNG; "-" is stdout. Throws Error: no_output, io.
 void write_png(const std::string& path, const GreyImage& image, const ImageText& text = {});

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
+#include <vector>
 
 #include "base/error.hpp"
 #include "io/image/image_file.hpp"
@@ -28,14 +30,15 @@ void put_chunk(PngBytes& png, const char* type, const PngBytes& data) {
                  crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()))));
 }
 
-// Section 9.4: each byte minus the one above it (filter type 2). Frames and plots repeat from row to row.
-PngBytes filtered_up(const PngBytes& rows, std::size_t row_bytes) {
+// Section 9.4: each byte minus the one above it (filter type 2), as frames repeat from row to row; indices of a palette
+// as they are (type 0).
+PngBytes filtered_rows(const PngBytes& rows, std::size_t row_bytes, bool up) {
   const std::size_t count = rows.size() / row_bytes;
-  PngBytes filtered(rows.size() + count, '\2');
+  PngBytes filtered(rows.size() + count, up ? '\2' : '\0');
   for (std::size_t y = 0; y < count; ++y) {
     const char* row = rows.data() + y * row_bytes;
     char* to = filtered.data() + y * (row_bytes + 1) + 1;
-    if (y == 0) {
+    if (y == 0 || !up) {
       std::copy_n(row, row_bytes, to);
       continue;
     }
@@ -60,7 +63,7 @@ struct PngLayout {
   int width;
   int height;
   int depth;
-  int colour_type;  // 0 grey, 2 RGB
+  int colour_type;  // 0 grey, 2 RGB, 3 indices of a palette
   std::size_t row_bytes;
 };
 
@@ -69,7 +72,8 @@ struct PngRemark {
   PngBytes data;  // empty: none
 };
 
-PngBytes assemble(const PngLayout& layout, const PngRemark& remark, const PngBytes& rows, const ImageText& text) {
+PngBytes assemble(const PngLayout& layout, const std::vector<PngRemark>& remarks, const PngBytes& rows,
+                  const ImageText& text) {
   PngBytes png("\x89PNG\r\n\x1a\n", 8);
   PngBytes header;
   put32(header, static_cast<std::uint32_t>(layout.width));
@@ -78,9 +82,11 @@ PngBytes assemble(const PngLayout& layout, const PngRemark& remark, const PngByt
   header += static_cast<char>(layout.colour_type);
   header += PngBytes(3, '\0');  // deflate, adaptive filters, not interlaced
   put_chunk(png, "IHDR", header);
-  if (!remark.data.empty()) put_chunk(png, remark.type, remark.data);
+  for (const PngRemark& remark : remarks) {
+    if (!remark.data.empty()) put_chunk(png, remark.type, remark.data);
+  }
   for (const auto& [keyword, words] : text) put_chunk(png, "tEXt", keyword + '\0' + words);
-  put_chunk(png, "IDAT", deflated(filtered_up(rows, layout.row_bytes)));
+  put_chunk(png, "IDAT", deflated(filtered_rows(rows, layout.row_bytes, layout.colour_type != 3)));
   put_chunk(png, "IEND", "");
   return png;
 }
@@ -116,18 +122,31 @@ std::string encode_png(const GreyImage& image, const ImageText& text) {
   const auto bits = static_cast<std::size_t>(image.width) * depth;
   const PngLayout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
   const PngRemark significant{"sBIT", PngBytes(image.bits == 10 ? 1 : 0, '\x0a')};
-  return assemble(layout, significant, packed_rows(image, layout), text);
+  return assemble(layout, {significant}, packed_rows(image, layout), text);
 }
 
 std::string encode_png(const RgbImage& image, const ImageText& text, double dpi) {
-  const PngLayout layout{image.width, image.height, 8, 2, 3 * static_cast<std::size_t>(image.width)};
-  const PngBytes rows(reinterpret_cast<const char*>(image.values.data()), 3 * image.values.size());
   PngRemark density{"pHYs", {}};
   constexpr double inches_per_m = 1 / 0.0254;
   for (int way = 0; way < 2 && dpi > 0; ++way)
     put32(density.data, static_cast<std::uint32_t>(std::lround(dpi * inches_per_m)));
   if (dpi > 0) density.data += '\1';  // per metre
-  return assemble(layout, density, rows, text);
+  const PngBytes rows(reinterpret_cast<const char*>(image.values.data()), 3 * image.values.size());
+  return assemble({image.width, image.height, 8, 2, 3 * static_cast<std::size_t>(image.width)}, {density}, rows, text);
+}
+
+std::string encode_indexed_png(const RgbImage& image) {
+  constexpr std::size_t most = 256;
+  std::map<Rgb, char> index;
+  PngBytes rows;
+  PngRemark palette{"PLTE", {}};
+  for (const Rgb& colour : image.values) {
+    const auto [at, is_new] = index.try_emplace(colour, static_cast<char>(index.size()));
+    if (is_new) palette.data.append(colour.begin(), colour.end());
+    rows += at->second;
+  }
+  if (index.size() > most) throw Error{Fault::bug, "PNG: a palette of " + std::to_string(index.size()) + " colours"};
+  return assemble({image.width, image.height, 8, 3, static_cast<std::size_t>(image.width)}, {palette}, rows, {});
 }
 
 void write_png(const std::string& path, const GreyImage& image, const ImageText& text) { write(path, image, text); }
