@@ -11,7 +11,6 @@
 #include "base/text/text.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
 #include "light/operators/private/parallel_operator.hpp"
-#include "light/operators/private/shadowed_operator.hpp"
 #include "light/operators/private/vial_operator.hpp"
 #include "tomo/radon_choice.hpp"
 
@@ -61,19 +60,16 @@ std::unique_ptr<Operator> operator_of(const ParallelBeam& beam, std::span<const 
   if (beam.integrals != LineIntegrals::footprints && (mu > 0 || !inserts.empty())) {
     throw Error{Fault::usage, "Fourier slices do not apply to light that is absorbed or blocked; use footprints"};
   }
-  if (beam.has_width()) {
-    if (beam.integrals == LineIntegrals::footprints) return operator_of(vial_of(beam), inserts);
+  if (beam.has_width() && beam.integrals != LineIntegrals::footprints) {
     throw Error{Fault::usage,
                 "Fourier slices do not apply to light that has width; use footprints, or stage.motion "
                 "stepped without projector.half_angle_deg"};
   }
-  if (!inserts.empty()) {
-    if (mu > 0 && beam.correction == Correction::disc) {
-      throw Error{Fault::usage,
-                  "the disc normalisation of absorption does not apply around an insert; use the exact inverse"};
-    }
-    return std::make_unique<ShadowedOperator>(beam.turn, mu, beam.resin_radius_px, inserts);
+  if (!inserts.empty() && mu > 0 && beam.correction == Correction::disc) {
+    throw Error{Fault::usage,
+                "the disc normalisation of absorption does not apply around an insert; use the exact inverse"};
   }
+  if (beam.has_width() || !inserts.empty()) return operator_of(vial_of(beam), inserts);
   if (mu == 0) return std::make_unique<ParallelOperator>(beam.turn, beam.integrals);
   return std::make_unique<AttenuatedOperator>(beam.turn, mu, beam.resin_radius_px, beam.correction);
 }

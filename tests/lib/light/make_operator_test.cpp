@@ -8,7 +8,6 @@
 #include "lib/optimize/parts.hpp"
 #include "light/operators/private/attenuated_operator.hpp"
 #include "light/operators/private/parallel_operator.hpp"
-#include "light/operators/private/shadowed_operator.hpp"
 #include "light/operators/private/vial_operator.hpp"
 #include "testing.hpp"
 
@@ -25,13 +24,13 @@ bool is(const std::unique_ptr<Operator>& light) {
 }  // namespace
 
 TEST_CASE("the operator is that of the light: clear, absorbing, around an insert, through the vial") {
-  const ParallelBeam clear{parts::turn(32, 20)};
+  const ParallelBeam clear{parts::turn(32, 20), 0, 16};
   const ParallelBeam absorbing{parts::turn(32, 20), 0.01, 16};
   const Slab insert(32, 32);
   CHECK(is<ParallelOperator>(make_operator(clear)));
   CHECK(is<AttenuatedOperator>(make_operator(absorbing)));
-  CHECK(is<ShadowedOperator>(make_operator(clear, {&insert, 1})));
-  CHECK(is<ShadowedOperator>(make_operator(absorbing, {&insert, 1})));
+  CHECK(is<VialOperator>(make_operator(clear, {&insert, 1})));
+  CHECK(is<VialOperator>(make_operator(absorbing, {&insert, 1})));
   CHECK(is<VialOperator>(make_operator(parts::vial_setup(32, 20))));
   CHECK(is<VialOperator>(make_operator(parts::vial_setup(32, 20), {&insert, 1})));
 }
@@ -41,7 +40,7 @@ TEST_CASE("the disc correction does not apply around an insert, unless nothing i
   const ParallelBeam disc{parts::turn(32, 20), 0.01, 16, Correction::disc};
   CHECK(fault_of([&] { (void)make_operator(disc, {&insert, 1}); }) == Fault::usage);
   const ParallelBeam clear{parts::turn(32, 20), 0, 16, Correction::disc};
-  CHECK(is<ShadowedOperator>(make_operator(clear, {&insert, 1})));
+  CHECK(is<VialOperator>(make_operator(clear, {&insert, 1})));
 }
 
 TEST_CASE("Fourier slices are for light that is neither absorbed nor blocked") {
