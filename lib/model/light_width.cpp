@@ -13,14 +13,27 @@ namespace {
 constexpr const char* hold_name = "vam:hold_deg";
 constexpr const char* half_angle_name = "vam:half_angle_deg";
 
+/// Mean square of the distance of the projections from the place `at`, in steps, for which a frame of `span` shows them.
+double square_away(double at, double span) {
+  const double below = at - std::floor(at);
+  if (span <= 1) return below * (1 - below);
+  double sum = 0;
+  for (double k = std::round(at - 0.5 * span); k - 0.5 < at + 0.5 * span; ++k) {
+    const double share = std::min(k + 0.5, at + 0.5 * span) - std::max(k - 0.5, at - 0.5 * span);
+    sum += share / span * (k - at) * (k - at);
+  }
+  return sum;
+}
+
 double hold_deg(const Printer& printer, double step_deg) {
   if (printer.stage.motion == "stepped") return 0;
   if (printer.stage.motion == "held") return step_deg;
-  constexpr double rounding = 1e-6;
+  constexpr double most = 1e5;  // frames
   const double shown_deg = printer.stage.speed_deg_s / printer.projector.fps;
-  if (std::abs(shown_deg / step_deg - 1) < rounding) return step_deg;
-  // Half of the light of a frame is in each of two neighbours: twice as variable as a box.
-  return std::sqrt(std::max(shown_deg * shown_deg, 2 * step_deg * step_deg) + shown_deg * shown_deg);
+  const double frames = std::clamp(std::round(360 / shown_deg), 1.0, most);
+  double square = 0;
+  for (double n = 0; n < frames; ++n) square += square_away(n * shown_deg / step_deg, shown_deg / step_deg) / frames;
+  return std::sqrt(shown_deg * shown_deg + 12 * square * step_deg * step_deg);
 }
 
 }  // namespace
