@@ -112,7 +112,7 @@ void run(const cli::App& app, Options& options) {
     optimize::judge_shown(task, *light, sink.kept(), aimed, outcome);
   }
   std::optional<optimize::Trials> trials;
-  if (options.printer_tolerances) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
+  if (options.printer_tolerances) trials = run_trials(make_trial(scene, options), task, sink.kept());
   const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, scene.printer, info, options);
   if (planned && plan) {
     model::state_exposure(info.extra, plan->turns,

@@ -23,6 +23,13 @@ namespace vam::session {
 
 namespace {
 
+model::Printer modelled(model::Printer printer, const JobOptions& options) {
+  if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
+  return printer;
+}
+
+}  // namespace
+
 light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const JobOptions& options) {
   light::VialSetup setup = light::vial_setup(modelled(printer, options), scene.grid, scene.turn.angles,
                                              scene.circle.radius * scene.grid.voxel_mm);
@@ -33,6 +40,8 @@ light::VialSetup light_of(const model::Printer& printer, const Scene& scene, con
   setup.first_row_mm = scene.first_row_mm;
   return setup;
 }
+
+namespace {
 
 /// A wobble that was measured and that the projections do not follow.
 void warn_of_wobble(const model::Printer& printer, double voxel_mm) {
@@ -145,11 +154,6 @@ double constrained_mm(const io::SparseVolume& target, const model::Printer& prin
 }
 
 }  // namespace
-
-model::Printer modelled(model::Printer printer, const JobOptions& options) {
-  if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
-  return printer;
-}
 
 Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const JobOptions& options) {
   const model::Grid& grid = target.grid();

@@ -10,6 +10,7 @@
 #include "io/vdb/vdb.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/operators/operator.hpp"
+#include "light/rays/vial_setup.hpp"
 #include "model/circle.hpp"
 #include "model/grid.hpp"
 #include "model/pose.hpp"
@@ -40,8 +41,8 @@ struct Scene {
 /// Warns of a part beyond the writable radius, and of a wobble in the calibration records that the poses leave out.
 void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOptions& options);
 
-/// The printer as the light is computed: its resin is clear with optimize.absorption_model none.
-[[nodiscard]] model::Printer modelled(model::Printer printer, const JobOptions& options);
+/// In the vial of that printer; its resin is clear with optimize.absorption_model none.
+[[nodiscard]] light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const JobOptions& options);
 
 /// Time during which the dose diffuses.
 [[nodiscard]] double diffusion_s(const Scene& scene, const JobOptions& options);

@@ -154,6 +154,9 @@ is 'in one piece' "$(json waist.json solids) $(json waist.json print_pieces_leas
 gyroid='--shape gyroid:diameter=8,height=4,cell=4,sheet=0.3'
 printer='--set projector.columns=160 --set projector.rows=120 --set projector.pixel_mm=0.13'
 vam-plan $gyroid $printer >planned
+for motion in stepped held; do vam-plan $gyroid $printer --set stage.motion=$motion --report $motion.json >$motion; done
+ok 'frames are held by the angles of the print, not of the estimate' grep -q '^verdict .*; by each frame over 1 deg of the stage' held
+holds 'which costs little' "($(json held.json pw) - $(json stepped.json pw)) ^ 2 < 0.002 ^ 2"
 vam-slice $gyroid $printer -o gyroid.vdb
 vam-optimize gyroid.vdb $printer -o gyroid.exr 2>.log/gyroid
 vam-dose gyroid.exr --like gyroid.vdb $printer | vam-score --target gyroid.vdb $printer >scored

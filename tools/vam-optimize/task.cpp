@@ -121,11 +121,11 @@ optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVo
   return task;
 }
 
-optimize::Trial make_trial(const session::Scene& scene, const model::StackInfo& info, const Options& options) {
+optimize::Trial make_trial(const session::Scene& scene, const Options& options) {
   optimize::Trial trial;
-  trial.printer = session::modelled(scene.printer, options);
+  trial.printer = scene.printer;
   trial.tolerances = *options.printer_tolerances;
-  trial.info = info;
+  trial.setup = [&](const model::Printer& printer) { return session::light_of(printer, scene, options); };
   trial.grid = scene.grid;
   trial.seconds = session::diffusion_s(scene, options);
   trial.blur = options.blur;

@@ -71,7 +71,7 @@ optimize::Preview preview_of(const Level& level, const model::Projector& project
 /// What the voxels of the print lose is lost whatever these show.
 verdict::Verdict verdict_of(const Level& level, const EstimateTask& task, const optimize::Preview& preview,
                             const optimize::VolumeOutcome& outcome) {
-  const model::LightWidth light = model::light_width(level.printer, 360.0 / optimize::PreviewTask{}.angles);
+  const model::LightWidth light = model::light_width(level.printer, 360.0 / optimize::PreviewTask{}.print_angles);
   return verdict::judge(is_lost(task.unresolved) ? task.unresolved : level.unresolved(),
                         outcome.print(preview.grid, task.stretch_z, light));
 }

@@ -2,6 +2,7 @@
 #include "optimize/run/preview.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "light/grids/lit_grid.hpp"
@@ -28,20 +29,6 @@ model::Volume extended(const model::Volume& target, const light::Margin& margin)
   for (int k = 0; k < target.grid.nz; ++k)
     light::place_slice(target.slice(k), target.grid, margin, wide.slice(k + margin.below));
   return wide;
-}
-
-model::StackInfo info_of(const model::Printer& printer, const model::Grid& grid, int angles) {
-  model::StackInfo info;
-  info.width = printer.projector.columns;
-  info.height = angles;
-  info.count = grid.nz;
-  info.pixel_mm = printer.projector.pixel_mm;
-  info.row_mm = grid.voxel_mm;
-  info.space = model::Space::projector;
-  info.z_start_mm = grid.z_mm(0);
-  info.angle_step_deg = 360.0 / angles;
-  info.units = "1/rad";
-  return info;
 }
 
 }  // namespace
@@ -72,8 +59,12 @@ Preview preview(const PreviewTask& wanted) {
     how.max_intensity = max_intensity;
     return method_entry(automatic_method).make(how);
   };
-  const light::VialSetup setup =
-      light::vial_setup(wanted.printer, lit.grid, wanted.angles, task.circle.radius * lit.grid.voxel_mm);
+  const auto setup_of = [&](const model::Printer& printer) {
+    auto setup = light::vial_setup(printer, lit.grid, wanted.angles, task.circle.radius * lit.grid.voxel_mm);
+    setup.hold_rad = light::hold_rad(printer, 2 * std::numbers::pi / wanted.print_angles);
+    return setup;
+  };
+  const light::VialSetup setup = setup_of(wanted.printer);
   task.around = [&](std::span<const Slab> inserts) { return light::make_operator(setup, inserts); };
   std::vector<Image> frames;
   task.write = [&](int, const Image& image) { frames.push_back(image); };
@@ -88,7 +79,7 @@ Preview preview(const PreviewTask& wanted) {
   Trial trial;
   trial.printer = wanted.printer;
   trial.tolerances = wanted.tolerances;
-  trial.info = info_of(wanted.printer, lit.grid, wanted.angles);
+  trial.setup = setup_of;
   trial.grid = lit.grid;
   trial.seconds = seconds;
   trial.threshold = threshold;

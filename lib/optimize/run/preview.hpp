@@ -18,6 +18,7 @@ struct PreviewTask {
   double radius_mm = 0;    // of the resin that is constrained (optics::judged_radius_mm)
   model::VoxelBox part;    // its box in the target
   int angles = 92;         // a multiple of 4: quarters of a turn share their rays
+  int print_angles = 360;  // of the print, while one of whose frames is shown the stage turns by stage.motion
   int iterations = 12;     // and more, up to 60 in seconds, while it does not print with the margin of --method auto
   model::Tolerances tolerances{};
 };

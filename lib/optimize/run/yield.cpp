@@ -45,9 +45,9 @@ class Bench {
 
   [[nodiscard]] Printed print(const model::PrinterDeviation& by) const {
     const model::DeviatingPrinter off = model::deviate(trial_.printer, trial_.tolerances, by);
-    optics::AxisAlignment alignment;
-    alignment.angle_offset_rad = off.angle_offset_rad;
-    light::VialSetup setup = light::vial_setup(off.printer, alignment, trial_.info, trial_.grid);
+    light::VialSetup setup = trial_.setup(off.printer);
+    setup.angle_offset_rad += off.angle_offset_rad;
+    setup.radius_mm = 0;                                            // light is judged wherever it goes
     setup.z_scale = model::vertical_magnification(trial_.printer);  // of which the part was sliced
     const light::Simulation simulation(setup);
     std::vector<Image> doses(trial_.grid.nz);

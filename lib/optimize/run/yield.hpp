@@ -9,19 +9,19 @@
 
 #include "base/image.hpp"
 #include "base/text/json_fwd.hpp"
+#include "light/rays/vial_setup.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/grid.hpp"
-#include "model/stack.hpp"
 #include "model/tolerances.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
 
-/// What is judged: frames of `info`, one image a slice, in fluence; doses at grid and circle of the target.
+/// What is judged: frames for the printer as set, one image a slice, in fluence; doses at grid and circle of the target.
 struct Trial {
   model::Printer printer;
   model::Tolerances tolerances{};
-  model::StackInfo info;
+  std::function<light::VialSetup(const model::Printer& printer)> setup;
   model::Grid grid;
   double seconds = 0;  // during which the dose diffuses; blur false: nothing smears
   bool blur = true;

@@ -65,20 +65,6 @@ VolumeTask make_task(std::vector<Image>& frames, bool robust) {
   return task;
 }
 
-model::StackInfo frames_info() {
-  model::StackInfo info;
-  const model::Printer printer;
-  info.space = model::Space::projector;
-  info.width = printer.projector.columns;
-  info.pixel_mm = printer.projector.pixel_mm;
-  info.height = angles;
-  info.count = slices;
-  info.row_mm = grid.voxel_mm;
-  info.z_start_mm = grid.z_mm(0);
-  info.angle_step_deg = 360.0 / angles;
-  return info;
-}
-
 struct Printing {
   std::vector<Image> frames;
   Trials trials;
@@ -88,7 +74,8 @@ Printing print(bool robust) {
   Printing made;
   const VolumeTask task = make_task(made.frames, robust);
   optimise(task, *light::make_operator(setup_of({})));
-  Trial trial{.tolerances = coarse, .info = frames_info(), .grid = grid, .printers = 12};
+  const auto setup = [](const model::Printer& printer) { return setup_of({.printer = printer}); };
+  Trial trial{.tolerances = coarse, .setup = setup, .grid = grid, .printers = 12};
   made.trials = run_trials(trial, task, made.frames);
   return made;
 }

@@ -24,14 +24,7 @@ Trial trial_of(const model::Printer& printer) {
   Trial trial{.printer = printer};
   trial.tolerances[static_cast<std::size_t>(model::ToleranceKind::index)] = index_error;
   trial.grid = grid;
-  trial.info.space = model::Space::projector;
-  trial.info.width = printer.projector.columns;
-  trial.info.pixel_mm = printer.projector.pixel_mm;
-  trial.info.height = angles;
-  trial.info.count = slices;
-  trial.info.row_mm = grid.voxel_mm;
-  trial.info.z_start_mm = grid.z_mm(0);
-  trial.info.angle_step_deg = 360.0 / angles;
+  trial.setup = [](const model::Printer& off) { return light::vial_setup(off, grid, angles, 0); };
   return trial;
 }
 
@@ -44,7 +37,7 @@ double dose_of_own_row(const Trial& trial, int lit) {
     if (k <= lit && lit < k + count) out[(lit - k) * size * size + size * size / 2] = 1;
   };
   task.circle = {0.5 * (size - 1), 0.5 * (size - 1), 0.5 * size};
-  std::vector<Image> frames(slices, Image(trial.info.width, angles));
+  std::vector<Image> frames(slices, Image(trial.printer.projector.columns, angles));
   std::fill(frames[lit].values.begin(), frames[lit].values.end(), 1.0F);
   return run_trials(trial, task, frames).singles.at(0).minus.figures.min_part;
 }
