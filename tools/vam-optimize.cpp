@@ -18,7 +18,6 @@
 #include "model/metadata.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/run/printable.hpp"
-#include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
 #include "session/job_volumes.hpp"
 #include "session/printer.hpp"
@@ -107,13 +106,9 @@ void run(const cli::App& app, Options& options) {
   }
   sink.finish();
   sink.require_light(outcome.peak_intensity);
-  if (options.bits) {
-    const auto aimed = [&](const model::DoseMetrics& doses) { return aimed_dose(doses, options); };
-    optimize::judge_shown(task, *light, sink.kept(), aimed, outcome);
-  }
+  const auto [plan, seconds] = judge_printed(task, *light, sink.kept(), scene, info, options, outcome);
   std::optional<optimize::Trials> trials;
-  if (options.printer_tolerances) trials = run_trials(make_trial(scene, options), task, sink.kept());
-  const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, scene.printer, info, options);
+  if (options.printer_tolerances) trials = run_trials(make_trial(scene, seconds, options), task, sink.kept());
   if (planned && plan) {
     model::state_exposure(info.extra, plan->turns,
                           options.full_scale.value_or(outcome.peak_intensity) / plan->multiplier);

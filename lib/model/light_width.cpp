@@ -13,7 +13,8 @@ namespace {
 constexpr const char* hold_name = "vam:hold_deg";
 constexpr const char* half_angle_name = "vam:half_angle_deg";
 
-/// Mean square of the distance of the projections from the place `at`, in steps, for which a frame of `span` shows them.
+/// Mean square of the distance of the projections from the place `at`, in steps, for which a frame of `span` shows
+/// them.
 double square_away(double at, double span) {
   const double below = at - std::floor(at);
   if (span <= 1) return below * (1 - below);

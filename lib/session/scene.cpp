@@ -177,7 +177,6 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
 }
 
 void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOptions& options) {
-  if (options.blur) model::warn_of_diffusion(scene.printer.resin, diffusion_s(scene, options));
   if (!options.in_vial()) return;
   warn_of_reach(target, scene.printer, options);
   if (scene.poses.empty()) warn_of_wobble(scene.printer, scene.grid.voxel_mm);
@@ -190,16 +189,9 @@ double diffusion_s(const Scene& scene, const JobOptions& options) {
   return options.diffusion_time_s.value_or(model::seconds_of(stage, options.turns.value_or(turns)));
 }
 
-namespace {
-
-double blur_px(const model::Resin& resin, const Scene& scene, const JobOptions& options) {
-  if (!options.blur) return 0;
-  return model::spread_mm(resin, diffusion_s(scene, options)) / scene.grid.voxel_mm;
+double blur_px(const model::Resin& resin, double seconds, const Scene& scene, const JobOptions& options) {
+  return options.blur ? model::spread_mm(resin, seconds) / scene.grid.voxel_mm : 0;
 }
-
-}  // namespace
-
-double blur_px(const Scene& scene, const JobOptions& options) { return blur_px(scene.printer.resin, scene, options); }
 
 std::unique_ptr<light::Operator> make_light(const Scene& scene, const JobOptions& options,
                                             std::span<const Slab> inserts) {
@@ -215,7 +207,8 @@ optimize::Scenario make_scenario(const Scene& scene, const JobOptions& options, 
   light::VialSetup setup = light_of(off.printer, scene, options);
   setup.angle_offset_rad += off.angle_offset_rad;
   setup.z_scale = model::vertical_magnification(scene.printer);
-  return {light::make_operator(setup, inserts), blur_px(off.printer.resin, scene, options), off.intensity};
+  return {light::make_operator(setup, inserts), blur_px(off.printer.resin, diffusion_s(scene, options), scene, options),
+          off.intensity};
 }
 
 }  // namespace

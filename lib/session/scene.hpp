@@ -44,10 +44,10 @@ void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOption
 /// In the vial of that printer; its resin is clear with optimize.absorption_model none.
 [[nodiscard]] light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const JobOptions& options);
 
-/// Time during which the dose diffuses.
+/// Time of diffusion that the light compensates for.
 [[nodiscard]] double diffusion_s(const Scene& scene, const JobOptions& options);
-/// Standard deviation in voxels of the blur by beam and resin; 0 if neglected.
-[[nodiscard]] double blur_px(const Scene& scene, const JobOptions& options);
+/// Standard deviation in voxels of the blur by beam and resin in that time; 0 if neglected.
+[[nodiscard]] double blur_px(const model::Resin& resin, double seconds, const Scene& scene, const JobOptions& options);
 
 /// Parallel beam or chief rays of the projector, with the resin's absorption unless neglected; around opaque inserts if
 /// there are any, a slab for every slab of the pass.

@@ -88,6 +88,21 @@ fails 65 '0.[0-9]* of the planned dose' vam-project light.exr --turns 1 --multip
 vam-project light.exr --multiplier 0.95 -o x.mkv 2>said
 ok 'a little less is said' grep -q 'warning: light.exr: .* 0.95 of the planned dose' said
 
+# The dose diffuses for as long as the print takes that is planned, and is judged by that in every tool.
+diffuses='--set resin.diffusion_mm2_s=0.0004'
+vam-optimize part.vdb --angles 60 $diffuses --report diffused.json -o diffused.exr 2>said
+ok 'which the light does not compensate by itself' grep -q "warning: the light compensates for the diffusion of 4 s, and its print takes $(json diffused.json duration_s | sed 's/.0$//') s; optimize.diffusion_time_s=" said
+vam-dose diffused.exr --like part.vdb --report blurred.json -o blurred.vdb 2>/dev/null
+holds 'by the time of the plan' "($(json blurred.json blur_sigma_mm) ^ 2 / (0.0004 * $(json diffused.json duration_s)) - 1) ^ 2 < 1e-12"
+vam-score blurred.vdb --target part.vdb --report blurred.json >/dev/null
+holds 'with one figure' "($(json blurred.json pw) - $(json diffused.json pw)) ^ 2 < 1e-8"
+vam-dose diffused.exr --like part.vdb --exposure-plan --diffusion-time 4 -o x.vdb 2>said
+ok 'another time for another plan is said' grep -q 'exposure: planned for the dose that diffuses for 4 s, it takes [0-9]* s; --diffusion-time [0-9]* plans for that' said
+plans() { vam-plan --shape half-cylinder:diameter=5,height=4 --voxel 0.26 $diffuses "$@" 2>/dev/null; }
+plans --report slow.json >/dev/null
+plans --set resin.critical_dose_mj_cm3=5 --report quick.json >/dev/null
+holds 'vam-plan judges the same light by its turns, too' "$(json slow.json turns) > $(json quick.json turns) && ($(json slow.json pw) - $(json quick.json pw)) ^ 2 > 1e-6"
+
 # Pieces know no plan of the whole; joined, they have that of their threshold.
 vam-optimize part.vdb --geometry parallel --angles 60 -o flat.exr --report flat.json 2>/dev/null
 for n in 1 2; do quiet "piece $n" vam-optimize part.vdb --geometry parallel --angles 60 --slices $n/2 -o piece-$n.exr; done
@@ -95,6 +110,9 @@ is 'states no exposure' "$(attr piece-2.exr vam:shown_turns 2>&1 | tail -n 1)" "
 quiet 'joined' vam-convert join piece-1.exr piece-2.exr -o joined.exr
 vam-dose joined.exr --like part.vdb --report joined.json -o joined.vdb
 holds 'the turns follow from their light' "$(json joined.json turns) == $(json flat.json turns)"
+vam-dose joined.exr --like part.vdb $diffuses --report joined.json -o joined.vdb 2>/dev/null
+holds 'for which the dose diffuses' "($(json joined.json blur_sigma_mm) ^ 2 / (0.0004 * 4 * $(json joined.json turns)) - 1) ^ 2 < 1e-12"
+fails 64 'not known before the end of a pipe; give a file, or --diffusion-time' sh -c "vam-dose --like part.vdb $diffuses -o x.vdb <joined.exr"
 
 vam-optimize part.vdb --angles 60 --iterations 2 --set resin.absorption_per_mm=0 --verbose -o x.exr 2>said
 ok 'without a known resin dose and time are relative' grep -q 'dose and time are relative: vam-calibrate critical-dose measures' said

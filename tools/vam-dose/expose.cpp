@@ -10,10 +10,12 @@
 
 #include "base/compute/memory.hpp"
 #include "base/compute/slab_lanes.hpp"
+#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/log/log.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
+#include "io/exr/stack.hpp"
 #include "io/stream/input_name.hpp"
 #include "light/blur/blur_stream.hpp"
 #include "light/grids/dose_grid.hpp"
@@ -22,7 +24,8 @@
 #include "model/dose/dose_spread.hpp"
 #include "model/grid_size.hpp"
 #include "model/metadata.hpp"
-#include "optics/projector_frames.hpp"
+#include "resin/absolute_dose.hpp"
+#include "session/exposure.hpp"
 #include "session/volumes.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/sink.hpp"
@@ -112,17 +115,30 @@ void expose_volume(Light& light, int count, const light::Simulation& simulation,
   sink.finish();
 }
 
-/// Diffusion lasts as long as the print: as many turns as were shown, as frames that are shown once take, or as the
-/// stage makes.
-double blur_mm(const Options& options, const model::Printer& printer, const model::StackInfo& info,
-               double shown_turns) {
-  if (options.no_blur) return 0;
-  const double usual =
-      model::repeat(info.poses) ? model::shown_turns(info.extra).value_or(printer.stage.turns) : optics::turns_of(info);
-  const double turns = options.shown.empty() ? usual : shown_turns;
-  const double seconds = options.diffusion_time_s.value_or(model::seconds_of(printer.stage, turns));
-  model::warn_of_diffusion(printer.resin, seconds);
-  return model::spread_mm(printer.resin, seconds);
+/// Of a sinogram whose plan does not tell it.
+double peak_of(const std::string& path, const model::StackInfo& info, const model::Printer& printer) {
+  if (!model::threshold_dose(info.extra) || !resin::dose_per_radian_mj_cm3(printer)) return 1;
+  if (path == "-")
+    throw Error{Fault::usage,
+                "SINOGRAM: how long its print takes, and diffuses, is not known before the end of a pipe; "
+                "give a file, or --diffusion-time"};
+  io::StackReader reader(path);
+  Image image;
+  float peak = 0;
+  for (model::ImageInfo about; reader.next(image, about);)
+    peak = std::max(peak, *std::max_element(image.values.begin(), image.values.end()));
+  return static_cast<double>(peak);
+}
+
+/// Of the print: as many turns as were shown, as frames that are shown once take, or as its exposure.
+double seconds_of(const Options& options, const model::Printer& printer, const model::StackInfo& info,
+                  double shown_turns) {
+  if (options.diffusion_time_s || printer.resin.diffusion_mm2_s == 0) return options.diffusion_time_s.value_or(0);
+  if (!options.shown.empty()) return model::seconds_of(printer.stage, shown_turns);
+  const auto known = options.full_scale ? options.full_scale : model::full_scale(info.extra);
+  const double peak = known ? *known : peak_of(options.inputs.front(), info, printer);
+  const auto exposure = session::exposure_of(info, printer, peak, {.full_scale = options.full_scale});
+  return model::seconds_of(printer.stage, exposure.turns);
 }
 
 }  // namespace
@@ -140,7 +156,11 @@ Exposed expose(Light& light, const model::StackInfo& info, const Options& option
 
   Exposed exposed;
   exposed.shown_turns = light.turns();
-  exposed.blur_mm = blur_mm(options, printer, info, exposed.shown_turns);
+  if (!options.no_blur) {
+    exposed.seconds = seconds_of(options, printer, info, exposed.shown_turns);
+    model::warn_of_diffusion(printer.resin, exposed.seconds);
+    exposed.blur_mm = model::spread_mm(printer.resin, exposed.seconds);
+  }
   Blurred blurred(exposed.blur_mm / place.grid.voxel_mm, sink);
   exposed.climbs = simulation.climbs();
   require_memory(

@@ -22,6 +22,7 @@ struct Exposed {
   light::LightSeen light;
   double shown_turns = 0;  // mean over the stage angles, with --shown
   bool climbs = false;     // rays that climb were followed
+  double seconds = 0;      // during which the dose diffuses; 0 where it does not
   double blur_mm = 0;      // standard deviation of the blur by beam and resin; 0 if neglected
   score::TurnDoses doses;
   model::DoseMetrics metrics;                    // of part and void, with a target

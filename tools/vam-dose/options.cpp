@@ -41,7 +41,7 @@ void declare_beam(cli::App& app, Options& options) {
              "Time in which the light arrives, and the dose diffuses.")
       .only_with({"resin.diffusion_mm2_s"})
       .excludes({"--no-blur"});
-  app.default_is("the duration of stage.turns turns");
+  app.default_is("the duration of the exposure");
   app.flag("--exposure-plan", options.exposure_plan,
            "Determine the number of whole turns and the fraction of full intensity that put the critical dose in the "
            "middle half of the process window, and write the dose of that exposure.")

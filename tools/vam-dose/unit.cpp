@@ -2,6 +2,7 @@
 #include "vam-dose/unit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -47,6 +48,11 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
   if (unit.absolute) unit.turn = *per_radian / (options.full_scale ? 1.0 : peak);
   if (options.exposure_plan) {
     unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);
+    if (exposed.seconds > 0 && std::abs(exposed.seconds - unit.plan->seconds) > 0.01 * unit.plan->seconds) {
+      warn("exposure: planned for the dose that diffuses for " + format_number(exposed.seconds, 4) + " s, it takes " +
+           format_number(unit.plan->seconds, 4) + " s; --diffusion-time " + format_number(unit.plan->seconds, 4) +
+           " plans for that");
+    }
     unit.print_turns = unit.plan->turns;
     unit.full_turns = unit.showings = unit.plan->turns * unit.plan->multiplier;
   } else if (!options.shown.empty()) {

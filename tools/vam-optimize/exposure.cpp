@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-optimize/exposure.hpp"
 
+#include <cmath>
+
+#include "base/log/log.hpp"
+#include "base/text/text.hpp"
+#include "model/dose/dose_spread.hpp"
 #include "optics/projector_frames.hpp"
+#include "optimize/run/shown.hpp"
 #include "resin/absolute_dose.hpp"
-#include "score/exposure.hpp"
 
 namespace vam::optimize_tool {
 
 std::optional<double> fixed_threshold(const Options& options) {
   if (options.delivered.empty()) return std::nullopt;
   return options.demands.window.threshold();
-}
-
-double aimed_dose(const model::DoseMetrics& doses, const Options& options) {
-  return fixed_threshold(options).value_or(score::aimed_dose(doses, options.demands.window.threshold()));
 }
 
 std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, double peak,
@@ -34,6 +35,32 @@ std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, 
 bool states_exposure(const model::StackInfo& info, const model::Printer& printer, const Options& options) {
   return options.slices.empty() && !(options.turns && !options.delivered.empty()) && model::repeat(info.poses) &&
          resin::dose_per_radian_mj_cm3(printer).has_value();
+}
+
+Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
+                       const session::Scene& scene, const model::StackInfo& info, const Options& options,
+                       optimize::VolumeOutcome& outcome) {
+  const model::Resin& resin = scene.printer.resin;
+  const double compensated = session::diffusion_s(scene, options);
+  const auto aimed = [&](const model::DoseMetrics& doses) {
+    return fixed_threshold(options).value_or(score::aimed_dose(doses, options.demands.window.threshold()));
+  };
+  if (options.bits) optimize::judge_shown(task, light, frames, aimed, outcome);
+  Printing print;
+  const auto seconds_of = [&](const optimize::VolumeOutcome& seen) {
+    print.plan = exposure_of(seen.metrics, seen.peak_intensity, scene.printer, info, options);
+    return print.plan && states_exposure(info, scene.printer, options) ? print.plan->seconds : compensated;
+  };
+  const auto blur_px = [&](double seconds) { return session::blur_px(resin, seconds, scene, options); };
+  print.seconds = optimize::judge_exposed(task, light, frames, aimed, seconds_of, blur_px, outcome);
+  if (!options.blur || resin.diffusion_mm2_s == 0) return print;
+  model::warn_of_diffusion(resin, print.seconds);
+  if (std::abs(print.seconds - compensated) > 0.01 * print.seconds) {
+    warn("the light compensates for the diffusion of " + format_number(compensated, 4) + " s, and its print takes " +
+         format_number(print.seconds, 4) + " s; optimize.diffusion_time_s=" + format_number(print.seconds, 4) +
+         " compensates for that");
+  }
+  return print;
 }
 
 }  // namespace vam::optimize_tool

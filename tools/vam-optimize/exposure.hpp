@@ -3,11 +3,15 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
+#include "base/image.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
+#include "optimize/run/volume.hpp"
 #include "score/exposure.hpp"
+#include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
@@ -18,14 +22,23 @@ namespace vam::optimize_tool {
                                                              const model::Printer& printer,
                                                              const model::StackInfo& info, const Options& options);
 
+struct Printing {
+  std::optional<score::ExposurePlan> plan;
+  double seconds = 0;  // during which the dose diffuses
+};
+
+/// Makes the figures of `outcome` those of the frames in grey levels, of --bits, and of the exposure that is planned
+/// for them, which its diffusion decides; warns where the light compensates for another diffusion.
+[[nodiscard]] Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light,
+                                     std::span<const Image> frames, const session::Scene& scene,
+                                     const model::StackInfo& info, const Options& options,
+                                     optimize::VolumeOutcome& outcome);
+
 /// Whether the stack states its exposure: not a piece, as the plan is one of the whole part, nor light whose exposure
 /// was given with what it completes.
 [[nodiscard]] bool states_exposure(const model::StackInfo& info, const model::Printer& printer, const Options& options);
 
 /// The dose that sets the resin where no exposure can put it elsewhere: what completes a dose has a scale.
 [[nodiscard]] std::optional<double> fixed_threshold(const Options& options);
-
-/// The dose that sets the resin in that exposure, in the unit of the threshold.
-[[nodiscard]] double aimed_dose(const model::DoseMetrics& doses, const Options& options);
 
 }  // namespace vam::optimize_tool

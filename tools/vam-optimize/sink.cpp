@@ -15,7 +15,7 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
 }
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
-    : keep_(options.printer_tolerances || options.bits),
+    : keep_(options.printer_tolerances || options.bits || printer.resin.diffusion_mm2_s > 0),
       bits_(options.bits),
       full_scale_(options.full_scale),
       out_(options.output, info, options.stack) {

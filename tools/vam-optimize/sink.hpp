@@ -16,8 +16,8 @@ namespace vam::optimize_tool {
 /// The projector's grey levels, through its response. Throws Error when the response cannot be read.
 [[nodiscard]] resin::GreyLevels grey_levels(const model::Printer& printer, int bits);
 
-/// Into the stack, quantised to the grey levels of the projector on request. With --robust and --bits all is kept to be
-/// judged.
+/// Into the stack, quantised to the grey levels of the projector on request. What is judged again is kept: with
+/// --robust, --bits, and where the dose diffuses.
 class Sink {
  public:
   Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);

@@ -104,7 +104,7 @@ optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVo
   task.limits = options.limits;
   task.limit = limit(scene, options);
   task.raising = options.raising;
-  task.blur_px = session::blur_px(scene, options);
+  task.blur_px = session::blur_px(scene.printer.resin, session::diffusion_s(scene, options), scene, options);
   task.watch = !options.trace.empty();
   task.make = [&](double max_intensity) {
     optimize::MethodOptions how = options.how;
@@ -121,13 +121,13 @@ optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVo
   return task;
 }
 
-optimize::Trial make_trial(const session::Scene& scene, const Options& options) {
+optimize::Trial make_trial(const session::Scene& scene, double seconds, const Options& options) {
   optimize::Trial trial;
   trial.printer = scene.printer;
   trial.tolerances = *options.printer_tolerances;
   trial.setup = [&](const model::Printer& printer) { return session::light_of(printer, scene, options); };
   trial.grid = scene.grid;
-  trial.seconds = session::diffusion_s(scene, options);
+  trial.seconds = seconds;
   trial.blur = options.blur;
   trial.threshold = options.demands.window.threshold();
   trial.printers = options.yield_printers;

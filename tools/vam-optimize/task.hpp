@@ -34,7 +34,8 @@ void require_independent(const optimize::VolumeTask& task, const light::Operator
 [[nodiscard]] optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVolumes& in,
                                              const Options& options);
 
-/// The printers to judge the frames with, of --robust. Scene and options must outlive it.
-[[nodiscard]] optimize::Trial make_trial(const session::Scene& scene, const Options& options);
+/// The printers to judge the frames with, of --robust, whose doses diffuse for so long. Scene and options must outlive
+/// it.
+[[nodiscard]] optimize::Trial make_trial(const session::Scene& scene, double seconds, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -8,6 +8,7 @@
 
 #include "base/text/text.hpp"
 #include "model/coarser.hpp"
+#include "model/dose/dose_spread.hpp"
 #include "model/dose/outside.hpp"
 #include "model/light_width.hpp"
 #include "optics/writable_radius.hpp"
@@ -56,15 +57,26 @@ Level level_of(const EstimateTask& task, int coarseness) {
   return level;
 }
 
-optimize::Preview preview_of(const Level& level, const model::Projector& projector) {
+std::optional<score::ExposurePlan> exposure_of(const optimize::VolumeOutcome& outcome, const model::Printer& printer) {
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
+  if (!per_radian || outcome.peak_intensity <= 0 || score::window_middle(outcome.metrics) <= 0) return std::nullopt;
+  return score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,
+                              optimize::DoseWindow{}.threshold());
+}
+
+optimize::Preview preview_of(const Level& level, const model::Printer& printer) {
   optimize::PreviewTask task;
+  task.seconds = [&](const optimize::VolumeOutcome& outcome) {
+    const auto exposure = exposure_of(outcome, printer);
+    return exposure ? exposure->seconds : model::seconds_of(printer.stage, printer.stage.turns);
+  };
   task.printer = level.printer;
   task.part = model::covered_box(level.part.volume, model::coverage_rounding);
   task.radius_mm = optics::judged_radius_mm(task.printer, level.part.content.radius_mm);
   task.target = level.part.volume;
   task.tolerances = model::parse_tolerances(deviations);
   task.tolerances[static_cast<std::size_t>(model::ToleranceKind::axis)] *=  // of the printer's pixels
-      projector.pixel_mm / level.printer.projector.pixel_mm;
+      printer.projector.pixel_mm / level.printer.projector.pixel_mm;
   return optimize::preview(task);
 }
 
@@ -124,14 +136,6 @@ std::optional<WrongHeights> wrong_of(const optimize::Preview& preview, double st
   return WrongHeights{mm(first), mm(last), mm(std::max_element(wrong.begin(), wrong.end()))};
 }
 
-void expose(Estimate& estimate, const optimize::VolumeOutcome& outcome, const model::Printer& printer) {
-  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
-  estimate.resin_known = per_radian.has_value();
-  if (!per_radian || outcome.peak_intensity <= 0 || score::window_middle(outcome.metrics) <= 0) return;
-  estimate.exposure = score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,
-                                           optimize::DoseWindow{}.threshold());
-}
-
 std::string unknown(const Estimate& made, const Level& level, const EstimateTask& task, const std::string& why) {
   return "unknown at " + format_number(made.voxel_mm, 3) + " mm" + why + "; " + told_by(level, made.verdict, task) +
          " tells";
@@ -139,7 +143,7 @@ std::string unknown(const Estimate& made, const Level& level, const EstimateTask
 
 /// Where the print of these voxels does not tell, or not within dose_margin, the verdict is left open.
 void judge(Estimate& made, const Level& level, const EstimateTask& task) {
-  const optimize::Preview preview = preview_of(level, task.printer.projector);
+  const optimize::Preview preview = preview_of(level, task.printer);
   made.angles = optimize::PreviewTask{}.angles;
   made.iterations = preview.outcome.iterations;
   made.verdict = verdict_of(level, task, preview, preview.outcome);
@@ -152,7 +156,11 @@ void judge(Estimate& made, const Level& level, const EstimateTask& task) {
     made.verdict = leave_open(made.verdict, unknown(made, level, task, dose_decides ? decisive : ""));
   made.wrong = wrong_of(preview, task.stretch_z);
   made.trials = preview.trials;
-  expose(made, preview.outcome, task.printer);
+  made.resin_known = resin::dose_per_radian_mj_cm3(task.printer).has_value();
+  made.exposure = exposure_of(preview.outcome, task.printer);
+  model::warn_of_diffusion(
+      task.printer.resin,
+      model::seconds_of(task.printer.stage, made.exposure ? made.exposure->turns : task.printer.stage.turns));
 }
 
 Estimate estimate_on(const Level& level, const EstimateTask& task) {

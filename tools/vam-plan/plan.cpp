@@ -9,7 +9,6 @@
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
 #include "io/stream/input_name.hpp"
-#include "model/dose/dose_spread.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
 #include "session/surface.hpp"
@@ -145,7 +144,6 @@ Plan plan(const Options& options, const model::Printer& printer) {
   made.stretch_z = 1 / model::vertical_magnification(printer);
   add_walls(made, part);
   if (options.no_preview) return made;
-  model::warn_of_diffusion(printer.resin, model::seconds_of(printer.stage, printer.stage.turns));
   made.estimate = estimated({.part = part,
                              .printer = printer,
                              .grid = made.grid,

@@ -103,7 +103,7 @@ const std::vector<PrinterField> fields{
     {"optimize", "absorption_model", at<&Printer::optimize, &OptimizeSettings::absorption_model>, "absorption by the resin: exact, disc (of parallel beams: by the dose of a uniform disc) or none", 0, 0, false, {"exact", "disc", "none"}},
     {"optimize", "line_integrals", at<&Printer::optimize, &OptimizeSettings::line_integrals>, "sums along parallel beams in clear resin, without --certify: footprints, fourier or auto (the faster)", 0, 0, false, {"footprints", "fourier", "auto"}},
     {"optimize", "blur", at<&Printer::optimize, &OptimizeSettings::blur>, "compensate for point spread and diffusion"},
-    {"optimize", "diffusion_time_s", at<&Printer::optimize, &OptimizeSettings::diffusion_time_s>, "time in which the light arrives; default: the duration of stage.turns turns", 0, 1e300},
+    {"optimize", "diffusion_time_s", at<&Printer::optimize, &OptimizeSettings::diffusion_time_s>, "diffusion that is compensated, by the time in which the light arrives; default: the duration of stage.turns turns", 0, 1e300},
     {"optimize", "full_scale", at<&Printer::optimize, &OptimizeSettings::full_scale>, "--bits: intensity at full grey; default: the largest of all projections", 0, 1e300, true},
     {"optimize", "dither", at<&Printer::optimize, &OptimizeSettings::dither>, "--bits: carry the rounding error over to neighbouring columns and angles"},
     {"optimize", "yield_printers", at<&Printer::optimize, &OptimizeSettings::yield_printers>, "--robust: number of random printers for the yield", 0, 100000},

@@ -12,7 +12,6 @@
 #include "model/dose/dose_spread.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/methods/method.hpp"
-#include "optimize/run/shown.hpp"
 #include "optimize/run/slice_figures.hpp"
 
 namespace vam::optimize {
@@ -52,8 +51,10 @@ Preview preview(const PreviewTask& wanted) {
   task.count_pieces = true;
   task.limit.of_even = usual_of_even;
   task.raising = usual_raising;
-  const double seconds = model::seconds_of(wanted.printer.stage, wanted.printer.stage.turns);
-  task.blur_px = model::spread_mm(wanted.printer.resin, seconds) / lit.grid.voxel_mm;
+  const auto blur_px = [&](double seconds) {
+    return model::spread_mm(wanted.printer.resin, seconds) / lit.grid.voxel_mm;
+  };
+  task.blur_px = blur_px(model::seconds_of(wanted.printer.stage, wanted.printer.stage.turns));
   task.make = [](double max_intensity) {
     MethodOptions how;
     how.max_intensity = max_intensity;
@@ -71,6 +72,8 @@ Preview preview(const PreviewTask& wanted) {
   const auto light = light::make_operator(setup);
   Preview made{lit.grid, optimise(task, *light), {}, {}};
   const double threshold = task.demands.window.threshold();
+  const auto aimed = [&](const model::DoseMetrics&) { return threshold; };
+  const double seconds = judge_exposed(task, *light, frames, aimed, wanted.seconds, blur_px, made.outcome);
   for (const int more : {0, 1}) {
     const double dose = (1 + (more == 1 ? verdict::dose_margin : -verdict::dose_margin)) * threshold;
     judge_shown(

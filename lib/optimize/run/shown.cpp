@@ -80,4 +80,17 @@ void judge_shown(const VolumeTask& task, const light::Operator& light, std::span
   outcome.peak_intensity = seen.max;
 }
 
+double judge_exposed(VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
+                     const AimedDose& aimed, const PrintSeconds& seconds, const std::function<double(double)>& blur_px,
+                     VolumeOutcome& outcome) {
+  constexpr int most = 8;  // more turns blur more, which may take more turns
+  double taken = seconds(outcome);
+  for (int times = 0; times < most && blur_px(taken) != task.blur_px; ++times) {
+    task.blur_px = blur_px(taken);
+    judge_shown(task, light, frames, aimed, outcome);
+    taken = seconds(outcome);
+  }
+  return taken;
+}
+
 }  // namespace vam::optimize

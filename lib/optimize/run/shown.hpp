@@ -13,10 +13,19 @@ namespace vam::optimize {
 /// The dose at which the exposure that is planned for these doses sets the resin.
 using AimedDose = std::function<double(const model::DoseMetrics& doses)>;
 
+/// Seconds that the print of a light with these figures takes.
+using PrintSeconds = std::function<double(const VolumeOutcome& outcome)>;
+
 /// Makes the figures, demands and intensities of `outcome` those of `frames`: one image a slice, columns x angles,
 /// fluence; slices without one are dark. What gels outside the part's box is counted at the dose aimed at. The
 /// surface's deviation is not known then. Memory: as a pass of optimise().
 void judge_shown(const VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
                  const AimedDose& aimed, VolumeOutcome& outcome);
+
+/// While the print takes another time than the dose has diffused for: makes the blur of `task` that of that time, and
+/// judges `frames` again. Returns that time.
+double judge_exposed(VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
+                     const AimedDose& aimed, const PrintSeconds& seconds, const std::function<double(double)>& blur_px,
+                     VolumeOutcome& outcome);
 
 }  // namespace vam::optimize

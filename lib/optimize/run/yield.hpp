@@ -17,7 +17,8 @@
 
 namespace vam::optimize {
 
-/// What is judged: frames for the printer as set, one image a slice, in fluence; doses at grid and circle of the target.
+/// What is judged: frames for the printer as set, one image a slice, in fluence; doses at grid and circle of the
+/// target.
 struct Trial {
   model::Printer printer;
   model::Tolerances tolerances{};
