@@ -43,7 +43,7 @@ void run(const cli::App& app, Options& options) {
   if (!options.full_scale && !planned_anew) options.full_scale = model::full_scale(in.info().extra);
   const model::StackInfo info = posed(app, in.info(), options);
   const dose_tool::Place place = place_of(options, printer, info);
-  io::SparseVolume volume = empty_volume(app, place, printer, info);
+  io::SparseVolume volume = empty_volume(app, place, printer, info, options);
   dose_tool::Light light(in, info, options, printer);
   const dose_tool::Exposed exposed = expose(light, info, options, printer, place, volume);
 

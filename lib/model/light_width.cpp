@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* hold_name = "vam:hold_deg";
 constexpr const char* half_angle_name = "vam:half_angle_deg";
+constexpr const char* across_name = "vam:half_angle_across_only";
 
 /// Mean square of the distance of the projections from the place `at`, in steps, for which a frame of `span` shows
 /// them.
@@ -39,8 +40,9 @@ double hold_deg(const Printer& printer, double step_deg) {
 
 }  // namespace
 
-LightWidth light_width(const Printer& printer, double step_deg) {
-  return {hold_deg(printer, std::abs(step_deg)), printer.projector.half_angle_deg.value_or(0)};
+LightWidth light_width(const Printer& printer, double step_deg, bool across_only) {
+  const double half_angle_deg = printer.projector.half_angle_deg.value_or(0);
+  return {hold_deg(printer, std::abs(step_deg)), half_angle_deg, across_only && half_angle_deg > 0};
 }
 
 void state_width(Metadata& metadata, const LightWidth& width) {
@@ -50,15 +52,18 @@ void state_width(Metadata& metadata, const LightWidth& width) {
   };
   state(hold_name, width.hold_deg);
   state(half_angle_name, width.half_angle_deg);
+  state(across_name, width.across_only ? 1 : 0);
 }
 
 LightWidth stated_width(const Metadata& metadata) {
-  return {stated_number(metadata, hold_name).value_or(0), stated_number(metadata, half_angle_name).value_or(0)};
+  return {stated_number(metadata, hold_name).value_or(0), stated_number(metadata, half_angle_name).value_or(0),
+          metadata.contains(across_name)};
 }
 
 std::string words(const LightWidth& width) {
   std::string text;
   if (width.half_angle_deg > 0) text = "light of half angle " + format_number(width.half_angle_deg, 3) + " deg";
+  if (width.across_only) text += " across only";
   if (width.hold_deg > 0) {
     text += (text.empty() ? "each frame over " : ", each frame over ") + format_number(width.hold_deg, 3) +
             " deg of the stage";

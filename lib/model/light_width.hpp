@@ -12,12 +12,13 @@ namespace vam::model {
 struct LightWidth {
   double hold_deg = 0;        // edge of the box with the variance of the stage angles at which a frame is shown
   double half_angle_deg = 0;  // of the round cone of light of a pixel, in air
+  bool across_only = false;   // that cone is neglected along z
 
   bool operator==(const LightWidth&) const = default;
 };
 
 /// Of projections that are `step_deg` apart.
-[[nodiscard]] LightWidth light_width(const Printer& printer, double step_deg);
+[[nodiscard]] LightWidth light_width(const Printer& printer, double step_deg, bool across_only = false);
 
 /// States it; a width of 0 is not.
 void state_width(Metadata& metadata, const LightWidth& width);

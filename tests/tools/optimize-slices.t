@@ -18,8 +18,10 @@ optimised blurred 3 --set projector.telecentric=true --angles 24 --method apg --
 vam-optimize part.vdb --geometry parallel --angles 24 --iterations 2 --slices 0:3 -o low.exr --report low.json 2>/dev/null
 is 'the report is that of the piece' "$(json low.json distinct_slices)" 3
 
-fails 64 '^vam-optimize: --slices: rays that climb couple all slices, and light of a piece differs from that of the whole part by a tenth of the peak or more' \
+fails 64 '^vam-optimize: --slices: rays that climb, or spread along z, couple all slices, and light of a piece differs from that of the whole part by a tenth of the peak or more' \
   vam-optimize part.vdb --slices 0:9 -o x.exr
+fails 64 'level rays .projector.telecentric without projector.half_angle_deg' \
+  vam-optimize part.vdb --set projector.telecentric=true --set projector.half_angle_deg=0.3 --slices 0:9 -o x.exr
 for option in '--budget 3' '--bits 8' '--robust lamp=3%' '--certify x.vdb' '--tradeoff x.csv'; do
   misuse --slices "${option%% *}" \
     vam-optimize part.vdb --slices 0:9 $option

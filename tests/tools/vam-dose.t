@@ -63,6 +63,8 @@ holds "every width takes some of the process window" \
   "$(awk 'NR == 1 { first = $1 } NR > 1 && !($1 < first) { bad = 1 } END { print bad + 0 }' widths) == 0"
 is "the verdict states the width" "$(sed -n 4p widths | cut -d' ' -f2-)" \
   "light of half angle 1.5 deg, each frame over 1.54 deg of the stage"
+vam-dose frames.exr --in-plane --like part.vdb --set projector.half_angle_deg=1.5 | vam-score --target part.vdb --report wide.json >/dev/null
+is "but not what is left out" "$(json wide.json verdict | sed 's/.*; by //')" "light of half angle 1.5 deg across only"
 holds "a virtual projector's light has it, too" \
   "$(vam-dose virtual.exr --like part.vdb --set stage.motion=held | vam-score --target part.vdb | awk '/^pw/ { print $2 }') != $(vam-score parallel.vdb --target part.vdb | awk '/^pw/ { print $2 }')"
 fails 64 'half_angle_deg' vam-dose frames.exr --like part.vdb --set projector.half_angle_deg=-1 -o out.vdb

@@ -72,12 +72,13 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
 }
 
 io::SparseVolume empty_volume(const cli::App& app, const Place& place, const model::Printer& printer,
-                              const model::StackInfo& info) {
+                              const model::StackInfo& info, const Options& options) {
   io::SparseVolume volume("dose", place.grid);
   volume.metadata = info.extra;
   if (place.like != nullptr) volume.metadata.insert(place.like->metadata.begin(), place.like->metadata.end());
   volume.metadata["vam:printer"] = io::printer_settings(printer);
-  model::state_width(volume.metadata, model::light_width(printer, info.angle_step_deg));
+  model::state_width(volume.metadata, model::light_width(printer, info.angle_step_deg,
+                                                         options.in_plane || info.space != model::Space::projector));
   volume.history = info.history;
   volume.history.push_back(app.history());
   return volume;

@@ -32,6 +32,6 @@ struct Place {
 
 /// The volume 'dose', with the histories of light and part.
 [[nodiscard]] io::SparseVolume empty_volume(const cli::App& app, const Place& place, const model::Printer& printer,
-                                            const model::StackInfo& info);
+                                            const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::dose_tool

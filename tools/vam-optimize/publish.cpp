@@ -127,8 +127,8 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict::grey_words(outcome.metrics) +
          "; vam-score --grey-target judges the dose");
   } else {
-    verdict::GivenPrint print =
-        outcome.print(scene.grid, model::stretch_z(target.metadata), model::light_width(printer, info.angle_step_deg));
+    verdict::GivenPrint print = outcome.print(scene.grid, model::stretch_z(target.metadata),
+                                              model::light_width(printer, info.angle_step_deg, !options.in_vial()));
     if (plan) print.seconds = plan->seconds;
     print.threshold = fixed_threshold(options);
     const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);

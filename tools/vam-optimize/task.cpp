@@ -79,9 +79,10 @@ void require_independent(const optimize::VolumeTask& task, const light::Operator
   throw Error{
       Fault::usage,
       light.couples_slices()
-          ? "--slices: rays that climb couple all slices, and light of a piece differs from that of the whole part "
-            "by a tenth of the peak or more, however many slices around it are known; omit it, or use level rays "
-            "(projector.telecentric, --geometry parallel)"
+          ? "--slices: rays that climb, or spread along z, couple all slices, and light of a piece differs from that "
+            "of "
+            "the whole part by a tenth of the peak or more, however many slices around it are known; omit it, or use "
+            "level rays (projector.telecentric without projector.half_angle_deg, or --geometry parallel)"
           : "--slices: the dose is blurred farther than 16 slices, so all are optimised together; omit it"};
 }
 

@@ -164,12 +164,12 @@ void TileLight::find_angle(const RayNodes& nodes, AngleTaps& to) {
   to.spread = spread_of(to);
   const int spread = rays_.spread().half_width(to.spread);
   const double across = static_cast<double>(to.taps.last_row) - to.taps.first_row + 2 * spread;
-  if (!(across <
-        most_tile_rows - 2 -
-            (spread > 0 ? lanes : 0))) {  // VialRays bounds the slopes; slices far above or below the lens bend most
-    throw Error{Fault::data, "projector: " + format_number(across, 3) + " rows of its images cross " +
-                                 std::to_string(chunk_.width()) + " slices, and " + std::to_string(most_tile_rows) +
-                                 " can; the slices are too far from the height of the lens (projector.axis_row)"};
+  if (!(across < most_tile_rows - 2 - (spread > 0 ? lanes : 0))) {  // VialRays bounds the slopes
+    throw Error{Fault::data,
+                "projector: " + format_number(across, 3) + " rows of its images cross " +
+                    std::to_string(chunk_.width()) + " slices, and " + std::to_string(most_tile_rows) + " can; " +
+                    (4 * spread > across ? "their light spreads too far (projector.half_angle_deg, projector.focus_mm)"
+                                         : "the slices are too far from the height of the lens (projector.axis_row)")};
   }
   to.taps.first_row = std::floor(to.taps.first_row);
   to.first = spread;
