@@ -30,15 +30,18 @@ double square_away(double at, double span) {
 double hold_deg(const Printer& printer, double step_deg) {
   if (printer.stage.motion == "stepped") return 0;
   if (printer.stage.motion == "held") return step_deg;
-  constexpr double most = 1e5;  // frames
-  const double shown_deg = printer.stage.speed_deg_s / printer.projector.fps;
-  const double frames = std::clamp(std::round(360 / shown_deg), 1.0, most);
-  double square = 0;
-  for (double n = 0; n < frames; ++n) square += square_away(n * shown_deg / step_deg, shown_deg / step_deg) / frames;
-  return std::sqrt(shown_deg * shown_deg + 12 * square * step_deg * step_deg);
+  return interpolated_hold_deg(printer.stage.speed_deg_s / printer.projector.fps, step_deg);
 }
 
 }  // namespace
+
+double interpolated_hold_deg(double frame_deg, double step_deg) {
+  constexpr double most = 1e5;  // frames
+  const double frames = std::clamp(std::round(360 / frame_deg), 1.0, most);
+  double square = 0;
+  for (double n = 0; n < frames; ++n) square += square_away(n * frame_deg / step_deg, frame_deg / step_deg) / frames;
+  return std::sqrt(frame_deg * frame_deg + 12 * square * step_deg * step_deg);
+}
 
 LightWidth light_width(const Printer& printer, double step_deg, bool across_only) {
   const double half_angle_deg = printer.projector.half_angle_deg.value_or(0);

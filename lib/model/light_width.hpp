@@ -20,6 +20,9 @@ struct LightWidth {
 /// Of projections that are `step_deg` apart.
 [[nodiscard]] LightWidth light_width(const Printer& printer, double step_deg, bool across_only = false);
 
+/// The same for projections of which a video, or a screen, shows frames that are `frame_deg` apart.
+[[nodiscard]] double interpolated_hold_deg(double frame_deg, double step_deg);
+
 /// States it; a width of 0 is not.
 void state_width(Metadata& metadata, const LightWidth& width);
 [[nodiscard]] LightWidth stated_width(const Metadata& metadata);

@@ -76,7 +76,9 @@ fails 65 'vial.radius_mm 7, now 9' vam-project light.exr --printer else/printer.
 rm else/printer.toml
 (cd else && vam-project ../light.exr --print-printer -o own.toml)
 is 'its printer, but no device of its' "$(grep -c '^radius_mm = 7' else/own.toml) $(grep -c '^device = "sim:"' else/own.toml)" '1 0'
-fails 65 'half_angle_deg 0, now 1.*stage.motion stepped, now held' vam-project light.exr --set projector.half_angle_deg=1 --set stage.motion=held -o x.mkv
+fails 65 'half_angle_deg 0, now 1.*stage.motion [a-z]*, now interpolated' vam-project light.exr --set projector.half_angle_deg=1 --set stage.motion=interpolated -o x.mkv
+vam-project light.exr --verbose -o x.mkv 2>said
+ok 'frames over other stage angles than were judged are told' grep -qx 'vam-project: shows each frame of light.exr over 7.94 deg of the stage, which was judged with [06] deg; stage.motion=interpolated judges by what is shown' said
 
 # Another exposure than the planned one.
 fails 65 'light.exr: 1 turn gives 0[.][0-9]* of the planned dose, which .* turns reach; .*--accept-dose' vam-project light.exr --turns 1 -o x.mkv

@@ -24,6 +24,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   const double turns = exposure.turns;
   const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
 
+  tell_width(options.input, reader.info(), schedule.step_deg);
   const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
   io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
                              projector.bits, options.stack};

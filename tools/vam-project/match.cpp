@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-project/match.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "base/error.hpp"
@@ -10,6 +12,7 @@
 #include "io/settings/printer_match.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
+#include "model/light_width.hpp"
 
 namespace vam::project {
 
@@ -38,6 +41,19 @@ std::vector<std::string> require_printer(const Options& options, const model::St
   }
   warn(what + "; accepted");
   return differences;
+}
+
+void tell_width(const std::string& input, const model::StackInfo& info, double frame_deg) {
+  constexpr double alike = 0.1;  // of the wider one
+  const auto stated = info.extra.find("vam:printer");
+  if (stated == info.extra.end() || info.space != model::Space::projector) return;
+  const double step_deg = std::abs(info.angle_step_deg);
+  const double judged = model::light_width(io::parse_settings(stated->second, "vam:printer"), step_deg).hold_deg;
+  const double shown = model::interpolated_hold_deg(frame_deg, step_deg);
+  if (std::abs(shown - judged) <= alike * std::max(shown, judged)) return;
+  note("vam-project: shows each frame of " + io::input_name(input) + " over " + format_number(shown, 3) +
+       " deg of the stage, which was judged with " + format_number(judged, 3) + " deg; stage.motion=" +
+       (std::abs(frame_deg / step_deg - 1) < 1e-6 ? "held" : "interpolated") + " judges by what is shown");
 }
 
 void require_whole(const std::string& input, const model::StackInfo& info) {

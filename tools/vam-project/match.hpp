@@ -17,6 +17,10 @@ namespace vam::project {
 std::vector<std::string> require_printer(const Options& options, const model::StackInfo& info,
                                          const model::Printer& printer);
 
+/// Says where frames that are `frame_deg` apart show the projections over other stage angles than they were judged
+/// with.
+void tell_width(const std::string& input, const model::StackInfo& info, double frame_deg);
+
 /// Throws Fault::data for a piece of a stack, whose other slices would stay dark.
 void require_whole(const std::string& input, const model::StackInfo& info);
 

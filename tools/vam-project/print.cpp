@@ -108,6 +108,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
   const Dithering dithering = dithering_of(options, frames, turns);
   const auto schedule = optics::frame_schedule(frames, 360, std::max(1, dithering.turns));
+  tell_width(options.input, reader.info(), schedule.step_deg);
   const double full_scale = exposure.full_scale;
   const auto scale = static_cast<float>(1 / full_scale);
   const auto renew = [&](const std::string& path, const std::atomic<bool>& ended) {
