@@ -156,6 +156,9 @@ printer='--set projector.columns=160 --set projector.rows=120 --set projector.pi
 vam-plan $gyroid $printer >planned
 for motion in stepped held; do vam-plan $gyroid $printer --set stage.motion=$motion --report $motion.json >$motion; done
 ok 'frames are held by the angles of the print, not of the estimate' grep -q '^verdict .*; by each frame over 1 deg of the stage' held
+is 'a stage that stands asks for no more angles' "$(grep -c '^angles ' stepped)" 0
+ok 'one that turns for those that hardly blur' grep -qE '^angles  *--angles (120|180|240|360|720): process window [-+][0-9.]* with 120, .* with 720, as the stage turns' held
+holds 'of which more are no worse' "$(json held.json pw_by_angles.120) < $(json held.json pw_by_angles.360) && $(json held.json pw_by_angles.360) < $(json held.json pw_by_angles.720) + 0.002"
 holds 'which costs little' "($(json held.json pw) - $(json stepped.json pw)) ^ 2 < 0.002 ^ 2"
 vam-slice $gyroid $printer -o gyroid.vdb
 vam-optimize gyroid.vdb $printer -o gyroid.exr 2>.log/gyroid

@@ -156,6 +156,7 @@ void judge(Estimate& made, const Level& level, const EstimateTask& task) {
     made.verdict = leave_open(made.verdict, unknown(made, level, task, dose_decides ? decisive : ""));
   made.wrong = wrong_of(preview, task.stretch_z);
   made.trials = preview.trials;
+  made.by_angles = preview.by_angles;
   made.resin_known = resin::dose_per_radian_mj_cm3(task.printer).has_value();
   made.exposure = exposure_of(preview.outcome, task.printer);
   model::warn_of_diffusion(

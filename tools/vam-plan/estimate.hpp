@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/printer.hpp"
@@ -29,6 +30,7 @@ struct Estimate {
   std::vector<std::string> too_coarse;  // then: what voxels larger than those of the print do not resolve
   std::optional<WrongHeights> wrong;
   optimize::Trials trials;
+  std::vector<std::pair<int, double>> by_angles;  // optimize::Preview
   bool resin_known = false;
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
 

@@ -46,6 +46,22 @@ std::string deviation_name(std::size_t tolerance) {
 
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
 
+/// The fewest angles with hardly a smaller window than most of them.
+int angles_needed(const Estimate& estimate) {
+  constexpr double same = 0.01;  // of the largest dose
+  const auto& all = estimate.by_angles;
+  return std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.second > all.back().second - same; })
+      ->first;
+}
+
+std::string angles_words(const Estimate& estimate) {
+  std::string text = "--angles " + std::to_string(angles_needed(estimate)) + ": process window";
+  for (const auto& [angles, pw] : estimate.by_angles)
+    text += " " + signed_number(pw) + " with " + std::to_string(angles) +
+            (angles == estimate.by_angles.back().first ? "" : ",");
+  return text + ", as the stage turns while a frame is shown; computing takes as long as there are angles";
+}
+
 std::string duration_words(const Estimate& estimate) {
   if (!estimate.resin_known) return "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
   if (!estimate.exposure) return "not known: the part gets no light in the estimate";
@@ -66,6 +82,7 @@ std::string estimate_rows(const Estimate& estimate) {
   }
   for (const auto& single : estimate.trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
+  if (!estimate.by_angles.empty()) text += row("angles", angles_words(estimate));
   return text + row("duration", duration_words(estimate));
 }
 
@@ -84,6 +101,8 @@ void add_to(Json& json, const Estimate& estimate) {
     const std::string name(model::tolerance_table[single.tolerance].name);
     json["pw_deviating"][name] = worst_window(single);
   }
+  for (const auto& [angles, pw] : estimate.by_angles) json["pw_by_angles"][std::to_string(angles)] = pw;
+  if (!estimate.by_angles.empty()) json["angles_needed"] = angles_needed(estimate);
   if (estimate.exposure) score::add_to(json, *estimate.exposure);
 }
 

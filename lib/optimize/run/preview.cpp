@@ -60,17 +60,18 @@ Preview preview(const PreviewTask& wanted) {
     how.max_intensity = max_intensity;
     return method_entry(automatic_method).make(how);
   };
-  const auto setup_of = [&](const model::Printer& printer) {
+  const auto setup_for = [&](const model::Printer& printer, int print_angles) {
     auto setup = light::vial_setup(printer, lit.grid, wanted.angles, task.circle.radius * lit.grid.voxel_mm);
-    setup.hold_rad = light::hold_rad(printer, 2 * std::numbers::pi / wanted.print_angles);
+    setup.hold_rad = light::hold_rad(printer, 2 * std::numbers::pi / print_angles);
     return setup;
   };
+  const auto setup_of = [&](const model::Printer& printer) { return setup_for(printer, wanted.print_angles); };
   const light::VialSetup setup = setup_of(wanted.printer);
   task.around = [&](std::span<const Slab> inserts) { return light::make_operator(setup, inserts); };
   std::vector<Image> frames;
   task.write = [&](int, const Image& image) { frames.push_back(image); };
   const auto light = light::make_operator(setup);
-  Preview made{lit.grid, optimise(task, *light), {}, {}};
+  Preview made{lit.grid, optimise(task, *light), {}, {}, {}};
   const double threshold = task.demands.window.threshold();
   const auto aimed = [&](const model::DoseMetrics&) { return threshold; };
   const double seconds = judge_exposed(task, *light, frames, aimed, wanted.seconds, blur_px, made.outcome);
@@ -78,6 +79,12 @@ Preview preview(const PreviewTask& wanted) {
     const double dose = (1 + (more == 1 ? verdict::dose_margin : -verdict::dose_margin)) * threshold;
     judge_shown(
         task, *light, frames, [&](const model::DoseMetrics&) { return dose; }, made.beside[more]);
+  }
+  for (const int angles : {120, 180, 240, 360, 720}) {
+    if (setup.hold_rad == 0) break;
+    VolumeOutcome held = made.outcome;
+    judge_shown(task, *light::make_operator(setup_for(wanted.printer, angles)), frames, aimed, held);
+    made.by_angles.emplace_back(angles, held.metrics.pw);
   }
   Trial trial;
   trial.printer = wanted.printer;

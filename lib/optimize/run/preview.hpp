@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "model/grid.hpp"
 #include "model/printer.hpp"
@@ -32,6 +34,9 @@ struct Preview {
   /// of more iterations on voxels as large.
   std::array<VolumeOutcome, 2> beside;
   Trials trials;
+  /// Process windows of the same light in frames of prints of so many angles, each of which is shown while the stage
+  /// turns to the next; empty where it stands.
+  std::vector<std::pair<int, double>> by_angles;
 };
 
 /// Optimises by --method auto, without the coarser levels before it. Throws as optimise() and run_trials() do.
