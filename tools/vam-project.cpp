@@ -6,6 +6,7 @@
 #include "device/os/interrupt.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/frame_sink.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
@@ -37,7 +38,7 @@ void freeze(const Options& options, model::Printer printer) {
     const session::Exposure planned = session::exposure_of(reader.info(), printer, peak, {});
     if (planned.share) printer.stage.turns = ceil_int(planned.turns);
   }
-  project::write_frozen(options.freeze, printer);
+  io::write_text(options.freeze, io::printer_toml(io::frozen(printer)));
 }
 
 /// Of a projector's sinogram, where it can be read twice.

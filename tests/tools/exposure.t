@@ -80,6 +80,16 @@ fails 65 'half_angle_deg 0, now 1.*stage.motion [a-z]*, now interpolated' vam-pr
 vam-project light.exr --verbose -o x.mkv 2>said
 ok 'frames over other stage angles than were judged are told' grep -qx 'vam-project: shows each frame of light.exr over 7.94 deg of the stage, which was judged with [06] deg; stage.motion=interpolated judges by what is shown' said
 
+# So do its files.
+mkdir bench
+printf 'grey,intensity\n0,0\n128,10\n255,40\n' >bench/lamp.csv
+printf 'grey,intensity\n0,0\n255,40\n' >else/lamp.csv
+(cd bench && vam-project ../light.exr --set projector.response=lamp.csv -o curved.mkv && vam-convert curved.mkv --geometry vial -o home.exr)
+(cd else && vam-convert ../bench/curved.mkv --geometry vial -o away.exr)
+for place in bench/home else/away; do vam-dose $place.exr --like part.vdb -o curved.vdb --report $place.json; done
+is 'a response of that name elsewhere is another' "$(json else/away.json full_scale) $(json else/away.json part_dose_per_turn_mean_mj_cm3)" \
+  "$(json bench/home.json full_scale) $(json bench/home.json part_dose_per_turn_mean_mj_cm3)"
+
 # Another exposure than the planned one.
 fails 65 'light.exr: 1 turn gives 0[.][0-9]* of the planned dose, which .* turns reach; .*--accept-dose' vam-project light.exr --turns 1 -o x.mkv
 fails 65 'of the planned dose' vam-print light.exr --display null: --uncalibrated --turns 1 --run short

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
-#include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
 #include "io/stream/input_name.hpp"
-#include "io/stream/stream.hpp"
 #include "model/light_width.hpp"
 
 namespace vam::project {
@@ -61,14 +58,6 @@ void require_whole(const std::string& input, const model::StackInfo& info) {
   throw Error{Fault::data, io::input_name(input) + ": holds " + std::to_string(info.count) + " of " +
                                std::to_string(info.piece.of) + " slices (vam:piece " + model::piece_text(info.piece) +
                                "); join the pieces by vam-convert join"};
-}
-
-void write_frozen(const std::string& path, model::Printer printer) {
-  for (std::string* file : {&printer.projector.response, &printer.camera.flat}) {
-    if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
-  }
-  printer.calibration.folder.clear();
-  io::write_text(path, io::printer_toml(printer));
 }
 
 }  // namespace vam::project

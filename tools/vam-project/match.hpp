@@ -24,8 +24,4 @@ void tell_width(const std::string& input, const model::StackInfo& info, double f
 /// Throws Fault::data for a piece of a stack, whose other slices would stay dark.
 void require_whole(const std::string& input, const model::StackInfo& info);
 
-/// Writes the printer's settings as a print needs them, complete by themselves: the records in force are in them,
-/// files are named by their whole paths.
-void write_frozen(const std::string& path, model::Printer printer);
-
 }  // namespace vam::project

@@ -42,8 +42,12 @@ enum class Records { apply, ignore };
 /// Whether this setting, "resin.psf_mm", is there and neither 0, false nor empty. Throws Fault::bug for no setting.
 [[nodiscard]] bool has_setting(const model::Printer& printer, const std::string& name);
 
-/// What differs from the embedded default, in the form of --set: "projector.columns=1920 vial.radius_mm=12"; "default"
-/// where nothing does. For the metadata vam:printer.
+/// The settings as they count in every folder, complete by themselves: the records in force are in them, files are
+/// named by their whole paths.
+[[nodiscard]] model::Printer frozen(model::Printer printer);
+
+/// What of frozen() differs from the embedded default, in the form of --set: "projector.columns=1920
+/// vial.radius_mm=12"; "default" where nothing does. For the metadata vam:printer.
 [[nodiscard]] std::string printer_settings(const model::Printer& printer);
 
 }  // namespace vam::io

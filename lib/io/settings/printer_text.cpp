@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <charconv>
+#include <filesystem>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -66,8 +67,16 @@ std::string printer_toml(const model::Printer& given) {
   return text.str();
 }
 
+model::Printer frozen(model::Printer printer) {
+  for (std::string* file : {&printer.projector.response, &printer.camera.flat}) {
+    if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
+  }
+  printer.calibration.folder.clear();
+  return printer;
+}
+
 std::string printer_settings(const model::Printer& given) {
-  model::Printer printer = given;
+  model::Printer printer = frozen(given);
   model::Printer standard;
   std::vector<std::string> settings;
   for (const auto& field : printer_fields()) {
