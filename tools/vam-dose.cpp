@@ -32,10 +32,10 @@ void run(const cli::App& app, Options& options) {
 
   io::StackReader in(options.inputs.front());
   io::require(options.inputs.front(), in.info(), model::Kind::sinogram);
-  const bool bound = options.shown.empty() &&  // a print has settings of its own
-                     (in.info().space == model::Space::projector || model::shown_turns(in.info().extra));
-  const model::Printer printer = session::printer_of(options.printer, bound ? in.info().extra : model::Metadata{},
-                                                     io::input_name(options.inputs.front()));
+  const std::string name = io::input_name(options.inputs.front());
+  const bool printed = !options.shown.empty();  // a print has settings of its own
+  const model::Printer printer =
+      session::printer_of(options.printer, printed ? model::Metadata{} : in.info().extra, name);
   session::require_settings(app, printer);
   options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
   take_full_scale(options);

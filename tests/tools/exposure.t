@@ -74,6 +74,9 @@ ok 'which is named' grep -q 'planned.vdb: made for another printer than printer.
 holds 'the dose is that of its printer' "$(json else/other.json critical_dose_mj_cm3) == 100"
 fails 65 'vial.radius_mm 7, now 9' vam-project light.exr --printer else/printer.toml -o x.mkv
 rm else/printer.toml
+vam-sinogram part.vdb -o parallel.exr
+(cd else && vam-dose ../parallel.exr --like ../part.vdb --report parallel.json -o parallel.vdb)
+holds 'as parallel light has that of its part' "$(json else/parallel.json critical_dose_mj_cm3) == 100"
 (cd else && vam-project ../light.exr --print-printer -o own.toml)
 is 'its printer, but no device of its' "$(grep -c '^radius_mm = 7' else/own.toml) $(grep -c '^device = "sim:"' else/own.toml)" '1 0'
 fails 65 'half_angle_deg 0, now 1.*stage.motion [a-z]*, now interpolated' vam-project light.exr --set projector.half_angle_deg=1 --set stage.motion=interpolated -o x.mkv

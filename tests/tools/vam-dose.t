@@ -147,7 +147,7 @@ holds "they receive no dose" "$(json hidden.json part_dose_per_turn_mean_relativ
 # Wrong inputs
 $exr make camera.exr space=camera
 $exr make images.exr kind=frames
-$exr make flattened.exr pixel=0.1 row=0.3
+$exr make flattened.exr pixel=0.1 row=0.3 printer=none
 $exr make half.exr width=64 step=3
 unsealed() { sed 's|vam:\(facts_\)*seal|vom:\1seal|g' "$1"; }
 { unsealed handle.vdb | sed 's|target|others|g'; unsealed part.vdb; } >mixed.vdb  # an insert of other voxels
