@@ -11,6 +11,7 @@
 #include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
 #include "model/metadata.hpp"
+#include "session/exposure.hpp"
 #include "session/printer.hpp"
 #include "vam-dose/expose.hpp"
 #include "vam-dose/light.hpp"
@@ -39,8 +40,9 @@ void run(const cli::App& app, Options& options) {
   session::require_settings(app, printer);
   options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
   take_full_scale(options);
-  const bool planned_anew = options.exposure_plan && model::shown_turns(in.info().extra);
-  if (!options.full_scale && !planned_anew) options.full_scale = model::full_scale(in.info().extra);
+  const session::Exposure stated = session::exposure_of(name, in.info(), printer, 0);
+  const bool anew = options.exposure_plan && stated.planned;
+  if (!options.full_scale && !anew && stated.full_scale > 0) options.full_scale = stated.full_scale;
   const model::StackInfo info = posed(app, in.info(), options);
   const dose_tool::Place place = place_of(options, printer, info);
   io::SparseVolume volume = empty_volume(app, place, printer, info, options);

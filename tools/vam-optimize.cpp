@@ -15,10 +15,10 @@
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/grid_size.hpp"
-#include "model/metadata.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
+#include "session/exposure.hpp"
 #include "session/job_volumes.hpp"
 #include "session/printer.hpp"
 #include "session/scene.hpp"
@@ -75,7 +75,7 @@ void run(const cli::App& app, Options& options) {
   const std::optional<model::ImageRange> slices = slices_of(whole, options);
   model::StackInfo info = written_info(whole, slices, app, options);
   const bool planned = states_exposure(info, printer, options);
-  if (planned) model::state_exposure(info.extra, 0, 0);  // until it is known
+  if (planned) session::state_exposure(info.extra, 0, 0);  // until it is known
   options.stack.late = planned;
   optimize::VolumeTask task = make_task(scene, in, options);
   task.slices = slices;
@@ -110,8 +110,8 @@ void run(const cli::App& app, Options& options) {
   std::optional<optimize::Trials> trials;
   if (options.printer_tolerances) trials = run_trials(make_trial(scene, seconds, options), task, sink.kept());
   if (planned && plan) {
-    model::state_exposure(info.extra, plan->turns,
-                          options.full_scale.value_or(outcome.peak_intensity) / plan->multiplier);
+    session::state_exposure(info.extra, plan->turns,
+                            options.full_scale.value_or(outcome.peak_intensity) / plan->multiplier);
     sink.state(info.extra);
   }
   sink.commit();  // hours of work, which no figure or report shall undo

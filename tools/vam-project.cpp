@@ -33,10 +33,12 @@ void freeze(const Options& options, model::Printer printer) {
   project::require_whole(options.input, reader.info());
   require_printer(options, reader.info(), printer);
   if (reader.info().kind == model::Kind::sinogram) {
-    const bool by_light = !model::shown_turns(reader.info().extra) && resin::dose_per_radian_mj_cm3(printer);
-    const double peak = by_light ? read_light(options, reader, printer.projector).peak : 0;
-    const session::Exposure planned = session::exposure_of(reader.info(), printer, peak, {});
-    if (planned.share) printer.stage.turns = ceil_int(planned.turns);
+    session::Exposure shown = session::exposure_of(options.input, reader.info(), printer, 0);
+    if (!shown.planned && resin::dose_per_radian_mj_cm3(printer)) {
+      const double peak = read_light(options, reader, printer.projector).peak;
+      shown = session::exposure_of(options.input, reader.info(), printer, peak);
+    }
+    if (shown.planned) printer.stage.turns = ceil_int(shown.turns);
   }
   io::write_text(options.freeze, io::printer_toml(io::frozen(printer)));
 }

@@ -5,7 +5,6 @@
 #include <sstream>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 
@@ -40,26 +39,6 @@ int stated_count(const Metadata& metadata, const std::string& name) {
   constexpr double most = 1e6;
   const double number = stated_number(metadata, name).value_or(0);
   return number >= 0 && number <= most ? static_cast<int>(number) : 0;
-}
-
-constexpr const char* unknown = "unknown";
-
-std::string late_text(double value) {
-  constexpr std::size_t length = 16;
-  std::string text = value > 0 ? format_number(value, 9) : unknown;
-  return text.append(length - text.size(), ' ');
-}
-
-std::optional<double> stated_positive(const Metadata& metadata, const std::string& name) {
-  const auto found = metadata.find(name);
-  if (found == metadata.end()) return std::nullopt;
-  const std::string text = trimmed(found->second);
-  if (text == unknown) return std::nullopt;
-  const auto value = parse_number(text);
-  constexpr double most = 1e6;
-  if (value && *value > 0 && *value <= most) return value;
-  throw Error{Fault::data, "the projections state " + name + " " + excerpt(found->second) +
-                               ", which is not above 0 and at most 1e6; compute them again"};
 }
 
 }  // namespace
@@ -107,15 +86,6 @@ std::optional<double> threshold_dose(const Metadata& metadata) { return stated_n
 
 std::optional<double> dose_unit_mj_cm3(const Metadata& metadata) {
   return stated_number(metadata, "vam:dose_unit_mj_cm3");
-}
-
-std::optional<double> full_scale(const Metadata& metadata) { return stated_positive(metadata, "vam:full_scale"); }
-
-std::optional<double> shown_turns(const Metadata& metadata) { return stated_positive(metadata, "vam:shown_turns"); }
-
-void state_exposure(Metadata& metadata, double turns, double full_scale) {
-  metadata["vam:shown_turns"] = late_text(turns);
-  metadata["vam:full_scale"] = late_text(full_scale);
 }
 
 }  // namespace vam::model

@@ -34,13 +34,5 @@ void state_surface(Metadata& metadata, const PartSurface& surface);
 [[nodiscard]] std::optional<double> threshold_dose(const Metadata& metadata);
 /// What a relative dose of 1 is, in mJ/cm3.
 [[nodiscard]] std::optional<double> dose_unit_mj_cm3(const Metadata& metadata);
-/// The value of a sinogram that is shown at full intensity. Throws Fault::data where it is stated, neither unknown nor
-/// above 0 and at most a million.
-[[nodiscard]] std::optional<double> full_scale(const Metadata& metadata);
-/// For how many turns it is shown. Throws likewise.
-[[nodiscard]] std::optional<double> shown_turns(const Metadata& metadata);
-/// States both, in texts of one length, so that what is found last fits into a header that was written first; 0:
-/// unknown.
-void state_exposure(Metadata& metadata, double turns, double full_scale);
 
 }  // namespace vam::model

@@ -6,15 +6,36 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/printer_match.hpp"
-#include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/absolute_dose.hpp"
 
 namespace vam::session {
 
 namespace {
+
+constexpr const char* turns_name = "vam:shown_turns";
+constexpr const char* full_scale_name = "vam:full_scale";
+constexpr const char* unknown = "unknown";
+
+std::string late_text(double value) {
+  constexpr std::size_t length = 16;
+  std::string text = value > 0 ? format_number(value, 9) : unknown;
+  return text.append(length - text.size(), ' ');
+}
+
+std::optional<double> stated(const std::string& name, const model::Metadata& facts, const char* fact) {
+  const auto found = facts.find(fact);
+  const std::string text = found == facts.end() ? unknown : trimmed(found->second);
+  if (text == unknown) return std::nullopt;
+  const auto value = parse_number(text);
+  constexpr double most = 1e6;
+  if (value && *value > 0 && *value <= most) return value;
+  throw Error{Fault::data, name + ": the projections state " + fact + " " + excerpt(text) +
+                               ", which is not above 0 and at most 1e6; compute them again"};
+}
 
 /// Critical doses of a turn in full light, per radian.
 std::optional<double> rate_of(const model::Printer& printer) {
@@ -30,30 +51,41 @@ std::optional<double> rate_for(model::Printer printer, const std::optional<model
 
 }  // namespace
 
-Exposure exposure_of(const model::StackInfo& info, const model::Printer& printer, double peak,
+Exposure exposure_of(const std::string& name, const model::StackInfo& info, const model::Printer& printer, double peak,
                      const GivenExposure& given) {
   std::optional<model::Printer> planned_for;
   const auto own = info.extra.find("vam:printer");
-  if (own != info.extra.end()) planned_for = io::parse_settings(own->second, "vam:printer");
+  if (own != info.extra.end()) planned_for = io::parse_settings(own->second, name + ": vam:printer");
   const auto rate = rate_for(printer, planned_for);
-  auto turns = model::shown_turns(info.extra);
-  auto full_scale = model::full_scale(info.extra);
+  auto turns = stated(name, info.extra, turns_name);
+  auto full_scale = stated(name, info.extra, full_scale_name);
   const auto threshold = model::threshold_dose(info.extra);
   std::optional<double> needed;  // turns times rate by full scale
   if (turns && full_scale && rate) {
     needed = *turns / *full_scale * (planned_for ? rate_of(*planned_for) : std::nullopt).value_or(*rate);
-  } else if (rate && threshold && *threshold > 0 && model::repeat(info.poses)) {
+  } else if (rate && threshold && *threshold > 0 && peak > 0 && model::repeat(info.poses)) {
     needed = 1 / *threshold;
     const double whole = optics::turns_of(info);
     turns = whole * std::ceil(*needed * full_scale.value_or(peak) / (*rate * whole) * (1 - 1e-9));
     if (!full_scale) full_scale = *turns * *rate / *needed;
   }
   Exposure exposure;
-  exposure.turns = optics::turns_to_show(info, given.turns, turns.value_or(printer.stage.turns));
+  exposure.planned = turns && !given.turns;
+  exposure.turns = optics::turns_to_show(info, given.turns ? given.turns : turns, printer.stage.turns);
   exposure.full_scale = given.full_scale.value_or(full_scale.value_or(peak)) / given.multiplier;
   // What is brighter than full intensity is shown at that, and the brightest places lack it first.
   if (needed) exposure.share = exposure.turns * *rate / (std::max(exposure.full_scale, peak) * *needed);
   return exposure;
+}
+
+void state_exposure(model::Metadata& facts, double turns, double full_scale) {
+  facts[turns_name] = late_text(turns);
+  facts[full_scale_name] = late_text(full_scale);
+}
+
+void forget_exposure(model::Metadata& facts) {
+  facts.erase(turns_name);
+  facts.erase(full_scale_name);
 }
 
 void require_dose(const Exposure& exposure, bool accepted, const std::string& name) {

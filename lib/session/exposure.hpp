@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "model/metadata.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
 
@@ -12,7 +13,8 @@ namespace vam::session {
 
 struct Exposure {
   double turns = 1;
-  double full_scale = 0;             // the sinogram's value at full intensity
+  bool planned = false;              // the turns are those of a plan, neither given nor stage.turns
+  double full_scale = 0;             // the sinogram's value at full intensity; 0: not known
   std::optional<double> share = {};  // of the planned dose; none: the resin is not known
 };
 
@@ -22,11 +24,18 @@ struct GivenExposure {
   double multiplier = 1;  // of the intensity
 };
 
-/// The plan that the stack states (vam:shown_turns, vam:full_scale); where it states its threshold alone, as joined
-/// pieces do, the fewest turns in which the printer reaches the resin's critical dose there; where the resin is not
-/// known, stage.turns with `peak`, the largest value, at full intensity. Throws Fault::data for a plan that is none.
-[[nodiscard]] Exposure exposure_of(const model::StackInfo& info, const model::Printer& printer, double peak,
-                                   const GivenExposure& given);
+/// The plan that the stack `name` states (vam:shown_turns, vam:full_scale), which nothing else reads; where it states
+/// its threshold alone, as joined and resampled ones do, the fewest turns in which the printer reaches the resin's
+/// critical dose there, once `peak` is known, the largest value; where the resin is not known, stage.turns with the
+/// peak at full intensity. peak: 0 before the light is read. Throws Fault::data for a plan that is none.
+[[nodiscard]] Exposure exposure_of(const std::string& name, const model::StackInfo& info, const model::Printer& printer,
+                                   double peak, const GivenExposure& given = {});
+
+/// States a plan, in texts of one length, so that what is found last fits into a header that was written first; 0:
+/// unknown. Nothing else does.
+void state_exposure(model::Metadata& facts, double turns, double full_scale);
+/// For the facts of other light, or of a dose.
+void forget_exposure(model::Metadata& facts);
 
 /// Throws Fault::data for less than 0.9 or more than 1.1 of the planned dose, which `accepted` makes a warning; says
 /// so of what else differs. `name` begins the message.

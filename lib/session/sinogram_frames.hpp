@@ -10,14 +10,9 @@
 
 namespace vam::session {
 
-struct SinogramFrames {
-  std::vector<GreyImage> frames;
-  double full_scale = 0;  // that the stack states, or else its largest value
-};
-
-/// Of one turn, so many frames; 0: one for each angle. full_scale: instead of the stack's own; 0: none. Of 8 bits, by a
-/// linear response. Throws what StackReader and FrameComposer throw.
-[[nodiscard]] SinogramFrames sinogram_frames(const std::string& path, const model::Projector& projector, int frames,
-                                             double full_scale);
+/// Of one turn, so many frames; 0: one for each angle. full_scale: instead of that of exposure_of(); 0: none. Of 8
+/// bits, by a linear response. Throws what StackReader, FrameComposer and exposure_of() throw.
+[[nodiscard]] std::vector<GreyImage> sinogram_frames(const std::string& path, const model::Printer& printer, int frames,
+                                                     double full_scale);
 
 }  // namespace vam::session

@@ -58,7 +58,7 @@ Plan plan_of(const std::string& run) {
     for (const float value : image.values) peak = std::max(peak, value);
   }
   const auto printer = io::load_printer(run + "/printer.toml", {});
-  const auto shown = session::exposure_of(light.info(), printer, static_cast<double>(peak), {});
+  const auto shown = session::exposure_of(run + "/sinogram.exr", light.info(), printer, static_cast<double>(peak));
   if (shown.share) return {shown.turns, static_cast<double>(peak) / shown.full_scale};
   throw Error{Fault::data, run +
                                "/sinogram.exr: has no planned exposure; compute it by vam-optimize for a printer "

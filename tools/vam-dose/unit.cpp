@@ -58,9 +58,10 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
   } else if (!options.shown.empty()) {
     unit.print_turns = unit.full_turns = exposed.shown_turns;
   } else if (unit.absolute) {
-    const auto shown = session::exposure_of(light, printer, peak, {.full_scale = options.full_scale});
+    const std::string name = io::input_name(options.inputs.front());
+    const auto shown = session::exposure_of(name, light, printer, peak, {.full_scale = options.full_scale});
     if (shown.share) {
-      session::require_dose(shown, true, io::input_name(options.inputs.front()));
+      session::require_dose(shown, true, name);
       unit.print_turns = shown.turns;
       unit.full_turns = shown.turns * std::min(1.0, peak / shown.full_scale);
       unit.showings = shown.turns * full_scale / shown.full_scale;
@@ -73,7 +74,7 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
 }
 
 void convert(io::SparseVolume& volume, const Unit& unit) {
-  for (const char* of_light : {"vam:full_scale", "vam:shown_turns"}) volume.metadata.erase(of_light);
+  session::forget_exposure(volume.metadata);
   if (unit.absolute) {
     scale(volume, unit.turn * unit.showings);
     volume.units = "mJ/cm3";

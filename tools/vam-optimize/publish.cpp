@@ -118,7 +118,8 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
   }
   report_delivered(report, task.source, scene, options);
-  if (const auto full = model::full_scale(info.extra)) report["full_scale"] = *full;
+  const double full_scale = session::exposure_of(options.output, info, printer, 0).full_scale;
+  if (full_scale > 0) report["full_scale"] = full_scale;
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
     for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})

@@ -34,7 +34,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   shown.projector.axis_row += options.row_offset;
   facts.info.extra["vam:printer"] = io::printer_settings(shown);
   if (exposure.share) {  // of fractions of full intensity
-    model::state_exposure(facts.info.extra, turns, 1);
+    session::state_exposure(facts.info.extra, turns, 1);
     if (const auto threshold = model::threshold_dose(facts.info.extra))
       facts.info.extra["vam:threshold_dose"] = format_number(*threshold / exposure.full_scale, 9);
   }

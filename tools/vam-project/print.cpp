@@ -16,7 +16,6 @@
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
-#include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "vam-project/live.hpp"
 #include "vam-project/match.hpp"
@@ -117,13 +116,13 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
     const Light renewed = read_renewed(path, options, its, reader.info(), printer);
     if (hash_of(path) != hash) throw Error{Fault::data, path + ": was changed while it was read; rename whole files"};
     ScreenSink screen(live.mode(), ended);
-    const auto stated = model::full_scale(its.info().extra);
-    const double its_full = stated ? *stated / options.multiplier : full_scale;
+    const auto stated = session::exposure_of(path, its.info(), printer, 0, {.multiplier = options.multiplier});
+    const double its_full = stated.full_scale > 0 ? stated.full_scale : full_scale;
     const auto seen = show(frames_of(renewed, schedule, dithering), static_cast<float>(1 / its_full), printer.projector,
                            false, dithering, screen);
     Json facts = facts_of(path, hash, its_full);
     facts["clipped"] = seen.clipped;
-    const int its_turns = round_int(std::ceil(model::shown_turns(its.info().extra).value_or(0)));
+    const int its_turns = stated.planned ? ceil_int(stated.turns) : 0;
     if (its_turns > 0) facts["turns"] = its_turns;
     live.offer({std::move(screen.bytes), facts, turn_named(path), its_turns});
   };

@@ -79,9 +79,10 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
 session::Exposure exposure_of(const Options& options, const model::StackInfo& info, const Light& light,
                               const model::Printer& printer) {
   const session::GivenExposure given{options.turns, options.full_scale, options.multiplier};
-  const auto exposure = session::exposure_of(info, printer, light.peak, given);
+  const std::string name = io::input_name(options.input);
+  const auto exposure = session::exposure_of(name, info, printer, light.peak, given);
   const bool whole = options.live.from_deg == 0 && options.live.frames_from.empty();  // neither a rest nor renewed
-  if (whole) session::require_dose(exposure, options.accept_dose, io::input_name(options.input));
+  if (whole) session::require_dose(exposure, options.accept_dose, name);
   return exposure;
 }
 

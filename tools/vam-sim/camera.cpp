@@ -246,9 +246,8 @@ void run(const cli::App& app, CameraOptions& o) {
     return images(pattern_of(event), camera.bench.printer.projector);
   };
   camera.sources.renew = [&camera](const Json& event, int frames) {
-    return session::sinogram_frames(event.value("sinogram", ""), camera.bench.printer.projector, frames,
-                                    event.value("full_scale", 0.0))
-        .frames;
+    return session::sinogram_frames(event.value("sinogram", ""), camera.bench.printer, frames,
+                                    event.value("full_scale", 0.0));
   };
   if (o.cure) cure(app, o);
   if (o.glow) camera.bench.glow = *o.glow;

@@ -34,24 +34,3 @@ TEST_CASE("heights of a stretched volume are those of the part again") {
   CHECK(stretch_objection("1.5").empty());
   for (const char* wrong : {"", "nan", "0", "0.09", "11", "-1", "1 mm"}) CHECK_FALSE(stretch_objection(wrong).empty());
 }
-
-TEST_CASE("a full scale is above 0, or not stated") {
-  CHECK_FALSE(full_scale({}));
-  CHECK(full_scale({{"vam:full_scale", "0.5"}}) == 0.5);
-  CHECK(shown_turns({{"vam:shown_turns", "3"}}) == 3);
-  for (const char* wrong : {"0", "-1", "1e7", "much"})
-    CHECK(fault_of([&] { (void)full_scale({{"vam:full_scale", wrong}}); }) == Fault::data);
-}
-
-TEST_CASE("an exposure that is found late fits in the place of one that is unknown") {
-  Metadata early, late;
-  state_exposure(early, 0, 0);
-  CHECK_FALSE(full_scale(early));
-  CHECK_FALSE(shown_turns(early));
-  for (const double value : {1e-6, 0.123456789012, 3.0, 999999.125}) {
-    state_exposure(late, 3, value);
-    CHECK(shown_turns(late) == 3);
-    CHECK(*full_scale(late) == doctest::Approx(value).epsilon(1e-8));
-    for (const auto& [name, text] : early) CHECK(late.at(name).size() == text.size());
-  }
-}
