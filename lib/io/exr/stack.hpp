@@ -60,7 +60,8 @@ class StackWriter {
   /// Facts that come only with the image. Images of one stack all have a measured angle (time), or none has. As they
   /// stand before the pixels, a pipe then receives the stack at commit(), out of a temporary file in $TMPDIR or /tmp.
   void write(const Image& image, const model::ImageInfo& about);
-  /// Facts in place of others of the same names and lengths; on a pipe with StackOptions::late only, as above.
+  /// Facts in place of others of the same names and lengths; on a pipe with StackOptions::late only, as above;
+  /// without it throws Fault::bug once the header was sent.
   void state(const model::Metadata& facts);
   void commit();
 

@@ -286,6 +286,9 @@ void StackWriter::write(const Image& image) {
 }
 void StackWriter::write(const Image& image, const ImageInfo& about) { state_->put(image, about); }
 void StackWriter::state(const model::Metadata& facts) {
+  if (state_->settled && state_->out.is_stream() && !state_->spool)
+    throw Error{Fault::bug,
+                state_->out.name() + ": facts behind a header that was sent; StackOptions::late is missing"};
   for (const auto& [name, value] : facts) state_->info.extra.at(name) = value;
 }
 void StackWriter::commit() { state_->finish(); }

@@ -93,6 +93,26 @@ TEST_CASE("a pipe carries the bytes of a valid, complete file") {
   }
 }
 
+TEST_CASE("facts that come behind the images are in a pipe, too, or refused") {
+  const scratch::Folder folder;
+  auto info = sinogram(33, 12, 1);
+  info.extra["vam:threshold_dose"] = "unknown";
+  for (const bool late : {true, false}) {
+    CAPTURE(late);
+    const scratch::Redirect to(STDOUT_FILENO, folder / "piped.exr");
+    StackWriter writer("-", info, StackOptions{.late = late});
+    writer.write(pattern(33, 12, 0));
+    const auto state = [&] { writer.state({{"vam:threshold_dose", "3 turns"}}); };
+    if (!late) {
+      CHECK(fault_of(state) == Fault::bug);
+      continue;
+    }
+    state();
+    writer.commit();
+    CHECK(StackReader(folder / "piped.exr").info().extra.at("vam:threshold_dose") == "3 turns");
+  }
+}
+
 TEST_CASE("a compressed file can be read from a pipe") {
   const scratch::Folder folder;
   const auto info = sinogram(33, 40, 40);
