@@ -51,7 +51,7 @@ quiet 'a video' vam-project light.exr -o print.mkv
 shown video print.mkv
 quiet 'images' vam-project light.exr -o frames/
 shown images frames; cp frames/facts.txt facts
-for damage in 'head -c 150' 'sed s/vam:shown_turns./shown=/' 'head -n -1' 'head -c 0'; do
+for damage in 'head -c 150' 'sed s/vam:shown_turns./shown=/' 'sed s/vam:printer/vam:piece/' 'head -n -1' 'head -c 0'; do
   $damage facts >frames/facts.txt; fails 65 'facts.txt: .*; write them again' vam-convert frames --geometry vial -o cut.exr
 done
 mkdir card card/dri; touch card/dri/card0

@@ -18,6 +18,7 @@
 #include "base/text/format_version.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "io/exr/stack.hpp"
 #include "io/stream/seal.hpp"
 #include "model/metadata.hpp"
 
@@ -199,10 +200,8 @@ StackInfo stack_info(const Imf::Header& header) {
   if (const auto piece = text(header, piece_name)) info.piece = checked_piece(*piece);
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
-    const bool ours = name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history" ||
-                      name == poses_name || name == piece_name || is_seal_key(name);
     const bool standard = name == "name" || name == "type" || name == "view";
-    if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
+    if (const auto value = text(header, it.name()); value && !is_own_fact(name) && !standard) info.extra[name] = *value;
   }
   if (const auto stretch = info.extra.find(model::stretch_name); stretch != info.extra.end()) {
     const std::string why = model::stretch_objection(stretch->second);
@@ -286,3 +285,11 @@ ImageInfo image_info(const Imf::Header& header, const StackInfo& info, int index
 }
 
 }  // namespace vam::io::exr
+
+bool vam::io::is_own_fact(const std::string& name) {
+  constexpr std::array own{
+      "vam:kind",   "vam:space",        "vam:units",     "vam:history",    "vam:count",           "vam:pixel_mm",
+      "vam:row_mm", "vam:z_mm",         "vam:angle_deg", "vam:index",      "vam:angle_start_deg", "vam:angle_step_deg",
+      "vam:time_s", "vam:time_sigma_s", "vam:number",    "vam:incomplete", exr::poses_name,       exr::piece_name};
+  return is_seal_key(name) || std::find(own.begin(), own.end(), name) != own.end();
+}

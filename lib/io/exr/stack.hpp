@@ -70,6 +70,9 @@ class StackWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Whether an attribute is what StackInfo and ImageInfo have beside `extra`.
+[[nodiscard]] bool is_own_fact(const std::string& name);
+
 /// Throws Fault::data unless the stack is of this kind and space: "frames.exr holds frames (projector), but
 /// vam-resample needs a sinogram (virtual)".
 void require(const std::string& path, const model::StackInfo& info, model::Kind kind, model::Space space);

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "io/exr/stack.hpp"
 
 namespace vam::io {
 
@@ -43,13 +44,14 @@ void take_frame_facts(const std::string& text, model::StackInfo& info, const std
   std::optional<double> step;
   for (const std::string& line : split(trimmed(text), '\n')) {
     const std::size_t blank = line.find(' ');
-    if (!line.starts_with("vam:") || blank == std::string::npos || step)
+    const std::string fact = line.substr(0, blank);
+    if (!line.starts_with("vam:") || blank == std::string::npos || step || (is_own_fact(fact) && fact != step_name))
       throw Error{Fault::data, name + ": states '" + excerpt(line) + "', which is no fact of frames; write them again"};
     const std::string value = trimmed(line.substr(blank));
-    if (line.substr(0, blank) == step_name)
+    if (fact == step_name)
       step = parse_number(value);
     else
-      info.extra[line.substr(0, blank)] = value;
+      info.extra[fact] = value;
   }
   if (!step || !(std::abs(*step) <= 360))
     throw Error{Fault::data, name + ": the facts of its frames do not end with an angle as " + step_name +
