@@ -54,6 +54,17 @@ shown images frames; cp frames/facts.txt facts
 for damage in 'head -c 150' 'sed s/vam:shown_turns./shown=/' 'sed s/vam:printer/vam:piece/' 'head -n -1' 'head -c 0'; do
   $damage facts >frames/facts.txt; fails 65 'facts.txt: .*; write them again' vam-convert frames --geometry vial -o cut.exr
 done
+# What another program moved.
+if command -v ffmpeg >/dev/null; then
+  ffmpeg -v error -i print.mkv -c:v libx264 -qp 0 moved.mp4 </dev/null
+  for name in moved own; do
+    [ $name = moved ] || vam-project light.exr -o own.mp4 2>/dev/null
+    vam-convert $name.mp4 --geometry vial -o moved.exr 2>/dev/null
+    is "$name.mp4 states its exposure" "$(attr moved.exr vam:shown_turns)" "$turns"
+  done
+else
+  echo "ok $((number += 1)) - videos that ffmpeg wrote # SKIP no ffmpeg here"
+fi
 mkdir card card/dri; touch card/dri/card0
 FAKE_DRM=$PWD/card LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card.so vam-project light.exr -o drm:HDMI-A-1 --max-missed 1 --max-missed-lit 1 --log flips 2>errors
 is 'a screen' "$? $(cat errors)" '0 '

@@ -17,9 +17,9 @@ struct VideoFormat {
   int height = 0;
   int bits = 8;            // of the frames: 1, 2, 4, 8, 10 or 16
   double fps = 0;          // frames per second
-  std::string comment;     // goes into the file's metadata
+  std::string comment;     // lines that go into the file's metadata
   bool colour = false;     // H.264 of RgbImages
-  std::string facts = {};  // of the frames, like the comment
+  std::string facts = {};  // of the frames: lines that begin with "vam:", behind those of the comment
   // Of one that is read:
   bool checksums = false;                     // its container has some, and all are right
   std::optional<Digest> seal = std::nullopt;  // of the decoded levels, to which reading to the end holds them

@@ -130,8 +130,10 @@ struct VideoReader::State {
     }
     if (const AVDictionaryEntry* entry = av::api().av_dict_get(container->metadata, "comment", nullptr, 0))
       format.comment = entry->value;
-    if (const auto* stated = av::api().av_dict_get(container->metadata, video_facts, nullptr, 0))
-      format.facts = stated->value;
+    if (const std::size_t end = format.comment.find("\nvam:"); end != std::string::npos) {
+      format.facts = format.comment.substr(end + 1);
+      format.comment.resize(end);
+    }
   }
 
   // The next packet of the stream; false at the end.

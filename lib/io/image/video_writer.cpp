@@ -147,8 +147,8 @@ struct VideoWriter::State {
                                       sink.file.is_stream() ? nullptr : EncoderSink::on_seek);
     container->pb = io;
     container->flags |= AVFMT_FLAG_BITEXACT;  // no library version, no random identifiers
-    av::api().av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);
-    if (!format.facts.empty()) av::api().av_dict_set(&container->metadata, video_facts, format.facts.c_str(), 0);
+    const std::string comment = format.comment + (format.facts.empty() ? "" : "\n" + format.facts);
+    av::api().av_dict_set(&container->metadata, "comment", comment.c_str(), 0);
     if (lossless) av::api().av_dict_set(&container->metadata, video_version, FormatKind("video").version().c_str(), 0);
   }
 

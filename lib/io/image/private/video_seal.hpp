@@ -13,7 +13,6 @@
 
 namespace vam::io {
 
-inline constexpr const char* video_facts = "VAM_FACTS";      // frame_facts(), in another
 inline constexpr const char* video_version = "VAM_VERSION";  // a tag of the file
 
 /// Takes what the frames of a video are decoded to, one after the other.
