@@ -54,8 +54,12 @@ shown images frames; cp frames/facts.txt facts
 for damage in 'head -c 150' 'sed s/vam:shown_turns./shown=/' 'sed s/vam:printer/vam:piece/' 'head -n -1' 'head -c 0'; do
   $damage facts >frames/facts.txt; fails 65 'facts.txt: .*; write them again' vam-convert frames --geometry vial -o cut.exr
 done
-# What another program moved.
+# What is not all of the light, or was moved by another program.
 if command -v ffmpeg >/dev/null; then
+  ffmpeg -v error -i print.mkv -t 4 -c copy one.mkv </dev/null
+  fails 65 "one.mkv: has 120 of the $((120 * turns)) frames of its light .*give --view-step 3" vam-convert one.mkv --geometry vial -o cut.exr
+  vam-convert one.mkv --view-step 3 --geometry vial -o cut.exr 2>/dev/null
+  is 'those that are there count on request' "$(attr cut.exr vam:shown_turns)" 1
   ffmpeg -v error -i print.mkv -c:v libx264 -qp 0 moved.mp4 </dev/null
   for name in moved own; do
     [ $name = moved ] || vam-project light.exr -o own.mp4 2>/dev/null
@@ -65,6 +69,8 @@ if command -v ffmpeg >/dev/null; then
 else
   echo "ok $((number += 1)) - videos that ffmpeg wrote # SKIP no ffmpeg here"
 fi
+cp facts frames/facts.txt; cp -r frames fewer; rm fewer/frames.csv; (cd fewer && rm $(ls [0-9]*.png | tail -n +121))
+fails 65 "fewer: has 120 of the $((120 * turns)) frames of its light" vam-convert fewer --geometry vial -o cut.exr
 mkdir card card/dri; touch card/dri/card0
 FAKE_DRM=$PWD/card LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card.so vam-project light.exr -o drm:HDMI-A-1 --max-missed 1 --max-missed-lit 1 --log flips 2>errors
 is 'a screen' "$? $(cat errors)" '0 '

@@ -49,7 +49,7 @@ class Frames : public Images {
     return {source_->info().count, source_->info().height, source_->info().width};
   }
   [[nodiscard]] bool are_frames() const override { return true; }
-  [[nodiscard]] const model::StackInfo* stated() const override { return &source_->info(); }
+  [[nodiscard]] model::StackInfo stated() const override { return source_->info(); }
   [[nodiscard]] bool are_grey() const override { return source_->is_grey(); }
   [[nodiscard]] const io::StatedViews& views() const override { return views_; }
   bool next(Image& image) override {

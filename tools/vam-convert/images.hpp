@@ -25,8 +25,8 @@ class Images {
   virtual bool next(Image& image) = 0;
   /// Do they show the projector's image, one a stage angle, row 0 at the top?
   [[nodiscard]] virtual bool are_frames() const = 0;
-  /// What frames state, their printer and exposure; null: nothing.
-  [[nodiscard]] virtual const model::StackInfo* stated() const { return nullptr; }
+  /// What frames state, their printer and exposure.
+  [[nodiscard]] virtual model::StackInfo stated() const { return {}; }
   /// Are the values grey levels, not intensities?
   [[nodiscard]] virtual bool are_grey() const { return false; }
   /// What is stated about projections, in an array's file or beside the frames.

@@ -54,7 +54,7 @@ void declare_projections(cli::App& app, Options& options) {
   app.default_is("the slices of the array, the rows of the images");
   app.option("--view-step", "DEG", options.view_step_deg, {-180, 180, false, true},
              "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections "
-             "of several turns are averaged.");
+             "of several turns are averaged; frames that state more turns are then all of the print.");
   app.default_is(
       "that of frames.csv beside the images, or of the angles in an HDF5 file; else one turn divided by the "
       "projections");

@@ -21,6 +21,7 @@
 #include "light/grids/lit_grid.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "optics/writable_radius.hpp"
+#include "session/exposure.hpp"
 #include "session/printer.hpp"
 #include "session/volumes.hpp"
 #include "vam-convert/images.hpp"
@@ -81,6 +82,25 @@ void plan_turns(const Options& options, const Slices& slices, Plan& plan) {
     warn(name + ": the last " + std::to_string(over) + " of " + std::to_string(angles) +
          " projections are left out, as they make no whole turn");
   }
+}
+
+/// As frames state it; no turns where they state no plan. Throws Fault::data where they are not all that it takes, as
+/// of a video that was cut, unless --view-step says that they are.
+session::Exposure stated_exposure(const Options& options, const model::StackInfo& stated, const model::Printer& printer,
+                                  const Plan& plan) {
+  const std::string name = io::input_name(options.input);
+  session::Exposure shown = session::exposure_of(name, stated, printer, 0);
+  const double frames = shown.planned ? shown.turns * plan.per_turn : stated.count;
+  const bool all = std::abs(frames - stated.count) <= 0.5;
+  if (!all && !options.view_step_deg) {
+    throw Error{Fault::data, name + ": has " + std::to_string(stated.count) + " of the " + format_number(frames) +
+                                 " frames of its light (vam:shown_turns " + format_number(shown.turns) +
+                                 "); write all of them again, or give --view-step " +
+                                 format_number(360.0 / plan.per_turn) + " to take those that are there"};
+  }
+  if (!all) shown.turns = plan.turns;
+  if (!shown.planned) shown.turns = 0;
+  return shown;
 }
 
 /// Frames of which nothing states the step may be those of several turns, as videos often are.
@@ -167,9 +187,9 @@ Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
 }
 
 model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Plan& plan,
-                         const Heights& heights, bool grey, const model::Metadata& stated) {
+                         const Heights& heights, bool grey, const model::StackInfo& stated) {
   model::StackInfo info;
-  info.extra = stated;
+  info.extra = stated.extra;
   const bool projector = options.in_vial();
   info.space = projector ? model::Space::projector : model::Space::virtual_;
   info.width = plan.columns;
@@ -182,7 +202,9 @@ model::StackInfo info_of(const cli::App& app, const Options& options, const mode
   info.angle_step_deg = 360.0 / plan.per_turn;
   info.units = grey && options.units == "relative" ? "fraction of full intensity" : options.units;
   info.history = {app.history()};
-  if (grey && options.units == "relative") info.extra["vam:full_scale"] = "1";
+  session::Exposure shown = stated_exposure(options, stated, printer, plan);
+  if (grey && options.units == "relative") shown.full_scale = 1;
+  if (shown.full_scale > 0) session::state_exposure(info.extra, shown.turns, shown.full_scale);
   if (projector) info.extra["vam:printer"] = io::printer_settings(printer);
   return info;
 }
@@ -291,9 +313,9 @@ void warn_of_colour(const Options& options, double peak) {
 
 void make_projections(const cli::App& app, Options options, std::optional<io::FileType> type) {
   auto images = open_source(options, type, "zax");
-  const model::Metadata stated = images->stated() != nullptr ? images->stated()->extra : model::Metadata{};
-  const model::Printer printer = session::printer_of(options.printer, stated, io::input_name(options.input));
-  if (!app.given("--orientation") && stated.contains("vam:printer"))
+  const model::StackInfo stated = images->stated();
+  const model::Printer printer = session::printer_of(options.printer, stated.extra, io::input_name(options.input));
+  if (!app.given("--orientation") && stated.extra.contains("vam:printer"))
     options.orientation = printer.projector.orientation;
   const bool frames = images->are_frames();
   const bool grey = images->are_grey();

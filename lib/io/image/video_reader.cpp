@@ -229,7 +229,7 @@ VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<Stat
   VideoFormat& format = state_->format;
   format.checksums = proof.checksums;
   format.seal = proof.seal;
-  if (format.seal) state_->read.emplace(format.width, format.height, format.bits, state_->version);
+  if (format.seal) state_->read.emplace(format.width, format.height, format.bits, state_->version, format.facts);
 }
 
 VideoReader::~VideoReader() = default;

@@ -24,9 +24,11 @@ std::string tag_of(const std::string& text) {
 
 }  // namespace
 
-VideoSeal::VideoSeal(int width, int height, int bits, const std::string& version) {
+VideoSeal::VideoSeal(int width, int height, int bits, const std::string& version, const std::string& facts) {
   for (const int number : {width, height, bits}) all_.add(static_cast<std::int64_t>(number));
-  if (!version.empty()) all_.add(version);
+  for (const std::string& text : {version, facts}) {
+    if (!text.empty()) all_.add(text);
+  }
 }
 
 Digest VideoSeal::of(const GreyImage& frame) {

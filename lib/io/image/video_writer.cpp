@@ -347,7 +347,8 @@ VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   state_->open_stream();
   state_->try_alone();
   if (state_->lossless) {
-    state_->seal.emplace(format.width, format.height, state_->wide ? format.bits : 8, FormatKind("video").version());
+    state_->seal.emplace(format.width, format.height, state_->wide ? format.bits : 8, FormatKind("video").version(),
+                         format.facts);
   }
 }
 

@@ -158,6 +158,22 @@ TEST_CASE("the same frames give the same bytes") {
   }
 }
 
+TEST_CASE("facts stand behind the comment of any container, and a seal covers them") {
+  const scratch::Folder folder;
+  std::vector<VideoFormat> read;
+  for (const char* name : {"a.mkv", "b.mkv", "c.mp4"}) {
+    const std::string facts = "vam:printer " + std::string(name) + "\nvam:angle_step_deg 3";
+    VideoWriter writer(folder / name, {64, 48, 8, 16, "vam-project test", false, facts});
+    writer.write(frame_of(0, 8));
+    writer.commit();
+    read.push_back(VideoReader(folder / name).format());
+    CHECK(read.back().comment == "vam-project test");
+    CHECK(read.back().facts == facts);
+  }
+  REQUIRE(read[0].seal);
+  CHECK(*read[0].seal != *read[1].seal);
+}
+
 TEST_CASE("without commit no file is left; other endings, missing and foreign files are refused") {
   const scratch::Folder folder;
   {

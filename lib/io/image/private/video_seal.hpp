@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the video files: the seal of a lossless video, over its decoded levels, in a Tags element of Matroska at
 // the end of the file. Checksums of container and slices tell that bytes are those that some program wrote; this tells
-// that the levels are those that these tools wrote.
+// that the levels and the facts are those that these tools wrote.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ inline constexpr const char* video_version = "VAM_VERSION";  // a tag of the fil
 /// Takes what the frames of a video are decoded to, one after the other.
 class VideoSeal {
  public:
-  /// version: the text of the tag VAM_VERSION; empty: there is none.
-  VideoSeal(int width, int height, int bits, const std::string& version);
+  /// version: the text of the tag VAM_VERSION; facts: VideoFormat::facts; empty: there is none.
+  VideoSeal(int width, int height, int bits, const std::string& version, const std::string& facts);
   /// The hash of one frame, which many threads may take at once.
   [[nodiscard]] static Digest of(const GreyImage& frame);
   void add(const Digest& frame);
