@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-project: projector frames from sinograms, for files or a screen; one frame per time step of the turning stage.
-#include <filesystem>
+#include <optional>
 
 #include "base/index.hpp"
 #include "device/os/interrupt.hpp"
@@ -28,8 +28,7 @@ namespace {
 using namespace vam;
 using project::Options;
 
-void freeze(const Options& options, model::Printer printer) {
-  io::StackReader reader(options.input);
+void freeze(const Options& options, model::Printer printer, io::StackReader& reader) {
   project::require_whole(options.input, reader.info());
   require_printer(options, reader.info(), printer);
   if (reader.info().kind == model::Kind::sinogram) {
@@ -43,34 +42,31 @@ void freeze(const Options& options, model::Printer printer) {
   io::write_text(options.freeze, io::printer_toml(io::frozen(printer)));
 }
 
-/// Of a projector's sinogram, where it can be read twice.
-model::Metadata facts_of(const Options& options) {
-  if (!options.pattern.plan.name.empty() || !std::filesystem::is_regular_file(options.input)) return {};
-  const io::StackReader reader(options.input);
-  const bool of_projector =
-      reader.info().kind == model::Kind::sinogram && reader.info().space == model::Space::projector;
-  return of_projector ? reader.info().extra : model::Metadata{};
+/// Whether the input is a stack: neither a test pattern nor a folder of images, nor without need on a pipe.
+bool takes_stack(const cli::App& app, const Options& options) {
+  const bool folder = project::is_folder(options.input);
+  if (folder && options.only_plan) app.require_for("slices", options.input);
+  const bool needless = options.printer.print && options.input == "-";
+  return options.pattern.plan.name.empty() && !needless && (!folder || !options.freeze.empty());
 }
 
 void run(const cli::App& app, Options& options) {
-  const model::Printer printer = settle(options, facts_of(options));
+  const bool live = options.freeze.empty() && !options.printer.print && project::is_live(app, options.output);
+  std::optional<io::StackReader> stack;
+  if (takes_stack(app, options)) stack.emplace(options.input);
+  const bool turns = stack && stack->info().kind == model::Kind::sinogram;
+  const model::Printer printer = settle(options, turns ? stack->info().extra : model::Metadata{});
   if (session::print_printer(options.printer, printer, options.output)) return;
-  if (!options.freeze.empty()) return freeze(options, printer);
-  const bool live = project::is_live(app, options.output);
+  if (!options.freeze.empty()) return freeze(options, printer, *stack);
   if (!options.pattern.plan.name.empty()) {
     if (options.only_plan) return project::print_devices(options, printer);
     return show_pattern(app, options, printer.projector);
   }
-  if (options.only_plan) return print_plan(app, options, printer);
-  if (live) return device::interruptible([&] { print_live(app, options, printer); });
-  if (project::is_folder(options.input)) {
-    return write_slices(app, options, printer, project::slice_folder(options.input));
-  }
-  io::StackReader reader(options.input);
-  if (reader.info().kind == model::Kind::frames) {
-    return write_slices(app, options, printer, project::slices_of(options.input, reader));
-  }
-  write_turns(app, options, printer, reader);
+  if (options.only_plan) return print_plan(app, options, printer, *stack);
+  if (live) return device::interruptible([&] { print_live(app, options, printer, stack ? &*stack : nullptr); });
+  if (turns) return write_turns(app, options, printer, *stack);
+  write_slices(app, options, printer,
+               stack ? project::slices_of(options.input, *stack) : project::slice_folder(options.input));
 }
 
 }  // namespace

@@ -91,6 +91,8 @@ ok 'which is named' grep -q 'planned.vdb: made for another printer than printer.
 holds 'the dose is that of its printer' "$(json else/other.json critical_dose_mj_cm3) == 100"
 fails 65 'vial.radius_mm 7, now 9' vam-project light.exr --printer else/printer.toml -o x.mkv
 rm else/printer.toml
+(cd else && vam-project ../light.exr -o named.mkv && vam-project -o piped.mkv <../light.exr)
+is 'a pipe has its printer, too' "$(vam-check else/piped.mkv | sed 's/.*, //')" "$(vam-check else/named.mkv | sed 's/.*, //')"
 vam-sinogram part.vdb -o parallel.exr
 (cd else && vam-dose ../parallel.exr --like ../part.vdb --report parallel.json -o parallel.vdb)
 holds 'as parallel light has that of its part' "$(json else/parallel.json critical_dose_mj_cm3) == 100"

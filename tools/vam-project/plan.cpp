@@ -15,7 +15,6 @@
 #include "io/exr/stack.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/print.hpp"
-#include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"
 
 namespace vam::project {
@@ -51,9 +50,7 @@ std::string identity_text(const Json& identity) {
 
 }  // namespace
 
-void print_plan(const cli::App& app, const Options& options, const model::Printer& printer) {
-  if (is_folder(options.input)) app.require_for("slices", options.input);
-  io::StackReader reader(options.input);
+void print_plan(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader) {
   const model::StackInfo info = reader.info();
   app.require_for(info.kind == model::Kind::frames ? "slices" : "sinograms", options.input);
   require_printer(options, info, printer);

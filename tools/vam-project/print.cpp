@@ -164,15 +164,13 @@ session::Exposure whole_exposure(const Options& options, const model::StackInfo&
   return exposure;
 }
 
-void print_live(const cli::App& app, const Options& options, const model::Printer& printer) {
+void print_live(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader* stack) {
   device::logged(options.live.log, [&] {
     Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});
-    if (is_folder(options.input)) return play_slices(app, options, printer, slice_folder(options.input), live);
-    io::StackReader reader(options.input);
-    if (reader.info().kind == model::Kind::frames) {
-      return play_slices(app, options, printer, slices_of(options.input, reader), live);
-    }
-    play_turns(app, options, printer, reader, live);
+    if (stack != nullptr && stack->info().kind == model::Kind::sinogram)
+      return play_turns(app, options, printer, *stack, live);
+    play_slices(app, options, printer,
+                stack != nullptr ? slices_of(options.input, *stack) : slice_folder(options.input), live);
   });
 }
 

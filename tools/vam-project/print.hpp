@@ -16,7 +16,7 @@ namespace vam::project {
 [[nodiscard]] session::Exposure whole_exposure(const Options& options, const model::StackInfo& info, const Light& light,
                                                const model::Printer& printer);
 
-/// A sinogram by the stage's angle, or slices by time. Throws as whole_exposure().
-void print_live(const cli::App& app, const Options& options, const model::Printer& printer);
+/// A sinogram by the stage's angle, or slices by time; stack: null for a folder of slices. Throws as whole_exposure().
+void print_live(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader* stack);
 
 }  // namespace vam::project
