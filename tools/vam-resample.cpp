@@ -19,6 +19,7 @@
 #include "optics/crossed_slices.hpp"
 #include "optics/ray_list.hpp"
 #include "optics/resample_stack.hpp"
+#include "session/exposure.hpp"
 #include "session/printer.hpp"
 #include "vam-resample/options.hpp"
 
@@ -75,7 +76,10 @@ void run(const cli::App& app, Options& options) {
                                           : optics::stack_to_virtual(printer, options.alignment, in.info(), how,
                                                                      options.bin_width_mm, options.bins);
   job.info.history.push_back(app.history());
-  if (projector) job.info.extra["vam:printer"] = io::printer_settings(printer);
+  if (projector) {
+    session::forget_exposure(job.info.extra);  // which another printer, and brighter light, would not give
+    job.info.extra["vam:printer"] = io::printer_settings(printer);
+  }
   io::StackWriter out(options.output, job.info, options.stack);
   Progress progress("resampling", in.info().count);
   io::transform(in, out, 16, [&](const std::vector<Image>& slices) {

@@ -148,6 +148,13 @@ vam-dose joined.exr --like part.vdb $diffuses --report joined.json -o joined.vdb
 holds 'for which the dose diffuses' "($(json joined.json blur_sigma_mm) ^ 2 / (0.0004 * 4 * $(json joined.json turns)) - 1) ^ 2 < 1e-12"
 fails 64 'not known before the end of a pipe; give a file, or --diffusion-time' sh -c "vam-dose --like part.vdb $diffuses -o x.vdb <joined.exr"
 
+# Resampled, light is planned for the printer that shows it.
+for speed in 90 180; do
+  vam-resample flat.exr --set stage.speed_deg_s=$speed -o at.exr 2>/dev/null
+  vam-dose at.exr --like part.vdb --report "at-$speed.json" -o at.vdb 2>/dev/null && vam-score at.vdb --target part.vdb --report "$speed.json" >/dev/null
+done
+holds 'at twice the speed for the same dose' "$(json at-180.json turns) > $(json at-90.json turns) && ($(json 180.json mean_part) / $(json 90.json mean_part) - 1) ^ 2 < 1e-8"
+
 vam-optimize part.vdb --angles 60 --iterations 2 --set resin.absorption_per_mm=0 --verbose -o x.exr 2>said
 ok 'without a known resin dose and time are relative' grep -q 'dose and time are relative: vam-calibrate critical-dose measures' said
 done_testing
