@@ -95,7 +95,7 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
   }
   ExposurePlan plan;
   const double showings = std::max(1.0, std::ceil(critical / (middle + quarter) * (1 - rounding)));
-  plan.turns = round_int(showings * turns_of_frames);
+  plan.turns = std::round(showings * turns_of_frames);
   plan.multiplier = std::min(1.0, critical / (aim * showings));
   plan.seconds = model::seconds_of(printer.stage, plan.turns);
   plan.peak_intensity_mw_cm2 = plan.multiplier * printer.projector.max_intensity_mw_cm2;
@@ -104,6 +104,7 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
 
 void add_to(Json& figures, const ExposurePlan& plan) {
   figures["turns"] = plan.turns;
+  if (plan.turns == std::floor(plan.turns)) figures["turns"] = round_int(plan.turns);
   figures["duration_s"] = plan.seconds;
   figures["multiplier"] = plan.multiplier;
   figures["peak_intensity_mw_cm2"] = plan.peak_intensity_mw_cm2;

@@ -41,7 +41,7 @@ class TurnDoses {
 inline constexpr double most_turns = 1e6;
 
 struct ExposurePlan {
-  int turns = 0;
+  double turns = 0;       // whole ones, unless they were given
   double multiplier = 0;  // of full light, 0...1
   double seconds = 0;
   double peak_intensity_mw_cm2 = 0;  // of the brightest pixel

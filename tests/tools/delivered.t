@@ -36,7 +36,9 @@ volumes fall half.vdb 0.75 0 rest.vdb
 ok 'doses of several projections' vam-optimize $resin --angles 90 part.vdb --delivered quarter.vdb --delivered rest.vdb --init whole.exr --iterations 10 -o two.exr --report two.json
 holds 'add up' "($(json two.json delivered.part_mean_percent) - $(json rest.json delivered.part_mean_percent)) ^ 2 < 1e-6 && ($(pw two.json) - $(pw rest.json)) ^ 2 < 1e-8"
 ok 'as many turns as are left' $rest --turns 1 --iterations 10 -o one.exr --report one.json
-is 'which the light states, as its full scale' "$(vam-check one.exr >/dev/null; $exr attr one.exr vam:shown_turns)" 1
+is 'which the light states, as its full scale' "$(vam-check one.exr >/dev/null; $exr attr one.exr vam:shown_turns | tr -d ' ')" 1
+vam-optimize $resin --angles 90 part.vdb --delivered half.vdb --init whole.exr --turns 20 --iterations 1 -o slow.exr --report slow.json
+holds 'in more turns than it takes, those that it states' "$(json slow.json turns) == 20 && ($(json slow.json duration_s) / $(json one.json duration_s) / 20 - 1) ^ 2 < 1e-12"
 vam-dose $resin one.exr --like part.vdb -o once.vdb
 volumes sum half.vdb once.vdb 1 total.vdb
 vam-score $resin total.vdb --target part.vdb --report total.json >/dev/null

@@ -12,16 +12,32 @@
 
 namespace vam::optimize_tool {
 
+namespace {
+
+/// What completes a dose within given turns has a scale, and so an exposure.
+bool gives_exposure(const Options& options) { return options.turns && !options.delivered.empty(); }
+
+}  // namespace
+
+double full_grey(const model::Printer& printer, double showings, const Options& options) {
+  const double per_radian = resin::dose_per_radian_mj_cm3(printer).value();
+  return showings * options.demands.window.threshold() * per_radian / *printer.resin.critical_dose_mj_cm3;
+}
+
 std::optional<double> fixed_threshold(const Options& options) {
   if (options.delivered.empty()) return std::nullopt;
   return options.demands.window.threshold();
 }
 
-std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, double peak,
-                                               const model::Printer& printer, const model::StackInfo& info,
-                                               const Options& options) {
-  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
+std::optional<score::ExposurePlan> plan_of(const model::DoseMetrics& doses, double peak, const model::Printer& printer,
+                                           const model::StackInfo& info, const Options& options) {
   const double full_scale = options.full_scale.value_or(peak);
+  if (gives_exposure(options)) {
+    const double multiplier = full_scale / full_grey(printer, *options.turns / optics::turns_of(info), options);
+    return score::ExposurePlan{*options.turns, multiplier, model::seconds_of(printer.stage, *options.turns),
+                               multiplier * printer.projector.max_intensity_mw_cm2};
+  }
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   if (!per_radian || !model::repeat(info.poses)) return std::nullopt;
   const double threshold = options.demands.window.threshold();
   model::DoseMetrics exact;
@@ -33,8 +49,8 @@ std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, 
 }
 
 bool states_exposure(const model::StackInfo& info, const model::Printer& printer, const Options& options) {
-  return options.slices.empty() && !(options.turns && !options.delivered.empty()) && model::repeat(info.poses) &&
-         resin::dose_per_radian_mj_cm3(printer).has_value();
+  return gives_exposure(options) ||
+         (options.slices.empty() && model::repeat(info.poses) && resin::dose_per_radian_mj_cm3(printer).has_value());
 }
 
 Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
@@ -48,7 +64,7 @@ Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light,
   if (options.bits) optimize::judge_shown(task, light, frames, aimed, outcome);
   Printing print;
   const auto seconds_of = [&](const optimize::VolumeOutcome& seen) {
-    print.plan = exposure_of(seen.metrics, seen.peak_intensity, scene.printer, info, options);
+    print.plan = plan_of(seen.metrics, seen.peak_intensity, scene.printer, info, options);
     return print.plan && states_exposure(info, scene.printer, options) ? print.plan->seconds : compensated;
   };
   const auto blur_px = [&](double seconds) { return session::blur_px(resin, seconds, scene, options); };

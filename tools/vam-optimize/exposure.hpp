@@ -16,11 +16,13 @@
 
 namespace vam::optimize_tool {
 
-/// Turns and seconds for a dose with these metrics, where `peak` intensity (or optimize.full_scale) is full grey. None
-/// where the resin's critical dose is not known or takes a million turns, nothing is lit, or frames are shown once.
-[[nodiscard]] std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, double peak,
-                                                             const model::Printer& printer,
-                                                             const model::StackInfo& info, const Options& options);
+/// Turns and seconds for a dose with these metrics, where `peak` intensity (or optimize.full_scale) is full grey; those
+/// of
+/// --turns for light that completes a dose. None where the resin's critical dose is not known or takes a million turns,
+/// nothing is lit, or frames are shown once.
+[[nodiscard]] std::optional<score::ExposurePlan> plan_of(const model::DoseMetrics& doses, double peak,
+                                                         const model::Printer& printer, const model::StackInfo& info,
+                                                         const Options& options);
 
 struct Printing {
   std::optional<score::ExposurePlan> plan;
@@ -34,9 +36,12 @@ struct Printing {
                                      const model::StackInfo& info, const Options& options,
                                      optimize::VolumeOutcome& outcome);
 
-/// Whether the stack states its exposure: not a piece, as the plan is one of the whole part, nor light whose exposure
-/// was given with what it completes.
+/// Whether the stack states its exposure: not a piece, as the plan is one of the whole part, unless --turns gives it.
 [[nodiscard]] bool states_exposure(const model::StackInfo& info, const model::Printer& printer, const Options& options);
+
+/// The value that, full grey for so many showings of the frames, gives the critical dose where the relative dose is the
+/// threshold.
+[[nodiscard]] double full_grey(const model::Printer& printer, double showings, const Options& options);
 
 /// The dose that sets the resin where no exposure can put it elsewhere: what completes a dose has a scale.
 [[nodiscard]] std::optional<double> fixed_threshold(const Options& options);

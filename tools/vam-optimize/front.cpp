@@ -35,7 +35,7 @@ using Plans = std::vector<std::optional<score::ExposurePlan>>;  // of each limit
 Plans plans_of(const std::vector<FrontPoint>& front, const model::Printer& printer, const model::StackInfo& info,
                const Options& options) {
   Plans plans;
-  for (const FrontPoint& point : front) plans.push_back(exposure_of(point.metrics, point.peak, printer, info, options));
+  for (const FrontPoint& point : front) plans.push_back(plan_of(point.metrics, point.peak, printer, info, options));
   return plans;
 }
 

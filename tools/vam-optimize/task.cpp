@@ -10,23 +10,11 @@
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/covered.hpp"
-#include "resin/absolute_dose.hpp"
 #include "session/slices.hpp"
+#include "vam-optimize/exposure.hpp"
 #include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
-
-namespace {
-
-/// The value that, full grey for --turns turns, gives the critical dose where the relative dose is the threshold.
-double full_grey(const session::Scene& scene, const Options& options) {
-  const double per_radian = resin::dose_per_radian_mj_cm3(scene.printer).value();
-  const double threshold = options.demands.window.threshold();
-  const double showings = *options.turns * scene.turn.angles / static_cast<double>(scene.frames());
-  return showings * threshold * per_radian / *scene.printer.resin.critical_dose_mj_cm3;
-}
-
-}  // namespace
 
 model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume& target, const cli::App& app,
                             const Options& options) {
@@ -52,11 +40,6 @@ model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume&
   info.history.push_back(app.history());
   info.extra["vam:threshold_dose"] = format_number(options.demands.window.threshold());
   if (options.demands.grey && options.response != "linear") info.extra["vam:response"] = options.response;
-  // What completes a dose has a scale.
-  if (options.turns && !options.delivered.empty()) {
-    info.extra["vam:full_scale"] = format_number(full_grey(scene, options), 9);
-    info.extra["vam:shown_turns"] = format_number(*options.turns);
-  }
   return info;
 }
 
@@ -91,7 +74,8 @@ namespace {
 optimize::IntensityLimit limit(const session::Scene& scene, const Options& options) {
   if (!options.turns) return options.limit;
   constexpr double sure = 0.95;  // the middle of the window may lie a little below the threshold that was aimed at
-  return {.most = sure * full_grey(scene, options), .of_even = 0};
+  const double showings = *options.turns * scene.turn.angles / static_cast<double>(scene.frames());
+  return {.most = sure * full_grey(scene.printer, showings, options), .of_even = 0};
 }
 
 }  // namespace

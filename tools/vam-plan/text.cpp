@@ -65,7 +65,7 @@ std::string angles_words(const Estimate& estimate) {
 std::string duration_words(const Estimate& estimate) {
   if (!estimate.resin_known) return "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
   if (!estimate.exposure) return "not known: the part gets no light in the estimate";
-  return number(estimate.exposure->seconds) + " s in " + std::to_string(estimate.exposure->turns) +
+  return number(estimate.exposure->seconds) + " s in " + format_number(estimate.exposure->turns) +
          (estimate.exposure->turns == 1 ? " turn" : " turns") + ", brightest pixel " +
          number(estimate.exposure->peak_intensity_mw_cm2) + " mW/cm2";
 }
