@@ -104,18 +104,15 @@ void run(const cli::App& app, Options& options) {
   if (!options.demands.grey && !void_piece) {  // whose figures are misses, not doses
     optimize::require_light(outcome, subject, task.source.band_px);
   }
-  sink.finish();
-  sink.require_light(outcome.peak_intensity);
-  const auto [plan, seconds] = judge_printed(task, *light, sink.kept(), scene, info, options, outcome);
+  const auto [plan, full_scale, threshold, seconds] = judge_printed(task, *light, sink, scene, info, options, outcome);
   std::optional<optimize::Trials> trials;
   if (options.printer_tolerances) trials = run_trials(make_trial(scene, seconds, options), task, sink.kept());
   if (planned && plan) {
-    session::state_exposure(info.extra, plan->turns,
-                            options.full_scale.value_or(outcome.peak_intensity) / plan->multiplier);
+    session::state_exposure(info.extra, plan->turns, full_scale);
     sink.state(info.extra);
   }
   sink.commit();  // hours of work, which no figure or report shall undo
-  publish(task, outcome, trials, scene, in.target.front(), plan, info, options);
+  publish(task, outcome, trials, scene, in.target.front(), plan, threshold, info, options);
   beginning.remove();
 }
 

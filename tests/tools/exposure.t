@@ -155,6 +155,16 @@ for speed in 90 180; do
 done
 holds 'at twice the speed for the same dose' "$(json at-180.json turns) > $(json at-90.json turns) && ($(json 180.json mean_part) / $(json 90.json mean_part) - 1) ^ 2 < 1e-8"
 
+# Grey levels are those that are shown.
+vam-optimize part.vdb --angles 60 --bits 2 -o two.exr --report two.json
+holds 'below full intensity' "$(json two.json multiplier) < 0.95"
+vam-dose two.exr --like part.vdb -o two.vdb; vam-score two.vdb --target part.vdb --report two.score.json >two.txt
+vam-project two.exr --bits 2 --fps 15 -o two/ --report levels.json
+vam-convert two --geometry vial -o levels.exr && vam-dose levels.exr --like part.vdb -o levels.vdb
+vam-score levels.vdb --target part.vdb --report levels.score.json >levels.txt
+holds 'none is clipped, none is another' "$(json levels.json clipped_fraction) == 0 && ($(json levels.score.json mean_part) / $(json two.score.json mean_part) - 1) ^ 2 < 1e-8"
+is 'the verdict is that of the levels' "$(json two.json verdict | cut -c -10)" "$(json two.score.json verdict | cut -c -10)"
+
 vam-optimize part.vdb --angles 60 --iterations 2 --set resin.absorption_per_mm=0 --verbose -o x.exr 2>said
 ok 'without a known resin dose and time are relative' grep -q 'dose and time are relative: vam-calibrate critical-dose measures' said
 done_testing

@@ -53,22 +53,36 @@ bool states_exposure(const model::StackInfo& info, const model::Printer& printer
          (options.slices.empty() && model::repeat(info.poses) && resin::dose_per_radian_mj_cm3(printer).has_value());
 }
 
-Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
+Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light, Sink& sink,
                        const session::Scene& scene, const model::StackInfo& info, const Options& options,
                        optimize::VolumeOutcome& outcome) {
   const model::Resin& resin = scene.printer.resin;
   const double compensated = session::diffusion_s(scene, options);
-  const auto aimed = [&](const model::DoseMetrics& doses) {
-    return fixed_threshold(options).value_or(score::aimed_dose(doses, options.demands.window.threshold()));
-  };
-  if (options.bits) optimize::judge_shown(task, light, frames, aimed, outcome);
+  const bool planned = states_exposure(info, scene.printer, options);
   Printing print;
-  const auto seconds_of = [&](const optimize::VolumeOutcome& seen) {
+  const auto plan = [&](const optimize::VolumeOutcome& seen) {
     print.plan = plan_of(seen.metrics, seen.peak_intensity, scene.printer, info, options);
-    return print.plan && states_exposure(info, scene.printer, options) ? print.plan->seconds : compensated;
+    print.full_scale =
+        options.full_scale.value_or(seen.peak_intensity) / (planned && print.plan ? print.plan->multiplier : 1);
+  };
+  plan(outcome);
+  sink.finish(print.full_scale, outcome.peak_intensity);
+  const bool is_rounded = options.bits && planned && print.plan;  // for that exposure
+  const double aim = options.demands.window.threshold();
+  print.threshold = fixed_threshold(options);
+  if (is_rounded && !print.threshold)
+    print.threshold =
+        aim * print.full_scale / full_grey(scene.printer, print.plan->turns / optics::turns_of(info), options);
+  const auto aimed = [&](const model::DoseMetrics& doses) {
+    return print.threshold.value_or(score::aimed_dose(doses, aim));
+  };
+  if (options.bits) optimize::judge_shown(task, light, sink.kept(), aimed, outcome);
+  const auto seconds_of = [&](const optimize::VolumeOutcome& seen) {
+    if (!is_rounded) plan(seen);
+    return planned && print.plan ? print.plan->seconds : compensated;
   };
   const auto blur_px = [&](double seconds) { return session::blur_px(resin, seconds, scene, options); };
-  print.seconds = optimize::judge_exposed(task, light, frames, aimed, seconds_of, blur_px, outcome);
+  print.seconds = optimize::judge_exposed(task, light, sink.kept(), aimed, seconds_of, blur_px, outcome);
   if (!options.blur || resin.diffusion_mm2_s == 0) return print;
   model::warn_of_diffusion(resin, print.seconds);
   if (std::abs(print.seconds - compensated) > 0.01 * print.seconds) {

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
-#include "base/image.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
@@ -13,27 +11,29 @@
 #include "score/exposure.hpp"
 #include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
+#include "vam-optimize/sink.hpp"
 
 namespace vam::optimize_tool {
 
 /// Turns and seconds for a dose with these metrics, where `peak` intensity (or optimize.full_scale) is full grey; those
-/// of
-/// --turns for light that completes a dose. None where the resin's critical dose is not known or takes a million turns,
-/// nothing is lit, or frames are shown once.
+/// of --turns for light that completes a dose. None where the resin's critical dose is not known or takes a million
+/// turns, nothing is lit, or frames are shown once.
 [[nodiscard]] std::optional<score::ExposurePlan> plan_of(const model::DoseMetrics& doses, double peak,
                                                          const model::Printer& printer, const model::StackInfo& info,
                                                          const Options& options);
 
 struct Printing {
   std::optional<score::ExposurePlan> plan;
-  double seconds = 0;  // during which the dose diffuses
+  double full_scale = 0;            // value at full intensity
+  std::optional<double> threshold;  // dose that sets the resin, where the plan decides it; none: the best one
+  double seconds = 0;               // during which the dose diffuses
 };
 
-/// Makes the figures of `outcome` those of the frames in grey levels, of --bits, and of the exposure that is planned
-/// for them, which its diffusion decides; warns where the light compensates for another diffusion.
-[[nodiscard]] Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light,
-                                     std::span<const Image> frames, const session::Scene& scene,
-                                     const model::StackInfo& info, const Options& options,
+/// Plans the exposure, finishes the stack by it, and makes the figures of `outcome` those of the frames as they are
+/// shown: in the grey levels of --bits, which are rounded for the first plan, and with the diffusion of that time.
+/// Warns where the light compensates for another diffusion.
+[[nodiscard]] Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light, Sink& sink,
+                                     const session::Scene& scene, const model::StackInfo& info, const Options& options,
                                      optimize::VolumeOutcome& outcome);
 
 /// Whether the stack states its exposure: not a piece, as the plan is one of the whole part, unless --turns gives it.

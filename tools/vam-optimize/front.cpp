@@ -9,6 +9,7 @@
 
 #include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
+#include "optimize/run/quantise.hpp"
 #include "plot/plot.hpp"
 #include "plot/save.hpp"
 #include "vam-optimize/exposure.hpp"
@@ -18,12 +19,9 @@ namespace vam::optimize_tool {
 
 optimize::Show make_show(const model::Printer& printer, const Options& options) {
   const resin::GreyLevels levels = grey_levels(printer, options.bits.value_or(printer.projector.bits));
-  return [levels, full_scale = options.full_scale, dithered = options.dither](const std::vector<Image>& frames) {
-    std::vector<Image> shown;
-    optimize::Quantiser quantiser(levels, full_scale, dithered, [&](const Image& image) { shown.push_back(image); });
-    for (const Image& frame : frames) quantiser.add(frame);
-    quantiser.finish();
-    return shown;
+  return [levels, full_scale = options.full_scale, dithered = options.dither](std::vector<Image> frames) {
+    optimize::quantise(frames, levels, full_scale.value_or(optimize::largest(frames)), dithered);
+    return frames;
   };
 }
 

@@ -22,7 +22,6 @@
 #include "session/dose_score.hpp"
 #include "session/exposure.hpp"
 #include "session/volumes.hpp"
-#include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
 #include "vam-optimize/front.hpp"
 #include "verdict/verdict.hpp"
@@ -104,7 +103,8 @@ void report_delivered(Json& report, const optimize::VolumeSource& source, const 
 
 void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
              const std::optional<optimize::Trials>& trials, const session::Scene& scene, const io::SparseVolume& target,
-             const std::optional<score::ExposurePlan>& plan, const model::StackInfo& info, const Options& options) {
+             const std::optional<score::ExposurePlan>& plan, std::optional<double> threshold,
+             const model::StackInfo& info, const Options& options) {
   const model::Printer& printer = scene.printer;
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
@@ -131,7 +131,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     verdict::GivenPrint print = outcome.print(scene.grid, model::stretch_z(target.metadata),
                                               model::light_width(printer, info.angle_step_deg, !options.in_vial()));
     if (plan) print.seconds = plan->seconds;
-    print.threshold = fixed_threshold(options);
+    print.threshold = threshold;
     const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words +

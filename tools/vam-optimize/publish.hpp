@@ -14,9 +14,11 @@
 
 namespace vam::optimize_tool {
 
-/// Warnings on stderr; the files of --trace and --report where they are requested.
+/// Warnings on stderr; the files of --trace and --report where they are requested. threshold: the dose that sets the
+/// resin; none: the exposure puts it in the window.
 void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
              const std::optional<optimize::Trials>& trials, const session::Scene& scene, const io::SparseVolume& target,
-             const std::optional<score::ExposurePlan>& plan, const model::StackInfo& info, const Options& options);
+             const std::optional<score::ExposurePlan>& plan, std::optional<double> threshold,
+             const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-optimize/sink.hpp"
 
-#include <algorithm>
+#include <string>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
+#include "optimize/run/quantise.hpp"
 #include "session/printer.hpp"
 
 namespace vam::optimize_tool {
@@ -16,43 +17,31 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
     : keep_(options.printer_tolerances || options.bits || printer.resin.diffusion_mm2_s > 0),
-      bits_(options.bits),
-      full_scale_(options.full_scale),
+      dither_(options.dither),
       out_(options.output, info, options.stack) {
-  if (!options.bits) return;
-  levels_.emplace(grey_levels(printer, *options.bits), options.full_scale, options.dither,
-                  [this](const Image& image) { write(image); });
-}
-
-void Sink::write(const Image& image) {
-  out_.write(image);
-  most_ = std::max(most_, *std::max_element(image.values.begin(), image.values.end()));
-  if (keep_) kept_.push_back(image);
+  if (options.bits) levels_.emplace(grey_levels(printer, *options.bits));
 }
 
 void Sink::add(const Image& image) {
-  if (levels_) {
-    levels_->add(image);
-  } else {
-    write(image);
-  }
+  if (!levels_) out_.write(image);
+  if (keep_) kept_.push_back(image);
 }
 
-void Sink::finish() {
-  if (levels_) levels_->finish();
-}
-
-void Sink::require_light(double peak) const {
-  if (!bits_) return;
-  const double full = full_scale_.value_or(peak);
-  if (!(most_ > 0)) {
-    throw Error{Fault::data, "--bits " + std::to_string(*bits_) + ": the peak intensity of " + format_number(peak, 3) +
-                                 " rounds to 0 at a full scale of " + format_number(full, 3) +
-                                 "; the frames would be dark; use a smaller optimize.full_scale or more bits"};
+void Sink::finish(double full_scale, double peak) {
+  if (!levels_) return;
+  optimize::quantise(kept_, *levels_, full_scale, dither_);
+  if (!(optimize::largest(kept_) > 0)) {
+    throw Error{Fault::data, "--bits " + std::to_string(levels_->bits()) + ": the peak intensity of " +
+                                 format_number(peak, 3) + " rounds to 0 at a full scale of " +
+                                 format_number(full_scale, 3) +
+                                 "; the frames would be dark; use a smaller optimize.full_scale, more bits, or less "
+                                 "light (a faster stage, a lower projector.max_intensity_mw_cm2)"};
   }
-  if (peak <= full) return;
-  warn("the peak intensity of " + format_number(peak, 3) + " exceeds optimize.full_scale " + format_number(full, 3) +
-       " and is clipped");
+  if (peak > full_scale) {
+    warn("the peak intensity of " + format_number(peak, 3) + " exceeds optimize.full_scale " +
+         format_number(full_scale, 3) + " and is clipped");
+  }
+  for (const Image& image : kept_) out_.write(image);
 }
 
 }  // namespace vam::optimize_tool

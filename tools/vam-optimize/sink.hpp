@@ -8,7 +8,7 @@
 #include "base/image.hpp"
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"
-#include "optimize/run/quantise.hpp"
+#include "resin/response.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
@@ -22,25 +22,20 @@ class Sink {
  public:
   Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);
   void add(const Image& image);
-  /// After the last slice.
-  void finish();
-  /// After finish(), for light with that peak: throws Fault::data where all of it rounds to grey level 0, warns where
-  /// full grey is below it.
-  void require_light(double peak) const;
+  /// After the last slice, of light with that peak: the grey levels of --bits, full grey at full_scale. Throws
+  /// Fault::data where all of it rounds to level 0, warns where full grey is below the peak.
+  void finish(double full_scale, double peak);
   void state(const model::Metadata& facts) { out_.state(facts); }
   void commit() { out_.commit(); }
   /// All that was written, in order, if it was to be kept.
   [[nodiscard]] const std::vector<Image>& kept() const { return kept_; }
 
  private:
-  void write(const Image& image);
   bool keep_;
-  std::optional<int> bits_;
-  std::optional<double> full_scale_;
-  float most_ = 0;  // of all that was written
+  bool dither_;
   std::vector<Image> kept_;
   io::StackWriter out_;
-  std::optional<optimize::Quantiser> levels_;
+  std::optional<resin::GreyLevels> levels_;
 };
 
 }  // namespace vam::optimize_tool

@@ -2,47 +2,28 @@
 #include "optimize/run/quantise.hpp"
 
 #include <algorithm>
-#include <utility>
 
-#include "base/error.hpp"
-#include "base/text/text.hpp"
+#include "resin/dither.hpp"
 
 namespace vam::optimize {
 
-Quantiser::Quantiser(resin::GreyLevels levels, std::optional<double> full_scale, bool error_feedback, Emit emit)
-    : levels_(std::move(levels)), full_scale_(full_scale), emit_(std::move(emit)) {
-  if (error_feedback) dither_.emplace(levels_, 1);
-  if (full_scale_ && !(*full_scale_ > 0))
-    throw Error{Fault::usage, "full scale " + format_number(*full_scale_) + " must be above 0"};
+double largest(std::span<const Image> images) {
+  float most = 0;
+  for (const Image& image : images) {
+    for (const float value : image.values) most = std::max(most, value);
+  }
+  return static_cast<double>(most);
 }
 
-void Quantiser::add(const Image& image) {
-  if (full_scale_) return emit_(quantised(image, static_cast<float>(*full_scale_)));
-  held_.push_back(image);
-}
-
-void Quantiser::finish() {
-  float largest = 0;
-  for (const Image& image : held_) {
-    for (const float v : image.values) largest = std::max(largest, v);
+void quantise(std::span<Image> images, const resin::GreyLevels& levels, double full_scale, bool error_feedback) {
+  if (!(full_scale > 0)) return;
+  const auto full = static_cast<float>(full_scale);
+  const resin::Dither dither(levels, 1);
+  for (Image& image : images) {
+    for (float& value : image.values) value /= full;
+    if (error_feedback) image = resin::dithered(image, dither);
+    for (float& value : image.values) value = full * (error_feedback ? value : levels.intensity(levels.level(value)));
   }
-  for (Image& image : held_) {
-    emit_(largest > 0 ? quantised(image, largest) : image);
-    image = {};
-  }
-  held_.clear();
-}
-
-Image Quantiser::quantised(const Image& image, float full_scale) const {
-  Image result = image;
-  for (float& value : result.values) value /= full_scale;
-  if (dither_) {
-    result = resin::dithered(result, *dither_);
-  } else {
-    for (float& value : result.values) value = levels_.intensity(levels_.level(value));
-  }
-  for (float& value : result.values) value *= full_scale;
-  return result;
 }
 
 }  // namespace vam::optimize
