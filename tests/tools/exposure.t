@@ -61,6 +61,8 @@ if command -v ffmpeg >/dev/null; then
   vam-convert one.mkv --view-step 3 --geometry vial -o cut.exr 2>/dev/null
   is 'those that are there count on request' "$(attr cut.exr vam:shown_turns)" 1
   ffmpeg -v error -i print.mkv -c:v libx264 -qp 0 moved.mp4 </dev/null
+  ffmpeg -v error -r 8 -i print.mkv -c:v ffv1 slow.mkv </dev/null
+  fails 65 'slow.mkv: plays 8 frames per second, but was made for 30 ' vam-convert slow.mkv --geometry vial -o cut.exr
   for name in moved own; do
     [ $name = moved ] || vam-project light.exr -o own.mp4 2>/dev/null
     vam-convert $name.mp4 --geometry vial -o moved.exr 2>/dev/null

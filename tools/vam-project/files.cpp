@@ -33,6 +33,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   shown.projector.axis_column += options.column_offset;
   shown.projector.axis_row += options.row_offset;
   facts.info.extra["vam:printer"] = io::printer_settings(shown);
+  facts.info.extra["vam:fps"] = format_number(projector.fps, 9);
   if (exposure.share) {  // of fractions of full intensity
     session::state_exposure(facts.info.extra, turns, 1);
     if (const auto threshold = model::threshold_dose(facts.info.extra))

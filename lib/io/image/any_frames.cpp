@@ -19,6 +19,7 @@
 #include "io/image/video.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
+#include "model/metadata.hpp"
 
 namespace vam::io {
 
@@ -52,6 +53,11 @@ class VideoSource : public ImageSource {
   explicit VideoSource(const std::string& path) : reader_(path) {
     info_ = frames_of(reader_.format().width, reader_.format().height, count_video_frames(path));
     if (!reader_.format().facts.empty()) take_frame_facts(reader_.format().facts, info_, path);
+    const double fps = reader_.format().fps, made_for = model::stated_number(info_.extra, "vam:fps").value_or(fps);
+    constexpr double same = 1e-3;
+    if (std::abs(fps - made_for) <= same * made_for) return;
+    throw Error{Fault::data, path + ": plays " + format_number(fps) + " frames per second, but was made for " +
+                                 format_number(made_for) + " (vam:fps); give it this rate, or write it again"};
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return about_; }
