@@ -51,7 +51,7 @@ quiet 'a video' vam-project light.exr -o print.mkv
 shown video print.mkv
 quiet 'images' vam-project light.exr -o frames/
 shown images frames; cp frames/facts.txt facts
-for damage in 'head -c 150' 'sed s/vam:shown_turns./shown=/' 'sed s/vam:printer/vam:piece/' 'head -n -1' 'head -c 0'; do
+for damage in 'head -c 150' 'sed s/vam:shown_turns./shown=/' 'sed s/vam:printer/vam:piece/' 'head -n -2' 'head -c 0'; do
   $damage facts >frames/facts.txt; fails 65 'facts.txt: .*; write them again' vam-convert frames --geometry vial -o cut.exr
 done
 # What is not all of the light, or was moved by another program.
@@ -71,7 +71,11 @@ if command -v ffmpeg >/dev/null; then
 else
   echo "ok $((number += 1)) - videos that ffmpeg wrote # SKIP no ffmpeg here"
 fi
+sed 's/critical_dose_mj_cm3=100/critical_dose_mj_cm3=90/' facts >frames/facts.txt
+fails 65 'frames/facts.txt: the facts or the [0-9]* frames beside it are not those that were written' vam-convert frames --geometry vial -o cut.exr
 cp facts frames/facts.txt; cp -r frames fewer; rm fewer/frames.csv; (cd fewer && rm $(ls [0-9]*.png | tail -n +121))
+fails 65 'fewer/facts.txt: the facts or the 120 frames beside it are not those' vam-check fewer
+head -n -1 facts >fewer/facts.txt
 fails 65 "fewer: has 120 of the $((120 * turns)) frames of its light" vam-convert fewer --geometry vial -o cut.exr
 mkdir card card/dri; touch card/dri/card0
 FAKE_DRM=$PWD/card LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card.so vam-project light.exr -o drm:HDMI-A-1 --max-missed 1 --max-missed-lit 1 --log flips 2>errors

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image/any_frames.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/printable.hpp"
@@ -139,6 +141,7 @@ class FolderSource : public ImageSource {
  public:
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
+  [[nodiscard]] bool is_sealed() const override { return sealed_; }
   bool next(Image& image, model::ImageInfo& about) override {
     if (taken_ == folder_.count()) return false;
     about = index_.empty() ? model::ImageInfo{} : index_[taken_];
@@ -152,9 +155,7 @@ class FolderSource : public ImageSource {
   /// Those of the first image, which all must have.
   void set_size(int width, int height) {
     info_ = frames_of(width, height, folder_.count());
-    if (has_regular_file(facts_)) {
-      take_frame_facts(read_all(facts_, Content::text, std::uint64_t{1} << 20), info_, facts_);
-    }
+    if (has_regular_file(facts_)) take_facts(read_all(facts_, Content::text, std::uint64_t{1} << 20));
     if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
   }
   virtual Image read(int i) = 0;
@@ -163,6 +164,25 @@ class FolderSource : public ImageSource {
   model::StackInfo info_;
 
  private:
+  /// Where they end in a seal, the frames are held to it, too.
+  void take_facts(const std::string& text) {
+    const std::size_t end = std::min(text.rfind(std::string(values_seal_key) + " "), text.size());
+    const std::string facts = text.substr(0, end);
+    take_frame_facts(facts, info_, facts_);
+    sealed_ = end < text.size();
+    if (!sealed_) return;
+    std::vector<Digest> frames(static_cast<std::size_t>(folder_.count()));
+    parallel_for(folder_.count(), [&](int i) {
+      const std::string bytes = read_all(folder_.path(i), Content::binary);
+      frames[static_cast<std::size_t>(i)] = digest_of(bytes.data(), bytes.size());
+    });
+    if (text.substr(end) == frame_seal(facts, frames)) return;
+    throw Error{Fault::data, facts_ + ": the facts or the " + std::to_string(folder_.count()) +
+                                 " frames beside it are not those that were written; write them again, or remove its "
+                                 "last line if the change was intentional"};
+  }
+
+  bool sealed_ = false;
   std::string facts_;
   std::vector<model::ImageInfo> index_;
   int taken_ = 0;

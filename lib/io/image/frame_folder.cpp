@@ -59,10 +59,19 @@ void take_frame_facts(const std::string& text, model::StackInfo& info, const std
   info.angle_step_deg = *step;
 }
 
+std::string frame_seal(const std::string& facts, std::span<const Digest> frames) {
+  Sealer sealer;
+  sealer.add(facts);
+  for (const Digest& frame : frames) sealer.add(frame);
+  return std::string(values_seal_key) + " " + seal_text(sealer.digest()) + "\n";
+}
+
 FrameFolder::FrameFolder(const std::string& path) : folder_(path, is_frame) {}
 
-void FrameFolder::write(int number, const GreyImage& frame, const ImageText& text) const {
-  folder_.write(number_name(number), encode_png(frame, text));
+Digest FrameFolder::write(int number, const GreyImage& frame, const ImageText& text) const {
+  const auto png = encode_png(frame, text);
+  folder_.write(number_name(number), png);
+  return digest_of(png.data(), png.size());
 }
 
 void FrameFolder::commit(std::span<const model::ImageInfo> frames, const std::string& facts) {

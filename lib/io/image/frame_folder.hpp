@@ -8,6 +8,7 @@
 #include "base/pixels.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/output_folder.hpp"
+#include "io/stream/seal.hpp"
 #include "model/stack.hpp"
 
 namespace vam::io {
@@ -19,14 +20,17 @@ namespace vam::io {
 /// or not the last, as of a text that was cut off.
 void take_frame_facts(const std::string& text, model::StackInfo& info, const std::string& name);
 
-/// 00000.png, 00001.png, ..., frames.csv (file,time_s,angle_deg) and facts.txt (frame_facts()). An older folder is
-/// replaced when it is empty or holds nothing but such frames. Throws as OutputFolder does.
+/// The last line of facts.txt: the seal of the lines before it and of the bytes of every frame.
+[[nodiscard]] std::string frame_seal(const std::string& facts, std::span<const Digest> frames);
+
+/// 00000.png, 00001.png, ..., frames.csv (file,time_s,angle_deg) and facts.txt (frame_facts() and its seal). An older
+/// folder is replaced when it is empty or holds nothing but such frames. Throws as OutputFolder does.
 class FrameFolder {
  public:
   explicit FrameFolder(const std::string& path);
-  /// Frame `number` from 0, in any order, from any thread.
-  void write(int number, const GreyImage& frame, const ImageText& text) const;
-  /// After all: when and at which angle frame i is shown.
+  /// Frame `number` from 0, in any order, from any thread; the hash of its bytes.
+  Digest write(int number, const GreyImage& frame, const ImageText& text) const;
+  /// After all: when and at which angle frame i is shown, and what facts.txt holds.
   void commit(std::span<const model::ImageInfo> frames, const std::string& facts = "");
 
  private:

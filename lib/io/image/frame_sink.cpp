@@ -34,10 +34,12 @@ class FolderSink : public FrameSink {
 
   void write(std::span<const ProjectorFrame> frames) override {
     const int first = count_of(shown_);
-    parallel_for(count_of(frames), [&](int i) { folder_.write(first + i, frames[i].levels, text(frames[i])); });
+    digests_.resize(shown_.size() + frames.size());
+    parallel_for(count_of(frames),
+                 [&](int i) { digests_[first + i] = folder_.write(first + i, frames[i].levels, text(frames[i])); });
     for (const auto& frame : frames) shown_.push_back(about(frame));
   }
-  void commit() override { folder_.commit(shown_, facts_); }
+  void commit() override { folder_.commit(shown_, facts_ + frame_seal(facts_, digests_)); }
 
  private:
   [[nodiscard]] ImageText text(const ProjectorFrame& frame) const {
@@ -47,6 +49,7 @@ class FolderSink : public FrameSink {
   FrameFolder folder_;
   std::string fps_, history_, facts_;
   std::vector<model::ImageInfo> shown_;
+  std::vector<Digest> digests_;
 };
 
 class StackSink : public FrameSink {
