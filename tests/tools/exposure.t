@@ -125,6 +125,8 @@ fails 65 'of the planned dose' vam-project light.exr --speed 45 -o x.mkv
 ok 'is accepted on request' vam-project light.exr --turns 1 --accept-dose -o short.mkv --report short.json
 holds 'and told in the report' "($(json short.json share_of_planned_dose) * $turns - 1) ^ 2 < 1e-6"
 fails 65 '0.[0-9]* of the planned dose' vam-project light.exr --turns 1 --multiplier "$turns" -o x.mkv
+vam-project light.exr -o null: --speed 900 --from 540 --max-missed 1 --max-missed-lit 1 --report rest.json
+holds 'the rest of a print is told as such' "($(json rest.json share_of_planned_dose) - 0.1 * (1 - 1.5 / $turns)) ^ 2 < 1e-8"
 vam-project light.exr --multiplier 0.95 -o x.mkv 2>said
 ok 'a little less is said' grep -q 'warning: light.exr: .* 0.95 of the planned dose' said
 

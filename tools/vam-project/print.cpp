@@ -140,7 +140,8 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const Frames shown = frames_of(light, schedule, dithering);
   const auto tally = show(shown, scale, printer.projector, app.given("--bits"), dithering, sink);
   Json report = figures(shown, printer.projector.bits, full_scale * options.multiplier, tally);
-  if (exposure.share) report["share_of_planned_dose"] = *exposure.share;
+  const double lit = 1 - options.live.from_deg / (360 * turns);
+  if (exposure.share) report["share_of_planned_dose"] = *exposure.share * lit;
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
   if (!differences.empty()) report["printer_differences"] = differences;
   report.erase("fps");
