@@ -40,7 +40,7 @@ void add_camera(cli::App& app, Options& o, const std::string& heading) {
 
 void declare(cli::App& app, Options& o) {
   const std::vector<std::string> folders{"folders"};
-  cli::add_output(app, o.output);
+  cli::add_output(app, o.output).writes_as({".exr"});
   add_camera(app, o, "Camera");
   app.group("Frame selection");
   app.option("--frames", "N", o.frames, {1, 1e6},

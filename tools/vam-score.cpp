@@ -8,7 +8,6 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
-#include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
@@ -55,10 +54,7 @@ void require_known(const std::vector<model::Condition>& conditions, const Option
   }
 }
 
-void require_files_for_outputs(const cli::App& app, const Options& options) {
-  for (const std::string& ending : io::written_mesh_endings()) {
-    if (ending != ".ply" && options.print.ends_with(ending)) app.require_for("meshes but PLY", options.print);
-  }
+void require_files_for_outputs(const Options& options) {
   for (const auto& output : {options.print, options.lit_fraction}) {
     if (output != "-") continue;
     throw Error{Fault::usage,
@@ -87,7 +83,7 @@ void run(const cli::App& app, Options& options) {
   const std::vector<model::Condition> conditions = conditions_of(options);
   if (session::print_printer(options.printer)) return;
   if (options.grey.is_target) return score_grey(options, conditions);
-  require_files_for_outputs(app, options);
+  require_files_for_outputs(options);
   session::Companions in(options.input, options.target, io::TargetKind::coverage);
   const io::SparseVolume& dose = in.choose(options.grid);
   const io::SparseVolume& target = in.target_around();

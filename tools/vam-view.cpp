@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"
+#include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
@@ -156,7 +157,10 @@ void show_other(const cli::App& app, const Options& options) {
 
 void run(const cli::App& app, Options& options) {
   if (session::print_printer(options.printer)) return;
-  check(app, options);
+  const auto& view = options.view;
+  if (view.low && view.high && *view.low >= *view.high)
+    throw Error{Fault::usage,
+                "--low " + format_number(*view.low) + ": must be below --high " + format_number(*view.high)};
   if (app.given("--title")) options.view.title = options.title;
   options.view.name = view_tool::file_name(options.input, options.compare);
   options.view.crop = !options.plain;

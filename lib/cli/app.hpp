@@ -117,8 +117,8 @@ class App {
   /// operands that it does not stand for (reads).
   App& form();
   /// The option declared last is refused where none of these conditions holds: "--like", which is given;
-  /// "--geometry vial", whose value is in force; "resin.psf_mm", a setting of the printer [require_settings]. Called
-  /// again: nor where none of those holds. value: only with this one of the option.
+  /// "--geometry vial", whose value is in force; "--output .mp4", whose name ends so; "resin.psf_mm", a setting of the
+  /// printer [require_settings]. Called again: nor where none of those holds. value: only with this one of the option.
   App& only_with(const std::vector<std::string>& any_of, const std::string& value = "");
   /// And where one of these holds.
   App& excludes(const std::vector<std::string>& conditions, const std::string& value = "");

@@ -26,6 +26,10 @@ std::string listed(const std::vector<std::string>& conditions) {
   return text;
 }
 
+bool has_value(const Option& option, const std::string& value) {
+  return value.starts_with('.') ? option.value().ends_with(value) : option.value() == value;
+}
+
 }  // namespace
 
 App& App::only_with(const std::vector<std::string>& any_of, const std::string& value) {
@@ -53,7 +57,7 @@ bool App::holds(const std::string& condition) const {
   const auto& choices = option->choices;
   if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end())
     throw Error{Fault::bug, condition + ": a rule names a value that is not declared"};
-  return option->value() == value;
+  return has_value(*option, value);
 }
 
 // Of a form, the plain one or a command, before anything is known of the printer.
@@ -93,7 +97,7 @@ void App::require_rule(const Option& option, const Rule& rule,
   for (const auto& condition : rule.conditions) {
     if (is_true(condition)) held.push_back(condition);
   }
-  const bool in_use = given(long_flag(option)) && (rule.value.empty() || option.value() == rule.value);
+  const bool in_use = given(long_flag(option)) && (rule.value.empty() || has_value(option, rule.value));
   if (!in_use || held.empty() == rule.excludes) return;
   const std::string subject = long_flag(option) + (rule.value.empty() ? "" : " " + rule.value);
   if (rule.excludes) throw Error{Fault::usage, subject + ": conflicts with " + held.front() + "; omit one of them"};

@@ -23,7 +23,7 @@ $take --frames 1 --compression none -o marked.exr
 is 'and in a stack' "$($exr attr marked.exr vam:history | grep -c 'frames of a simulated camera')" 1
 
 for name in x.png x.vdb x.mkv; do
-  fails 64 "'$name': frames are written to .exr, a folder .* or -, not to .${name#x.}" vam-capture --device 'sim:?pace=virtual' --frames 2 -o $name
+  fails 64 "--output: '$name' must end in .exr" vam-capture --device 'sim:?pace=virtual' --frames 2 -o $name
 done
 
 # A stack, and the same frames out of it again.

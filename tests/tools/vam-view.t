@@ -59,8 +59,8 @@ stated=$(movie_label planned.vdb)
 is "turns that are stated, and that are planned" "$(movie_label turn.vdb)" "$stated"
 is "also at another threshold" "$(movie_label planned.vdb --isovalue 50)" "$stated"
 ok "of a dose without them a percentage" test "$(movie_label turn.vdb --isovalue 15)" != "$stated"
-fails 64 'requires --render and --target' vam-view small.vdb -o x.mp4
-fails 64 'requires --render and --target' vam-view small.vdb --render -o x.mp4
+fails 64 '--output .mp4: requires --render' vam-view small.vdb -o x.mp4
+fails 64 '--output .mp4: requires --target' vam-view small.vdb --render -o x.mp4
 fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --isovalue 99 -o x.mp4
 box 2 3 1 >box.off
 ok "a mesh" vam-view box.off -o box.png
@@ -144,7 +144,7 @@ echo '{"schema": "vam-score/1"}' >score.json
 fails 65 'score.json: is JSON \(vam-report shows reports\); a volume' vam-view score.json -o x.png
 fails 65 'stdin: is empty' sh -c ': | vam-view -o x.png'
 fails 65 'has no image at 9; the nearest is z = 0.52 mm' vam-view sino.exr --at 9 -o x.png
-fails 64 '--plain: does not apply to PDF and SVG' vam-view part.vdb --plain -o x.svg
+fails 64 '--output .svg: conflicts with --plain' vam-view part.vdb --plain -o x.svg
 fails 64 'pixels are more than 32767 a side; reduce --image-size or --dpi' \
   vam-view part.vdb --image-size 4000 --dpi 1200 -o x.png
 vam-convert part.vdb -o part.npy

@@ -40,13 +40,6 @@ Json facts(device::Camera& camera) {
 
 constexpr const char* simulated_frames = "frames of a simulated camera";  // in the history of a stack
 
-void require_stack_or_folder(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension();
-  if (path == "-" || path.starts_with("/dev/") || ending.empty() || ending == ".exr") return;
-  throw Error{Fault::usage, "--output: '" + path +
-                                "': frames are written to .exr, a folder (name ending in /) or -, not to " + ending};
-}
-
 bool is_folder(const std::string& path) { return path != "-" && !std::filesystem::path(path).has_extension(); }
 
 device::CapturePlan plan_of(const Options& o, const model::Printer& printer) {
@@ -134,7 +127,6 @@ std::string device_of(const Options& o, const model::Printer& printer) {
 bool is_recording(const std::string& device) { return device.rfind("replay:", 0) == 0; }
 
 void check(const cli::App& app, const Options& o, const model::Printer& printer) {
-  require_stack_or_folder(o.output);
   if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
     throw Error{Fault::usage, "--view-step: camera frames have no angles; give --follow or --speed"};
   }

@@ -15,8 +15,7 @@ void declare_print(cli::App& app, Options& options) {
       .writes_as(io::written_mesh_endings());
   app.choice("--ply-as", options.print_as, {"mesh", "points"},
              "Content of FILE: the surface of the print, or as PLY its voxels coloured by dose.")
-      .only_with({"--mesh"})
-      .not_for({"meshes but PLY"});
+      .only_with({"--mesh .ply"});
   app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold dose of the print's surface.")
       .only_with({"--mesh"});
   app.default_is(

@@ -3,8 +3,6 @@
 
 #include <filesystem>
 
-#include "base/error.hpp"
-#include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/save.hpp"
 
@@ -43,7 +41,11 @@ void declare(cli::App& app, Options& options) {
          "-o,--output", "FILE", options.output,
          "Write the figure to FILE: PNG, PDF or SVG, by the ending of its name, or MP4, with --render and --target: a "
          "movie of the print as it grows during the exposure; - is PNG to standard output.")
-      .writes(outputs());
+      .writes(outputs())
+      .only_with({"--render"}, ".mp4")
+      .only_with({"--target"}, ".mp4")
+      .excludes({"--dpi", "--plain"}, ".pdf")
+      .excludes({"--dpi", "--plain"}, ".svg");
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.")
       .writes({".nrrd"})
       .excludes({"--output", "--plane", "--at", "--sheet", "--target", "--dose-histogram", "--cure-map", "--render",
@@ -102,27 +104,15 @@ void declare(cli::App& app, Options& options) {
   app.option("--image-size", "PX", options.view.size, {64, 16384},
              "Approximate length of the longer side of the image without axes and title.")
       .not_for({"traces", "plain pixels"});
-  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.")
-      .not_for({"PDF and SVG"});
+  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.");
   app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
   app.default_is("names of file and content");
   app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.")
       .excludes({"--sheet", "--target", "--dose-histogram", "--cure-map", "--render", "--compare", "--dpi", "--title"})
-      .not_for({"traces", "PDF and SVG"});
+      .not_for({"traces"});
   cli::add_printer(app, options.printer);
   app.usual({"--output", "--export", "--grid", "--plane", "--at", "--sheet", "--target", "--dose-histogram",
              "--cure-map", "--render", "--compare", "--title", "--printer", "--set"});
-}
-
-void check(const cli::App& app, const Options& options) {
-  const auto& view = options.view;
-  if (view.low && view.high && *view.low >= *view.high)
-    throw Error{Fault::usage,
-                "--low " + format_number(*view.low) + ": must be below --high " + format_number(*view.high)};
-  if (options.output.ends_with(".pdf") || options.output.ends_with(".svg"))
-    app.require_for("PDF and SVG", options.output);
-  if (options.output.ends_with(".mp4") && (!options.render || options.target.empty()))
-    throw Error{Fault::usage, options.output + ": a movie requires --render and --target"};
 }
 
 }  // namespace vam::view_tool

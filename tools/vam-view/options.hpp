@@ -36,7 +36,5 @@ struct Options {
 [[nodiscard]] std::string file_name(const std::string& path, const std::string& other);
 
 void declare(cli::App& app, Options& options);
-/// Throws Fault::usage for values that contradict each other.
-void check(const cli::App& app, const Options& options);
 
 }  // namespace vam::view_tool
