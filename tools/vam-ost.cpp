@@ -69,9 +69,13 @@ void declare_reconstruction(cli::App& app, Options& o) {
 
 void declare_print(cli::App& app, Options& o) {
   app.group("Print");
-  app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").excludes({"--resin"});
+  const std::vector<std::string> shown_by{"--mesh", "--projections", "--report", "--log", "--page", "--until"};
+  app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.")
+      .excludes({"--resin"})
+      .only_with(shown_by);
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin with the gelation threshold I_p.")
-      .reads();
+      .reads()
+      .only_with(shown_by);
   app.option("--min-body", "MM3", o.pieces_mm3, cli::non_negative,
              "Minimum volume of a body that belongs to the print.")
       .default_is("1 % of the largest body's volume")

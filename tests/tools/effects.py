@@ -162,10 +162,11 @@ class Tool:
         permits = "!" in context
         bare = context and option not in ("--set", "--printer") and not permits
         context = [word for word in context if word != "!"]
-        for kind in only or self.kinds:
+        only = only or [kind for kind in self.kinds if not kind.startswith("+")]
+        for kind in only:
             for beside in (context, []) if bare else (context,):
                 changed += self.judge_one(kind, option, words, beside, faults, beside is context)
-        if not permits and not any(self.base(kind, context).status in (0, 1) for kind in only or self.kinds):
+        if not permits and not any(self.base(kind, context).status in (0, 1) for kind in only):
             faults.append("%s: succeeds on no kind" % " ".join(context))
         return changed, faults
 

@@ -33,7 +33,7 @@ quiet 'live' vam-ost views --view-step 6 $rig --live --resin resin.json --target
   -o live --log log.jsonl --projections now.png --page now.html
 is 'one volume a turn' "$(ls live)" scatter-0000.vdb
 is 'one line per volume' "$(grep -c missing_percent log.jsonl)" 1
-quiet 'and its uncertainty' vam-ost views --view-step 6 $rig --live --uncertainties --isovalue 1 -o both
+quiet 'and its uncertainty' vam-ost views --view-step 6 $rig --live --uncertainties -o both
 is 'in the folder, the volume last' "$(ls -tr both | tr '\n' ' ')" 'uncertainty-0000.vdb scatter-0000.vdb '
 is 'both state their turns' "$(grep -alc vam:turns both/*.vdb | wc -l)" 2
 grep -q 'now.png' now.html; report $? 'the page shows the image'
