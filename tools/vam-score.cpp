@@ -13,6 +13,7 @@
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/conditions.hpp"
+#include "model/metadata.hpp"
 #include "score/score.hpp"
 #include "session/dose_score.hpp"
 #include "session/exposure.hpp"
@@ -100,8 +101,9 @@ void run(const cli::App& app, Options& options) {
   io::write_report(options.report, "vam-score", figures);
   if (options.report != "-") {
     const std::string sinogram = options.sinogram.empty() ? "SINOGRAM" : options.sinogram;
-    const bool planned = options.how.exposure.has_value();
-    io::write_text("-", result.table(options.grid == "dose" ? session::how_to_show(planned, sinogram) : ""));
+    const bool stated = model::stated_text(dose.metadata, "vam:dose_of") == "stated";
+    const std::string how = session::how_to_show(printer.resin, stated, sinogram, options.printer);
+    io::write_text("-", result.table(options.grid == "dose" ? how : ""));
   }
   model::require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }

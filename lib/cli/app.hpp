@@ -53,6 +53,9 @@ inline constexpr Range positive{0, 1e300, true};
 inline constexpr Range non_negative{0, 1e300};
 inline constexpr Range rate{0.001, 1e6};  // of what must end in a lifetime: frames a second, degrees a second
 
+/// A word of a command line in one line: quoted for a shell, but for harmless characters.
+[[nodiscard]] std::string quoted(const std::string& word);
+
 struct Option;  // cli/private/declaration.hpp
 struct Rule;
 struct Declaration;

@@ -22,6 +22,12 @@ App& add_printer(App& app, PrinterOptions& options) {
   return app.group(App::plain_heading);
 }
 
+std::string printer_words(const PrinterOptions& options) {
+  std::string words = options.file.empty() ? "" : std::string(" ") + printer_flag + " " + quoted(options.file);
+  for (const std::string& setting : options.sets) words += " --set " + quoted(setting);
+  return words;
+}
+
 App& add_report(App& app, std::string& report) {
   return app.option("--report", "FILE", report, "Write a report in JSON; units are part of the key names.")
       .not_in_job()

@@ -21,6 +21,8 @@ struct PrinterOptions {
 };
 inline constexpr const char* printer_flag = "--printer";
 App& add_printer(App& app, PrinterOptions& options);
+/// " --printer FILE --set KEY=VALUE": as they were given, for another command.
+[[nodiscard]] std::string printer_words(const PrinterOptions& options);
 
 /// --report FILE.json
 App& add_report(App& app, std::string& report);

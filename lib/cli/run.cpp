@@ -30,9 +30,6 @@
 
 namespace vam::cli {
 
-namespace {
-
-// Shell quoting for the history line: words of harmless characters stay as they are.
 std::string quoted(const std::string& word) {
   const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,./:@%";
   if (!word.empty() && word.find_first_not_of(harmless) == std::string::npos) return word;
@@ -46,6 +43,8 @@ std::string quoted(const std::string& word) {
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
+
+namespace {
 
 // The command that the words name, with the tool's name before its own, or the tool.
 Declaration asked_about(Declaration tool, const std::vector<std::string>& words) {

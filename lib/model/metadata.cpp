@@ -25,9 +25,7 @@ std::string places_text(const ThinPlaces& places) {
 
 /// Five numbers.
 std::optional<ThinPlaces> stated_places(const Metadata& metadata, const std::string& name) {
-  const auto found = metadata.find(name);
-  if (found == metadata.end()) return std::nullopt;
-  std::istringstream text(found->second);
+  std::istringstream text(stated_text(metadata, name));
   std::vector<double> numbers;
   for (std::string word; text >> word;) numbers.push_back(parse_number(word).value_or(-1));
   constexpr std::size_t wanted = 5;
@@ -43,9 +41,13 @@ int stated_count(const Metadata& metadata, const std::string& name) {
 
 }  // namespace
 
-std::optional<double> stated_number(const Metadata& metadata, const std::string& name) {
+std::string stated_text(const Metadata& metadata, const std::string& name) {
   const auto found = metadata.find(name);
-  return found == metadata.end() ? std::nullopt : parse_number(found->second);
+  return found == metadata.end() ? "" : found->second;
+}
+
+std::optional<double> stated_number(const Metadata& metadata, const std::string& name) {
+  return parse_number(stated_text(metadata, name));
 }
 
 std::string stretch_objection(const std::string& text) {

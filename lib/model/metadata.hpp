@@ -13,6 +13,8 @@ namespace vam::model {
 
 using Metadata = std::map<std::string, std::string>;
 
+/// Empty if it is not stated.
+[[nodiscard]] std::string stated_text(const Metadata& metadata, const std::string& name);
 /// Empty if it is not stated, or not a number.
 [[nodiscard]] std::optional<double> stated_number(const Metadata& metadata, const std::string& name);
 

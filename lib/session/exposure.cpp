@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
@@ -89,7 +90,7 @@ void forget_exposure(model::Metadata& facts) {
 }
 
 void require_dose(const Exposure& exposure, bool accepted, const std::string& name) {
-  if (!exposure.share || std::abs(*exposure.share - 1) < 1e-3) return;
+  if (!exposure.share || exposure.as_planned()) return;
   const std::string turns = format_number(exposure.turns, 4);
   const std::string what = name + ": " + turns + (turns == "1" ? " turn gives " : " turns give ") +
                            format_number(*exposure.share, 2) + " of the planned dose, which " +
@@ -99,9 +100,18 @@ void require_dose(const Exposure& exposure, bool accepted, const std::string& na
   warn(what);
 }
 
-std::string how_to_show(bool planned, const std::string& sinogram) {
-  if (planned) return "; to show it: vam-project " + sinogram + " -o print.mkv";
-  return "; dose and time are relative: vam-calibrate critical-dose measures resin.critical_dose_mj_cm3";
+std::string relative_without(const model::Resin& resin) {
+  std::vector<std::string> keys;
+  if (!(resin.absorption_per_mm > 0)) keys.emplace_back("resin.absorption_per_mm");
+  if (!resin.critical_dose_mj_cm3) keys.emplace_back("resin.critical_dose_mj_cm3");
+  return keys.empty() ? "" : "relative without " + join(keys, " and ") + ", which vam-calibrate cure-depth measures";
+}
+
+std::string how_to_show(const model::Resin& resin, bool stated, const std::string& sinogram,
+                        const cli::PrinterOptions& run) {
+  const std::string relative = relative_without(resin);
+  if (!relative.empty()) return "; dose and time are " + relative;
+  return stated ? "; to show it: vam-project " + cli::quoted(sinogram) + cli::printer_words(run) + " -o print.mkv" : "";
 }
 
 }  // namespace vam::session

@@ -2,9 +2,11 @@
 // How long and how bright a sinogram is shown, and what of the planned dose that gives.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 
+#include "cli/common.hpp"
 #include "model/metadata.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
@@ -16,6 +18,8 @@ struct Exposure {
   bool planned = false;              // the turns are those of a plan, neither given nor stage.turns
   double full_scale = 0;             // the sinogram's value at full intensity; 0: not known
   std::optional<double> share = {};  // of the planned dose; none: the resin is not known
+
+  [[nodiscard]] bool as_planned() const { return share && std::abs(*share - 1) < 1e-3; }
 };
 
 /// What options say instead of the plan.
@@ -41,7 +45,11 @@ void forget_exposure(model::Metadata& facts);
 /// so of what else differs. `name` begins the message.
 void require_dose(const Exposure& exposure, bool accepted, const std::string& name);
 
-/// Behind a verdict: the command that shows `sinogram` as planned, or what is required for a plan.
-[[nodiscard]] std::string how_to_show(bool planned, const std::string& sinogram);
+/// "relative without KEYS, ...": the settings that doses in mJ/cm3 lack, and how they are measured. Empty: none.
+[[nodiscard]] std::string relative_without(const model::Resin& resin);
+/// Behind a verdict: that, or the command that shows `sinogram`, where that is `stated`, as the stack states, to the
+/// printer of this run.
+[[nodiscard]] std::string how_to_show(const model::Resin& resin, bool stated, const std::string& sinogram,
+                                      const cli::PrinterOptions& run);
 
 }  // namespace vam::session

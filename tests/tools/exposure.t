@@ -32,6 +32,8 @@ turns=$(json light.json turns)
 holds 'a print of several turns' "$turns > 1"
 is 'which the stack states' "$(attr light.exr vam:shown_turns)" "$turns"
 ok 'the verdict ends with the command' grep -q '; to show it: vam-project light.exr -o print.mkv$' said
+vam-optimize part.vdb --angles 60 --iterations 2 --verbose --printer "$PWD/printer.toml" --set stage.speed_deg_s=45 -o 'a b.exr' 2>said
+ok 'which names the printer, and works' sh -c "$(sed -n 's/.*; to show it: \(vam-project .* --printer .* --set .*\)/\1/p' said | grep . || echo false)"
 vam-optimize part.vdb --angles 60 2>said >piped.exr
 is 'a pipe states the same' "$(attr piped.exr vam:shown_turns) $(attr piped.exr vam:full_scale)" "$turns $(attr light.exr vam:full_scale)"
 quiet 'the dose of the print' vam-dose light.exr --like part.vdb -o planned.vdb --report planned.json
@@ -85,6 +87,8 @@ cures screen screen.vdb
 ok 'vam-print' vam-print light.exr --display null: --uncalibrated --max-missed 1 --max-missed-lit 1 --run run
 vam-dose light.exr --like part.vdb --shown run -o print.vdb
 cures vam-print print.vdb
+
+is 'a planned dose says how it is shown, one that was shown does not' "$(grep -c '; to show it: vam-project SINOGRAM -o print.mkv$' here.txt) $(cat print.vdb.txt screen.vdb.txt | grep -c 'to show it')" '1 0'
 
 # From another folder the same verdict; what differs there is named.
 (cd else && vam-score ../planned.vdb --target ../part.vdb) >there.txt
@@ -146,7 +150,8 @@ plans --set resin.critical_dose_mj_cm3=5 --report quick.json >/dev/null
 holds 'vam-plan judges the same light by its turns, too' "$(json slow.json turns) > $(json quick.json turns) && ($(json slow.json pw) - $(json quick.json pw)) ^ 2 > 1e-6"
 
 # Pieces know no plan of the whole; joined, they have that of their threshold.
-vam-optimize part.vdb --geometry parallel --angles 60 -o flat.exr --report flat.json 2>/dev/null
+vam-optimize part.vdb --geometry parallel --angles 60 -o flat.exr --report flat.json --verbose 2>said
+is 'no projector shows parallel light' "$(grep -c 'verdict\|print' said) $(grep -c 'to show it' said)" '1 0'
 for n in 1 2; do quiet "piece $n" vam-optimize part.vdb --geometry parallel --angles 60 --slices $n/2 -o piece-$n.exr; done
 is 'states no exposure' "$(attr piece-2.exr vam:shown_turns 2>&1 | tail -n 1)" "KeyError: 'vam:shown_turns'"
 quiet 'joined' vam-convert join piece-1.exr piece-2.exr -o joined.exr
@@ -174,5 +179,5 @@ holds 'none is clipped, none is another' "$(json levels.json clipped_fraction) =
 is 'the verdict is that of the levels' "$(json two.json verdict | cut -c -10)" "$(json two.score.json verdict | cut -c -10)"
 
 vam-optimize part.vdb --angles 60 --iterations 2 --set resin.absorption_per_mm=0 --verbose -o x.exr 2>said
-ok 'without a known resin dose and time are relative' grep -q 'dose and time are relative: vam-calibrate critical-dose measures' said
+ok 'without a known resin dose and time are relative' grep -q '; dose and time are relative without resin.absorption_per_mm, which vam-calibrate cure-depth measures$' said
 done_testing

@@ -72,8 +72,7 @@ struct Inputs {
 PrintOptions with_facts(const cli::App& app, PrintOptions options, const SliceSource& slices) {
   const auto speed = model::stated_number(slices.facts, "vam:speed_mm_h");
   if (speed && *speed > 0 && !app.given("--print-speed")) options.speed_mm_h = *speed;
-  const auto mode = slices.facts.find("vam:exposure");
-  const bool layered = mode != slices.facts.end() && mode->second == "layered";
+  const bool layered = model::stated_text(slices.facts, "vam:exposure") == "layered";
   if (layered && !app.given("--exposure-mode")) options.exposure = "layered";
   return options;
 }

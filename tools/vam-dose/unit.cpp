@@ -47,6 +47,7 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
   unit.absolute = per_radian && full_scale > 0;
   if (unit.absolute) unit.turn = *per_radian / (options.full_scale ? 1.0 : peak);
   if (options.exposure_plan) {
+    unit.dose_of = "planned";
     unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);
     if (exposed.seconds > 0 && std::abs(exposed.seconds - unit.plan->seconds) > 0.01 * unit.plan->seconds) {
       warn("exposure: planned for the dose that diffuses for " + format_number(exposed.seconds, 4) + " s, it takes " +
@@ -56,12 +57,15 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
     unit.print_turns = unit.plan->turns;
     unit.full_turns = unit.showings = unit.plan->turns * unit.plan->multiplier;
   } else if (!options.shown.empty()) {
+    unit.dose_of = "shown";
     unit.print_turns = unit.full_turns = exposed.shown_turns;
   } else if (unit.absolute) {
     const std::string name = io::input_name(options.inputs.front());
     const auto shown = session::exposure_of(name, light, printer, peak, {.full_scale = options.full_scale});
     if (shown.share) {
       session::require_dose(shown, true, name);
+      const bool as_stated = light.space == model::Space::projector && light.piece.whole() && shown.as_planned();
+      unit.dose_of = as_stated ? "stated" : "planned";
       unit.print_turns = shown.turns;
       unit.full_turns = shown.turns * std::min(1.0, peak / shown.full_scale);
       unit.showings = shown.turns * full_scale / shown.full_scale;
@@ -75,6 +79,9 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
 
 void convert(io::SparseVolume& volume, const Unit& unit) {
   session::forget_exposure(volume.metadata);
+  for (const char* other :
+       {"vam:dose_of", "vam:full_intensity_turns", "vam:print_turns", "vam:print_s", "vam:dose_unit_mj_cm3"})
+    volume.metadata.erase(other);  // of the light, or of a dose whose voxels these are like
   if (unit.absolute) {
     scale(volume, unit.turn * unit.showings);
     volume.units = "mJ/cm3";
@@ -83,6 +90,7 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
     if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.relative, 9);
   }
   if (unit.print_turns == 0) return;
+  volume.metadata["vam:dose_of"] = unit.dose_of;
   volume.metadata["vam:full_intensity_turns"] = format_number(unit.full_turns, 9);
   volume.metadata["vam:print_turns"] = format_number(unit.print_turns, 9);
   volume.metadata["vam:print_s"] = format_number(unit.print_s, 9);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "base/text/json_fwd.hpp"
 #include "io/vdb/vdb.hpp"
@@ -19,6 +20,7 @@ struct Unit {
   double showings = 1;     // and that of the whole print
   double relative = 1;     // what a relative dose of 1 becomes
   double print_turns = 0;  // of the print whose dose it is; 0: it is the dose of a turn
+  std::string dose_of;     // which print: shown, stated or planned [formats: Attributes of volumes and prints]
   double full_turns = 0;   // of full intensity
   double print_s = 0;
   std::optional<score::ExposurePlan> plan;  // of --exposure-plan

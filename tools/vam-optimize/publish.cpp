@@ -134,8 +134,10 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     print.threshold = threshold;
     const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
     add_to(report, verdict);
+    const bool stated = options.in_vial() && info.piece.whole() && model::shown_turns(info.extra);
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words +
-         session::how_to_show(plan.has_value(), options.output == "-" ? "SINOGRAM" : options.output));
+         session::how_to_show(printer.resin, stated, options.output == "-" ? "SINOGRAM" : options.output,
+                              options.printer));
     report["limited_by"] = optimize::limited_by(
         outcome.demands, [&](int k) { return model::vertical_magnification(printer) * scene.grid.z_mm(k); });
     add_blurred_faces(report, outcome, scene, target, options);

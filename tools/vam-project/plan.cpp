@@ -32,8 +32,9 @@ double memory_mb(const model::StackInfo& info, const model::Projector& projector
   return 1e-6 * (sinogram + (frames + 2 * 4.0) * projector.columns * projector.rows);
 }
 
-std::string dose_text(const session::Exposure& exposure, double turns) {
-  if (!exposure.share) return "relative; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm for vam-optimize";
+std::string dose_text(const session::Exposure& exposure, double turns, const model::Resin& resin) {
+  if (!exposure.share && session::relative_without(resin).empty()) return "relative without a plan of vam-optimize";
+  if (!exposure.share) return session::relative_without(resin);
   const double share = *exposure.share * turns / exposure.turns;
   return format_number(share, 3) +
          " of the planned dose, the critical one at the threshold of the sinogram, which is " + "reached after " +
@@ -69,7 +70,7 @@ void print_plan(const cli::App& app, const Options& options, const model::Printe
                       " deg/s: " + format_number(model::seconds_of(printer.stage, turns), 4) + " s of light");
   say("intensity", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for the sinogram value " +
                        format_number(exposure.full_scale, 4));
-  say("dose", dose_text(exposure, turns));
+  say("dose", dose_text(exposure, turns, printer.resin));
   print_devices(options, printer);
 }
 

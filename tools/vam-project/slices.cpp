@@ -13,6 +13,7 @@
 #include "base/text/text.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/stream/input_name.hpp"
+#include "model/metadata.hpp"
 #include "optics/slice_place.hpp"
 #include "session/printer.hpp"
 #include "vam-project/match.hpp"
@@ -22,8 +23,7 @@ namespace vam::project {
 namespace {
 
 std::optional<double> fact(const model::StackInfo& info, const char* name) {
-  const auto found = info.extra.find(name);
-  const auto value = found == info.extra.end() ? std::nullopt : parse_number(found->second);
+  const auto value = model::stated_number(info.extra, name);
   return value && *value > 0 ? value : std::nullopt;
 }
 

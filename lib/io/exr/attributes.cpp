@@ -225,10 +225,7 @@ void require_alike(const Imf::Header& header, const StackInfo& first, const Stac
                                      {"vam:angle_step_deg", &StackInfo::angle_step_deg}}) {
     if (own.*member != first.*member) compare(name, format_number(own.*member, 9), format_number(first.*member, 9));
   }
-  const auto printer = [](const StackInfo& info) {
-    const auto stated = info.extra.find("vam:printer");
-    return stated == info.extra.end() ? "" : stated->second;
-  };
+  const auto printer = [](const StackInfo& info) { return model::stated_text(info.extra, "vam:printer"); };
   for (const auto& [name, same] :
        {std::pair{"vam:history", own.history == first.history}, {"vam:printer", printer(own) == printer(first)}}) {
     if (same) continue;
