@@ -90,6 +90,11 @@ cures vam-print print.vdb
 
 is 'a planned dose says how it is shown, one that was shown does not' "$(grep -c '; to show it: vam-project SINOGRAM -o print.mkv$' here.txt) $(cat print.vdb.txt screen.vdb.txt | grep -c 'to show it')" '1 0'
 
+critical() { vam-calibrate critical-dose part.vdb --isovalue 0.5 --dose "$@" -o critical.json; json critical.json critical_dose_mj_cm3; }
+fails 65 'planned.vdb: is of no print that was made .*--turns' vam-calibrate critical-dose part.vdb --isovalue 0.5 --dose planned.vdb
+fails 64 '--turns: does not apply to doses by --shown' vam-calibrate critical-dose part.vdb --isovalue 0.5 --dose print.vdb --turns 1
+holds 'what a print was given is known, of a plan what part of it' "($(critical print.vdb) / $(critical planned.vdb --turns 1) - $turns) ^ 2 < (0.02 * $turns) ^ 2"
+
 # From another folder the same verdict; what differs there is named.
 (cd else && vam-score ../planned.vdb --target ../part.vdb) >there.txt
 same 'the verdict is that of any folder' here.txt there.txt

@@ -31,7 +31,7 @@ fails 64 'dose' critical print.ply
 fails 66 'absent' critical print.ply --dose absent.vdb
 printf "%s\n" "[resin]" "absorption_per_mm = 0.05" >printer.toml
 fails 64 'requires resin.critical_dose_mj_cm3' critical print.ply --dose dose.vdb --design design.vdb
-fails 65 'does not state vam:full_intensity_turns' vam-calibrate critical-dose print.ply --dose dose.vdb
+fails 65 'dose.vdb: is of no print that was made .*--turns' vam-calibrate critical-dose print.ply --dose dose.vdb
 vam-calibrate critical-dose print.ply --dose dose.vdb --turns 2 -o twice.json
 holds 'turns of a dose that is of one' "($(json twice.json critical_dose_mj_cm3) / $(json mesh.json critical_dose_mj_cm3) - 2) ^ 2 < 1e-6"
 done_testing

@@ -41,12 +41,13 @@ void declare(cli::App& app, CriticalDoseOptions& options) {
          "Mesh of the print in the part's frame (vam-ost --mesh, vam-sdf -o), or a volume (VDB) with --isovalue.")
       .reads();
   app.option("--dose", "FILE.vdb", options.dose,
-             "Dose that the print was given, in mJ/cm3 (vam-dose --shown or --exposure-plan), or that of a turn.")
+             "Dose in mJ/cm3 that the print was given (vam-dose --shown), or that of a turn or a plan.")
       .reads()
       .required();
-  app.option("--turns", "N", options.turns, cli::positive, "Turns at full intensity, where the dose is that of one.")
-      .default_is("as the dose states")
-      .not_for({"doses that state their turns"});
+  app.option("--turns", "N", options.turns, cli::positive,
+             "Turns that the print took, where the dose is that of one, at full intensity, or of a plan, at its own.")
+      .default_is("required but for a dose by --shown")
+      .not_for({"doses by --shown"});
   app.option(
          "--design", "FILE", options.design,
          "Mesh of the design in the part's frame, or volume of vam-slice: also find the critical dose that makes the "
@@ -64,17 +65,15 @@ void run(const cli::App& app, CriticalDoseOptions& options) {
   if (!io::is_volume(options.print)) app.require_for("meshes", options.print);
   const io::SparseVolume sparse = session::read_dose(options.dose);
   const model::Printer printer = session::printer_of(options.printer, sparse.metadata, options.dose);
-  const bool total = model::stated_number(sparse.metadata, "vam:full_intensity_turns").has_value();
-  if (!total && !options.turns) {
-    throw Error{Fault::data,
-                options.dose +
-                    ": does not state vam:full_intensity_turns, so that its dose is that of one turn; give "
-                    "that of the print, by vam-dose --shown or --exposure-plan, or --turns"};
-  }
+  const bool shown = model::stated_text(sparse.metadata, "vam:dose_of") == "shown";
+  if (shown) app.require_for("doses by --shown", options.dose);
+  if (!shown && !options.turns)
+    throw Error{Fault::data, options.dose + ": is of no print that was made (vam-dose --shown); give its --turns"};
   session::require_settings(app, printer);
-  if (total) app.require_for("doses that state their turns", options.dose);
+  const double turns =
+      shown ? 1 : *options.turns / model::stated_number(sparse.metadata, "vam:print_turns").value_or(1);
   model::Volume dose = io::dense_volume(sparse);
-  for (float& value : dose.values) value *= static_cast<float>(options.turns.value_or(1));
+  for (float& value : dose.values) value *= static_cast<float>(turns);
   const double stretch_z = model::stretch_z(sparse.metadata);
   const auto at_print =
       metrology::surface_dose(print_surface(options.print, options.isovalue), dose, stretch_z, options.print);
