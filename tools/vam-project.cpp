@@ -7,6 +7,7 @@
 #include "io/exr/stack.hpp"
 #include "io/image/frame_sink.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
@@ -32,12 +33,15 @@ void freeze(const Options& options, model::Printer printer, io::StackReader& rea
   project::require_whole(options.input, reader.info());
   require_printer(options, reader.info(), printer);
   if (reader.info().kind == model::Kind::sinogram) {
-    session::Exposure shown = session::exposure_of(options.input, reader.info(), printer, 0);
-    if (!shown.planned && resin::dose_per_radian_mj_cm3(printer)) {
+    const std::string name = io::input_name(options.input);
+    const session::GivenExposure given{.sets = options.printer.sets};
+    session::Exposure shown = session::exposure_of(name, reader.info(), printer, 0, given);
+    if (!shown.share && resin::dose_per_radian_mj_cm3(printer)) {
       const double peak = read_light(options, reader, printer.projector).peak;
-      shown = session::exposure_of(options.input, reader.info(), printer, peak);
+      shown = session::exposure_of(name, reader.info(), printer, peak, given);
     }
-    if (shown.planned) printer.stage.turns = ceil_int(shown.turns);
+    session::warn_of_turns(shown, name);
+    if (shown.share) printer.stage.turns = ceil_int(shown.turns);
   }
   io::write_text(options.freeze, io::printer_toml(io::frozen(printer)));
 }

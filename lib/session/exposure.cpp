@@ -50,6 +50,11 @@ std::optional<double> rate_for(model::Printer printer, const std::optional<model
   return rate_of(printer);
 }
 
+bool sets_turns(const std::vector<std::string>& sets) {
+  return std::any_of(sets.begin(), sets.end(),
+                     [](const auto& one) { return trimmed(one.substr(0, one.find('='))) == "stage.turns"; });
+}
+
 }  // namespace
 
 Exposure exposure_of(const std::string& name, const model::StackInfo& info, const model::Printer& printer, double peak,
@@ -71,8 +76,13 @@ Exposure exposure_of(const std::string& name, const model::StackInfo& info, cons
     if (!full_scale) full_scale = *turns * *rate / *needed;
   }
   Exposure exposure;
-  exposure.planned = turns && !given.turns;
-  exposure.turns = optics::turns_to_show(info, given.turns ? given.turns : turns, printer.stage.turns);
+  const int of_stage = printer.stage.turns;
+  const bool by_stage = !given.turns && info.poses.empty() && sets_turns(given.sets);
+  const auto given_turns = by_stage ? std::optional<double>(of_stage) : given.turns;
+  exposure.planned = turns && !given_turns;
+  exposure.turns = optics::turns_to_show(info, given_turns ? given_turns : turns, of_stage);
+  if (needed && !given.turns && of_stage != model::Printer{}.stage.turns && of_stage != exposure.turns)
+    exposure.unused_turns = of_stage;
   exposure.full_scale = given.full_scale.value_or(full_scale.value_or(peak)) / given.multiplier;
   // What is brighter than full intensity is shown at that, and the brightest places lack it first.
   if (needed) exposure.share = exposure.turns * *rate / (std::max(exposure.full_scale, peak) * *needed);
@@ -89,7 +99,15 @@ void forget_exposure(model::Metadata& facts) {
   facts.erase(full_scale_name);
 }
 
+void warn_of_turns(const Exposure& exposure, const std::string& name) {
+  if (!exposure.unused_turns) return;
+  const std::string unused = std::to_string(*exposure.unused_turns);
+  warn(name + ": is planned for " + format_number(exposure.turns, 4) + " turns, and stage.turns " + unused +
+       " is not used; --set stage.turns=" + unused + " uses it");
+}
+
 void require_dose(const Exposure& exposure, bool accepted, const std::string& name) {
+  warn_of_turns(exposure, name);
   if (!exposure.share || exposure.as_planned()) return;
   const std::string turns = format_number(exposure.turns, 4);
   const std::string what = name + ": " + turns + (turns == "1" ? " turn gives " : " turns give ") +

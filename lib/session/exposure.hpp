@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/common.hpp"
 #include "model/metadata.hpp"
@@ -15,9 +16,10 @@ namespace vam::session {
 
 struct Exposure {
   double turns = 1;
-  bool planned = false;              // the turns are those of a plan, neither given nor stage.turns
-  double full_scale = 0;             // the sinogram's value at full intensity; 0: not known
-  std::optional<double> share = {};  // of the planned dose; none: the resin is not known
+  bool planned = false;                  // the turns are those of a plan, neither given nor stage.turns
+  double full_scale = 0;                 // the sinogram's value at full intensity; 0: not known
+  std::optional<double> share = {};      // of the planned dose; none: the resin is not known
+  std::optional<int> unused_turns = {};  // stage.turns of a file that are others than planned
 
   [[nodiscard]] bool as_planned() const { return share && std::abs(*share - 1) < 1e-3; }
 };
@@ -25,7 +27,8 @@ struct Exposure {
 /// What options say instead of the plan.
 struct GivenExposure {
   std::optional<double> turns = {}, full_scale = {};
-  double multiplier = 1;  // of the intensity
+  double multiplier = 1;               // of the intensity
+  std::vector<std::string> sets = {};  // --set, of which stage.turns counts where `turns` are not given
 };
 
 /// The plan that the stack `name` states (vam:shown_turns, vam:full_scale), which nothing else reads; where it states
@@ -40,6 +43,8 @@ struct GivenExposure {
 void state_exposure(model::Metadata& facts, double turns, double full_scale);
 /// For the facts of other light, or of a dose.
 void forget_exposure(model::Metadata& facts);
+
+void warn_of_turns(const Exposure& exposure, const std::string& name);
 
 /// Throws Fault::data for less than 0.9 or more than 1.1 of the planned dose, which `accepted` makes a warning; says
 /// so of what else differs. `name` begins the message.

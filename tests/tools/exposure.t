@@ -128,7 +128,12 @@ is 'a response of that name elsewhere is another' "$(json else/away.json full_sc
   "$(json bench/home.json full_scale) $(json bench/home.json part_dose_per_turn_mean_mj_cm3)"
 
 # Another exposure than the planned one.
-fails 65 'light.exr: 1 turn gives 0[.][0-9]* of the planned dose, which .* turns reach; .*--accept-dose' vam-project light.exr --turns 1 -o x.mkv
+for given in '--turns 1' '--set stage.turns=1'; do
+  fails 65 'light.exr: 1 turn gives 0[.][0-9]* of the planned dose, which .* turns reach; .*--accept-dose' vam-project light.exr $given -o x.mkv
+done
+sed 's/^device/turns = 9\n&/' printer.toml >nine.toml
+vam-project light.exr --printer nine.toml -o x.mkv 2>said; vam-print light.exr --printer nine.toml --display null: --uncalibrated --plan 2>>said | grep '^exposure' >plan.txt
+is 'turns of a file are no plan, which is said' "$(grep -c "warning: light.exr: is planned for $turns turns, and stage.turns 9 is not used; --set" said) $(cut -d' ' -f4 plan.txt)" "2 $turns"
 fails 65 'of the planned dose' vam-print light.exr --display null: --uncalibrated --turns 1 --run short
 fails 65 'of the planned dose' vam-project light.exr --speed 45 -o x.mkv
 ok 'is accepted on request' vam-project light.exr --turns 1 --accept-dose -o short.mkv --report short.json

@@ -136,7 +136,7 @@ double seconds_of(const Options& options, const model::Printer& printer, const m
   if (options.diffusion_time_s || printer.resin.diffusion_mm2_s == 0) return options.diffusion_time_s.value_or(0);
   if (!options.shown.empty()) return model::seconds_of(printer.stage, shown_turns);
   const std::string name = io::input_name(options.inputs.front());
-  const session::GivenExposure given{.full_scale = options.full_scale};
+  const session::GivenExposure given{.full_scale = options.full_scale, .sets = options.printer.sets};
   auto exposure = session::exposure_of(name, info, printer, 0, given);
   if (exposure.full_scale == 0)
     exposure = session::exposure_of(name, info, printer, peak_of(options.inputs.front(), info, printer), given);

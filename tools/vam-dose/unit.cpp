@@ -61,7 +61,8 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
     unit.print_turns = unit.full_turns = exposed.shown_turns;
   } else if (unit.absolute) {
     const std::string name = io::input_name(options.inputs.front());
-    const auto shown = session::exposure_of(name, light, printer, peak, {.full_scale = options.full_scale});
+    const auto shown = session::exposure_of(name, light, printer, peak,
+                                            {.full_scale = options.full_scale, .sets = options.printer.sets});
     if (shown.share) {
       session::require_dose(shown, true, name);
       const bool as_stated = light.space == model::Space::projector && light.piece.whole() && shown.as_planned();

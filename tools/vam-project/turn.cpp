@@ -78,7 +78,7 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
 
 session::Exposure exposure_of(const Options& options, const model::StackInfo& info, const Light& light,
                               const model::Printer& printer) {
-  const session::GivenExposure given{options.turns, options.full_scale, options.multiplier};
+  const session::GivenExposure given{options.turns, options.full_scale, options.multiplier, options.printer.sets};
   const std::string name = io::input_name(options.input);
   const auto exposure = session::exposure_of(name, info, printer, light.peak, given);
   const bool whole = options.live.from_deg == 0 && options.live.frames_from.empty();  // neither a rest nor renewed

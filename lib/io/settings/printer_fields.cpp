@@ -70,7 +70,7 @@ const std::vector<PrinterField> fields{
     {"resin", "dark_s", at<&Printer::resin, &Resin::dark_s>, "from the end of the print until the part is rinsed", 0, 1e6},
     {"stage", "device", at<&Printer::stage, &PrinterStage::device>, comment_on(model::stage_schemes), 0, 0, false, {}, schemes_of(model::stage_schemes)},
     {"stage", "speed_deg_s", at<&Printer::stage, &PrinterStage::speed_deg_s>, "rotation speed", 0.001, 1e6},
-    {"stage", "turns", at<&Printer::stage, &PrinterStage::turns>, "turns of one print", 1, 1e6},
+    {"stage", "turns", at<&Printer::stage, &PrinterStage::turns>, "turns of a print whose light states no plan", 1, 1e6},
     {"stage", "direction", at<&Printer::stage, &PrinterStage::direction>, "direction of rotation, 1: clockwise seen from above, theta increases; -1: the other way", -1, 1, false, {"1", "-1"}},
     {"stage", "motion", at<&Printer::stage, &PrinterStage::motion>, "while a frame is shown: stepped (the stage stands), held (it turns by the angle between frames, as live) or interpolated (it turns, and a video has fps frames a second between those of the stack)", 0, 0, false, {"stepped", "held", "interpolated"}},
     {"camera", "device", at<&Printer::camera, &PrinterCamera::device>, comment_on(model::camera_schemes), 0, 0, false, {}, schemes_of(model::camera_schemes)},
