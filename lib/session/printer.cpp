@@ -31,13 +31,7 @@ model::Printer printer_of(const cli::PrinterOptions& options, const model::Metad
     own.calibration = other.calibration;
   }
   if (file.empty()) return own;
-  std::vector<std::string> differences = io::dose_differences(own, other);
-  const auto critical = [](const model::Printer& printer) {
-    const auto& dose = printer.resin.critical_dose_mj_cm3;
-    return dose ? format_number(*dose) : std::string("not set");
-  };
-  if (critical(own) != critical(other))
-    differences.push_back("resin.critical_dose_mj_cm3 " + critical(own) + ", now " + critical(other));
+  const std::vector<std::string> differences = io::differences(own, other, io::Matter::any);
   const bool given = !options.file.empty();
   if (!differences.empty()) {
     warn(name + ": made for another printer than " + file + ": " + join(differences, "; ") +

@@ -10,6 +10,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   return fuzz::attempt([&] {
     const vam::model::Printer printer = vam::io::parse_printer(text, "printer.toml");
     (void)vam::io::parse_printer(vam::io::printer_toml(printer), "its own");
-    (void)vam::io::light_differences(printer, {});
+    (void)vam::io::differences(printer, {}, vam::io::Matter::any);
   });
 }

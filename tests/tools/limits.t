@@ -244,12 +244,12 @@ for files in 4 5 6; do
   sanitized || fails 71 'Too many open files; raise the limit' sh -c "ulimit -n $files; exec vam-project -q tiny.exr --printer printer.toml -o few"
 done
 fails 66 '/dev/zero: is a device that never ends; name a file' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
-$exr make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1
+$exr make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1 printer=none
 fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam-dose far.exr --printer printer.toml -o x.vdb
 $exr make wrong.exr space=projector width=64 height=36 count=3 value=1e30
 fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, but intensities are at most 1e9' \
   vam-project wrong.exr --printer printer.toml -o x.mkv
-$exr make wrong.exr space=virtual width=64 height=36 count=3 value=1e30
+$exr make wrong.exr space=virtual width=64 height=36 count=3 value=1e30 printer=none
 fails 65 'wrong.exr: pixel 0, 0 of image 0 is 1e\+30, but intensities are at most 1e9' vam-dose wrong.exr -o x.vdb
 $exr make wrong.exr space=projector width=64 height=36 count=3 value=-2
 fails 65 'wrong.exr: has a value of -2 at z = [-0-9.]+ mm, 0 deg, column 0; intensity cannot be negative' \

@@ -67,7 +67,7 @@ is 'every frame is the one nearest to the angle' "$(cat angles)" True
 
 # New projections between turns: the frames change at a turn's begin, without a dark image; what does not fit is refused.
 mkdir new
-$exr make one.exr space=projector width=64 height=36 count=3 value=1
+$exr make one.exr space=projector width=64 height=36 count=3 value=1 printer=none
 cp one.exr new/earlier.exr
 vam-project one.exr -o null: --speed 180 --turns 4 --max-missed 0.9 --log renewed --frames-from new &
 tool=$!

@@ -89,7 +89,7 @@ double intensity_of(const std::string& run, bool first, const model::Printer& no
   const std::string file = settings_of(run);
   if (file.empty()) return 1;
   const model::Printer then = io::load_printer(file, {}, io::Records::ignore);
-  const auto differences = first ? io::dose_differences(then, now) : io::light_differences(then, now);
+  const auto differences = io::differences(then, now, first ? io::Matter::dose : io::Matter::light);
   if (differences.empty()) return then.projector.max_intensity_mw_cm2 / now.projector.max_intensity_mw_cm2;
   throw Error{Fault::data, run + ": was printed with other settings: " + join(differences, "; ") +
                                "; omit --printer and --set, or give --printer " + file};

@@ -30,7 +30,8 @@ std::vector<std::string> require_printer(const Options& options, const model::St
     }
     return {};
   }
-  auto differences = io::light_differences(io::parse_settings(computed_for->second, name + ": vam:printer"), printer);
+  auto differences =
+      io::differences(io::parse_settings(computed_for->second, name + ": vam:printer"), printer, io::Matter::light);
   if (differences.empty()) return {};
   const std::string what = name + ": computed for another printer: " + join(differences, "; ");
   if (!options.accept_printer) {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
-#include <span>
 
 #include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
@@ -23,6 +23,7 @@ struct MatchedKey {
   double (*value)(const Printer&);
   double within;     // in the key's unit
   double share = 0;  // of the larger value
+  Matter matter = Matter::light;
 };
 
 // Infinitely far where it is telecentric, and then like any other: the keys of telecentricity tell these apart.
@@ -51,27 +52,18 @@ constexpr MatchedKey keys[] = {
     {"resin.index", [](const Printer& p) { return p.resin.index; }, 0.002},
     {"resin.absorption_per_mm", [](const Printer& p) { return p.resin.absorption_per_mm; }, 0, 0.05},
     {"stage.direction", [](const Printer& p) { return 1.0 * p.stage.direction; }, 0},
-};
-
-constexpr MatchedKey dose_keys[] = {
-    {"stage.speed_deg_s", [](const Printer& p) { return p.stage.speed_deg_s; }, 0, 1e-6},
-    {"projector.max_intensity_mw_cm2", [](const Printer& p) { return p.projector.max_intensity_mw_cm2; }, 0, 1e-6},
+    {"projector.fps",  // of frames that are interpolated
+     [](const Printer& p) { return (p.stage.motion == "interpolated" ? p.projector : model::Projector{}).fps; }, 0, 0,
+     Matter::any},
+    {"stage.speed_deg_s", [](const Printer& p) { return p.stage.speed_deg_s; }, 0, 1e-6, Matter::dose},
+    {"projector.max_intensity_mw_cm2", [](const Printer& p) { return p.projector.max_intensity_mw_cm2; }, 0, 1e-6,
+     Matter::dose},
 };
 
 bool alike(const MatchedKey& key, double a, double b) {
   if (a == b) return true;
   constexpr double rounding = 1 + 1e-9;
   return std::abs(a - b) <= rounding * std::max(key.within, key.share * std::max(std::abs(a), std::abs(b)));
-}
-
-void add_differences(std::span<const MatchedKey> all, const Printer& computed_for, const Printer& now,
-                     std::vector<std::string>& differences) {
-  for (const MatchedKey& key : all) {
-    const double then = key.value(computed_for);
-    const double here = key.value(now);
-    if (alike(key, then, here)) continue;
-    differences.push_back(std::string(key.name) + " " + format_number(then) + ", now " + format_number(here));
-  }
 }
 
 /// "a.b=1 c.d=\"two words\"" at its blanks; a text in quotes holds its own.
@@ -101,6 +93,45 @@ bool known(const std::string& setting) {
   return std::any_of(all.begin(), all.end(), [&](const PrinterField& field) { return dotted_name(field) == name; });
 }
 
+constexpr const char* motion = "stage.motion";
+
+// Of keys without a rule above: no light or dose depends on them, or what follows from them has one, or the plan of the
+// light counts (turns).
+constexpr const char* not_compared[] = {"camera.",
+                                        "optimize.",
+                                        "calibration.",
+                                        "projector.throw_ratio",
+                                        "stage.device",
+                                        "stage.turns",
+                                        motion,
+                                        "projector.telecentric",
+                                        "resin.name",
+                                        "projector.bits",
+                                        "projector.orientation",
+                                        "projector.max_led_current_percent",
+                                        "projector.relay",
+                                        "projector.latency_ms"};
+
+bool is_compared(const std::string& name) {
+  return std::ranges::none_of(keys, [&](const MatchedKey& key) { return key.name == name; }) &&
+         std::ranges::none_of(not_compared, [&](const char* one) { return name.starts_with(one); });
+}
+
+/// To four digits; a file by its whole path.
+std::string text_of(const PrinterField& field, Printer& printer) {
+  const auto text = [&](const auto* value) -> std::string {
+    if constexpr (requires { value->has_value(); }) {
+      return *value ? format_number(**value, 4) : "not set";
+    } else if constexpr (requires { value->empty(); }) {
+      if (!field.words.empty()) return *value;
+      return value->empty() ? "not set" : std::filesystem::absolute(*value).lexically_normal().string();
+    } else {
+      return format_number(*value, 4);
+    }
+  };
+  return std::visit(text, field.slot(printer));
+}
+
 }  // namespace
 
 Printer parse_settings(const std::string& text, const std::string& subject, const std::vector<std::string>& sets) {
@@ -111,18 +142,20 @@ Printer parse_settings(const std::string& text, const std::string& subject, cons
   return parse_printer(toml, subject, sets);
 }
 
-std::vector<std::string> light_differences(const Printer& computed_for, const Printer& now) {
-  std::vector<std::string> differences;
-  add_differences(keys, computed_for, now, differences);
-  const std::string& motion = computed_for.stage.motion;
-  if (motion != now.stage.motion) differences.push_back("stage.motion " + motion + ", now " + now.stage.motion);
-  return differences;
-}
-
-std::vector<std::string> dose_differences(const Printer& computed_for, const Printer& now) {
-  std::vector<std::string> differences = light_differences(computed_for, now);
-  add_differences(dose_keys, computed_for, now, differences);
-  return differences;
+std::vector<std::string> differences(Printer computed_for, Printer now, Matter up_to) {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& name, const std::string& then, const std::string& here) {
+    all.push_back(name + " " + then + ", now " + here);
+  };
+  for (const MatchedKey& key : keys) {
+    const double then = key.value(computed_for), here = key.value(now);
+    if (key.matter <= up_to && !alike(key, then, here)) add(key.name, format_number(then), format_number(here));
+  }
+  for (const PrinterField& field : printer_fields()) {
+    const std::string name = dotted_name(field), then = text_of(field, computed_for), here = text_of(field, now);
+    if (then != here && (name == motion || (up_to == Matter::any && is_compared(name)))) add(name, then, here);
+  }
+  return all;
 }
 
 }  // namespace vam::io

@@ -14,12 +14,13 @@ namespace vam::io {
 [[nodiscard]] model::Printer parse_settings(const std::string& text, const std::string& subject,
                                             const std::vector<std::string>& sets = {});
 
-/// Where two printers differ in what bends, shifts, widens or weakens a projection, by more than a print can bear:
-/// "vial.radius_mm 12.7, now 6". Empty where frames for the one serve the other. What vam-project applies anew (grey
-/// response, rows, orientation, speed) is not compared [formats: Attributes of volumes and prints].
-[[nodiscard]] std::vector<std::string> light_differences(const model::Printer& computed_for, const model::Printer& now);
+/// What a key of the printer decides: where light falls, how much of it, or anything of the print.
+enum class Matter { light, dose, any };
 
-/// The same, and where they differ in speed or full intensity, which decide the dose of a turn.
-[[nodiscard]] std::vector<std::string> dose_differences(const model::Printer& computed_for, const model::Printer& now);
+/// Where two printers differ in what bends, shifts, widens or weakens a projection, by more than a print can bear:
+/// "vial.radius_mm 12.7, now 6"; in speed or full intensity, which decide the dose of a turn; to four digits, in any
+/// other key but those that decide neither light nor dose. Without differences of light frames for the one serve the
+/// other: vam-project applies anew what else there is [formats: Attributes of volumes and prints].
+[[nodiscard]] std::vector<std::string> differences(model::Printer computed_for, model::Printer now, Matter up_to);
 
 }  // namespace vam::io

@@ -5,7 +5,7 @@
 #include "testing.hpp"
 
 using vam::Fault;
-using vam::io::light_differences;
+using vam::io::differences;
 using vam::io::load_printer;
 using vam::io::parse_settings;
 using vam::io::printer_settings;
@@ -13,9 +13,10 @@ using vam::io::printer_toml;
 
 namespace {
 
-std::string difference(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+std::string difference(const std::vector<std::string>& a, const std::vector<std::string>& b,
+                       vam::io::Matter matter = vam::io::Matter::light) {
   std::string all;
-  for (const auto& one : light_differences(load_printer("", a), load_printer("", b))) all += one + "; ";
+  for (const auto& one : differences(load_printer("", a), load_printer("", b), matter)) all += one + "; ";
   return all;
 }
 
@@ -50,4 +51,23 @@ TEST_CASE("settings that a calibration changes, or that are applied at the print
   CHECK(difference({}, {"projector.lens_distance_mm=119.808"}).empty());
   CHECK(difference({}, {"projector.response=a.csv", "projector.rows=900", "stage.speed_deg_s=20"}).empty());
   CHECK(difference({}, {"vial.index_glass=1.6"}).empty());  // without a wall there is no glass
+}
+
+TEST_CASE("what decides a print in any way is named") {
+  using enum vam::io::Matter;
+  CHECK(difference({}, {"stage.speed_deg_s=20", "stage.motion=held"}, dose) ==
+        "stage.speed_deg_s 10, now 20; stage.motion stepped, now held; ");
+  for (const char* one : {"resin.psf_mm 0, now 0.1", "resin.diffusion_mm2_s 0, now 0.001", "resin.dark_s 0, now 60",
+                          "resin.critical_dose_mj_cm3 not set, now 50", "projector.min_intensity_mw_cm2 0, now 0.2",
+                          "projector.response not set, now /r.csv", "projector.axis_row 383.5, now 390"}) {
+    const std::string text = one;
+    const std::string set = text.substr(0, text.find(' ')) + "=" + text.substr(text.rfind(' ') + 1);
+    CHECK(difference({}, {set}, any) == text + "; ");
+    CHECK(difference({}, {set}, dose).empty());
+  }
+  CHECK(difference({},
+                   {"projector.orientation=flip-rows", "projector.fps=1", "stage.turns=5", "camera.fps=3",
+                    "stage.device=sim:", "resin.psf_mm=0.0000"},
+                   any)
+            .empty());
 }
