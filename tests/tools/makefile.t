@@ -13,6 +13,8 @@ is 'a second run does nothing' "$(make -s VOXEL=0.2 | wc -c)" 0
 touch other.off
 remade=$(make VOXEL=0.2 | grep -c 'vam-slice')
 is 'only the changed part is made again' "$remade" 1
+cp printer.toml 'my printer.toml'
+is 'another printer file makes all again' "$(VAM_PRINTER='my printer.toml' make -n VOXEL=0.2 | grep -c 'vam-slice .*off')" 2
 ok 'a printable part passes' make check VOXEL=0.2 LIMITS='iou>=0.5'
 rm -f ./*.score.json
 make check VOXEL=0.2 LIMITS='iou>=1.5' >.log/out 2>&1

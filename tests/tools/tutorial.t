@@ -29,7 +29,9 @@ ok 'write a video' test -s entry/print.mkv
 
 mkdir tour
 awk '/^```$/{code = 0} code{print} /^```sh$/{code = 1}' "$VAM_SOURCE/README.md" | sed 's/--voxel 0.13/--voxel 0.2/' >tour.sh
-ok 'the tour of README.md' sh -ec 'cd tour; . ../tour.sh'
+mkdir own; echo '[stage]' >own/printer.toml
+ok 'the tour of README.md' sh -ec 'cd own; head -n 2 ../tour.sh | sh -e; cd ../tour; . ../tour.sh'
+is 'it keeps a printer of yours' "$(cat own/printer.toml)" '[stage]'
 is 'it writes what it names' "$(ls tour | tr '\n' ' ')" \
   'dose.png dose.vdb part.vdb print.mkv print.png printer.toml projector.exr report.html '
 done_testing
