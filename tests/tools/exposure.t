@@ -137,6 +137,8 @@ is 'turns of a file are no plan, which is said' "$(grep -c "warning: light.exr: 
 fails 65 'of the planned dose' vam-print light.exr --display null: --uncalibrated --turns 1 --run short
 fails 65 'of the planned dose' vam-project light.exr --speed 45 -o x.mkv
 ok 'is accepted on request' vam-project light.exr --turns 1 --accept-dose -o short.mkv --report short.json
+vam-print light.exr --display null: --uncalibrated --max-missed 1 --max-missed-lit 1 --turns 1 --accept-dose --run short 2>said
+ok 'which a print says' grep -q 'warning: light.exr: 1 turn gives .* of the planned dose' said
 holds 'and told in the report' "($(json short.json share_of_planned_dose) * $turns - 1) ^ 2 < 1e-6"
 fails 65 '0.[0-9]* of the planned dose' vam-project light.exr --turns 1 --multiplier "$turns" -o x.mkv
 vam-project light.exr -o null: --speed 900 --from 540 --max-missed 1 --max-missed-lit 1 --report rest.json
