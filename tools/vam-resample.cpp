@@ -76,6 +76,7 @@ void run(const cli::App& app, Options& options) {
                                           : optics::stack_to_virtual(printer, options.alignment, in.info(), how,
                                                                      options.bin_width_mm, options.bins);
   job.info.history.push_back(app.history());
+  job.info.extra.erase("vam:judged_radius_mm");  // of parallel light
   if (projector) {
     session::forget_exposure(job.info.extra);  // which another printer, and brighter light, would not give
     job.info.extra["vam:printer"] = io::printer_settings(printer);

@@ -22,8 +22,6 @@ double rim_px(const Grid& grid, const Circle& at) {
 
 }  // namespace
 
-double inscribed_radius_mm(const Grid& grid) { return grid.voxel_mm * rim_px(grid, about_axis(grid)); }
-
 Circle judged_circle(const Grid& grid, double radius_mm) {
   Circle circle = about_axis(grid);
   (void)rim_px(grid, circle);

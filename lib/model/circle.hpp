@@ -30,9 +30,6 @@ struct Circle {
 /// as writable_circle.
 [[nodiscard]] Circle judged_circle(const Grid& grid, double radius_mm);
 
-/// The radius within which all resin is in the grid.
-[[nodiscard]] double inscribed_radius_mm(const Grid& grid);
-
 /// The circle of that radius (optics::writable_radius_mm), at most the circle inside the grid. Throws Fault::data when
 /// the rotation axis (x = y = 0) is not inside the grid.
 [[nodiscard]] Circle writable_circle(const Grid& grid, double radius_mm);

@@ -226,8 +226,9 @@ verdict::Verdict Score::verdict() const {
 
 std::optional<double> Score::judged_radius_mm() const {
   constexpr double least_px = 0.5;  // the writable circle's own voxels end within it
-  if (options_.grid.voxel_mm <= 0 || rim_px_ >= options_.circle.radius - least_px) return std::nullopt;
-  return rim_px_ * options_.grid.voxel_mm;
+  const double voxel_mm = options_.grid.voxel_mm;
+  const double judged_mm = std::min(rim_px_, options_.circle.radius) * voxel_mm;
+  return judged_mm < options_.writable_mm - least_px * voxel_mm ? std::optional(judged_mm) : std::nullopt;
 }
 
 std::string Score::table(const std::string& ending) const {
@@ -237,9 +238,9 @@ std::string Score::table(const std::string& ending) const {
     if (values.contains(name)) text += figure_row(name, values[name].get<double>(), meaning);
   }
   if (const auto radius_mm = judged_radius_mm()) {
-    text += "judged       all void within " + format_number(*radius_mm, 3) +
-            " mm of the axis; the volume ends before " + "the writable radius of " +
-            format_number(options_.circle.radius * options_.grid.voxel_mm, 3) + " mm\n";
+    text += "judged       all void within " + format_number(*radius_mm, 3) + " mm of the axis; the " +
+            (rim_px_ < options_.circle.radius ? "volume" : "light") + " ends before the writable radius of " +
+            format_number(options_.writable_mm, 3) + " mm\n";
   }
   return text + "verdict      " + verdict().words + ending + "\n";
 }

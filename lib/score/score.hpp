@@ -27,7 +27,8 @@ struct Exposure {
 
 struct ScoreOptions {
   std::string target = "target";        // begins the messages on it
-  model::Circle circle;                 // the writable one; void outside it is not judged
+  model::Circle circle;                 // void outside it is not judged: the writable one,
+  double writable_mm = 0;               // of this radius, or what the light was made for
   model::Grid grid;                     // of dose and target; voxel_mm 0: not known
   double stretch_z = 1;                 // of that grid
   bool surface = false;                 // surface voxels count too: part when at least half covered, else void

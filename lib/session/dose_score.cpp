@@ -22,11 +22,6 @@ namespace vam::session {
 
 namespace {
 
-model::Circle scoring_circle(const io::SparseVolume& target, const model::Printer& printer) {
-  const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
-  return model::judged_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
-}
-
 constexpr int slab = 16;
 
 void require_slabs(const io::SparseVolume& target) {
@@ -53,6 +48,11 @@ void for_each_slab(const io::SparseVolume& dose, const io::SparseVolume& target,
 
 }  // namespace
 
+double judged_radius_mm(const io::SparseVolume& target, const model::Printer& printer, const model::Metadata& light) {
+  const double most = optics::judged_radius_mm(printer, io::farthest_mm(target, model::coverage_rounding));
+  return std::min(most, model::stated_number(light, "vam:judged_radius_mm").value_or(most));
+}
+
 verdict::Unresolved unresolved(const io::SparseVolume& target) {
   constexpr std::size_t million = 1'000'000;  // voxels at a time
   const model::Grid& grid = target.grid();
@@ -71,8 +71,9 @@ verdict::Unresolved unresolved(const io::SparseVolume& target) {
 
 void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
                       const model::Printer& printer) {
-  how.circle = scoring_circle(target, printer);
   how.grid = target.grid();
+  how.circle = model::judged_circle(how.grid, judged_radius_mm(target, printer, dose.metadata));
+  how.writable_mm = judged_radius_mm(target, printer, {});
   how.stretch_z = model::stretch_z(target.metadata);
   how.light = model::stated_width(dose.metadata);
   how.aimed_at = model::threshold_dose(dose.metadata);
@@ -108,7 +109,7 @@ score::GreyScore score_grey(const io::SparseVolume& dose, const io::SparseVolume
                             const io::SparseVolume* band, const model::Printer& printer, const std::string& file) {
   const model::Grid& grid = target.grid();
   score::GreyOptions how = grey.options();
-  how.circle = scoring_circle(target, printer);
+  how.circle = model::judged_circle(grid, judged_radius_mm(target, printer, dose.metadata));
   how.unit = grey_unit(target, dose, file);
   require_linear(dose, file);
   score::GreyScore result(how, grid.nx, grid.ny);

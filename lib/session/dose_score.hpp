@@ -5,6 +5,7 @@
 #include <string>
 
 #include "io/vdb/vdb.hpp"
+#include "model/metadata.hpp"
 #include "model/printer.hpp"
 #include "score/grey_score.hpp"
 #include "score/score.hpp"
@@ -15,6 +16,11 @@ namespace vam::session {
 
 /// Features of a target that are too fine for its voxels, with what it states of its own surface.
 [[nodiscard]] verdict::Unresolved unresolved(const io::SparseVolume& target);
+
+/// How far from the axis void is judged: optics::judged_radius_mm, but not farther than `light` states (of the
+/// projections, or their dose) that vam-optimize did [formats: Attributes of volumes and prints].
+[[nodiscard]] double judged_radius_mm(const io::SparseVolume& target, const model::Printer& printer,
+                                      const model::Metadata& light);
 
 /// Fills in the circle that is judged, void outside which is not, the threshold that the light was made for, and for a
 /// dose in mJ/cm3 of a resin with a critical dose the exposure, with that threshold where it is the dose of a whole

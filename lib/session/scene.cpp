@@ -124,13 +124,6 @@ void warn_of_reach(const io::SparseVolume& target, const model::Printer& printer
        "(RMS; single voxels to some per cent)");
 }
 
-/// A parallel beam is computed in the circle within the volume: a part in its corners needs a larger one.
-light::Margin corner_margin(const io::SparseVolume& target, double radius_mm) {
-  const double farthest_mm = std::min(io::farthest_mm(target, model::coverage_rounding), radius_mm);
-  const double missing_mm = farthest_mm - model::inscribed_radius_mm(target.grid());
-  return {std::max(0, ceil_int(missing_mm / target.grid().voxel_mm)), 0, 0};
-}
-
 /// Rows beyond the projector's stay dark.
 void require_rows(const model::Grid& grid, const light::VialSetup& setup) {
   const double low_mm = grid.z_mm(0);
@@ -161,7 +154,9 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
   const model::Poses poses = poses_of(grid, printer, options);
   light::require_in_reach(poses, printer, radius_mm);
   const light::Margin margin =
-      options.in_vial() ? light::lit_margin(printer, grid, radius_mm, poses) : corner_margin(target, radius_mm);
+      options.in_vial()
+          ? light::lit_margin(printer, grid, radius_mm, poses)
+          : light::round_margin(grid, std::min(io::farthest_mm(target, model::coverage_rounding), radius_mm));
   const model::Grid lit = light::extended(grid, margin);
   Scene scene{lit, margin, printer, model::writable_circle(lit, radius_mm), {}, poses};
   const int columns = options.bins.value_or(tomo::columns_across(scene.circle, lit.nx));

@@ -164,6 +164,9 @@ holds 'vam-plan judges the same light by its turns, too' "$(json slow.json turns
 # Pieces know no plan of the whole; joined, they have that of their threshold.
 vam-optimize part.vdb --geometry parallel --angles 60 -o flat.exr --report flat.json --verbose 2>said
 is 'no projector shows parallel light' "$(grep -c 'verdict\|print' said) $(grep -c 'to show it' said)" '1 0'
+vam-dose flat.exr --like part.vdb -o flat.vdb; vam-score flat.vdb --target part.vdb --report flat.score.json >/dev/null
+judged() { echo "$(json $1 judged_radius_mm | cut -c1-6) $(json $1 verdict | grep -o '([0-9]* voxels)')"; }
+is 'one region of parallel light is judged, and stated' "$(judged flat.score.json)" "$(judged flat.json)"
 for n in 1 2; do quiet "piece $n" vam-optimize part.vdb --geometry parallel --angles 60 --slices $n/2 -o piece-$n.exr; done
 is 'states no exposure' "$(attr piece-2.exr vam:shown_turns 2>&1 | tail -n 1)" "KeyError: 'vam:shown_turns'"
 quiet 'joined' vam-convert join piece-1.exr piece-2.exr -o joined.exr

@@ -13,6 +13,7 @@
 #include "model/dose/dose_metrics.hpp"
 #include "model/light_width.hpp"
 #include "optics/writable_radius.hpp"
+#include "session/dose_score.hpp"
 #include "session/volumes.hpp"
 
 namespace vam::dose_tool {
@@ -59,12 +60,15 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     throw Error{Fault::data,
                 options.like + ": has no grid 'target'; --exposure-plan requires the part (vam-slice writes it)"};
   }
-  const double farthest_mm = like.name() == "target" ? io::farthest_mm(like, model::coverage_rounding) : 0;
-  place.judged_mm = optics::judged_radius_mm(printer, farthest_mm);
+  const bool part = like.name() == "target";
+  place.judged_mm = part ? session::judged_radius_mm(like, printer, info.extra) : optics::judged_radius_mm(printer, 0);
   light::require_in_reach(info.poses, printer, place.judged_mm);
   place.grid = like.grid();
-  if (info.space == model::Space::projector) {  // what prints around the part must be seen
+  // What prints around the part must be seen.
+  if (info.space == model::Space::projector) {
     place.grid = light::extended(place.grid, light::lit_margin(printer, place.grid, place.judged_mm, info.poses));
+  } else if (info.extra.contains("vam:judged_radius_mm")) {
+    place.grid = light::extended(place.grid, light::round_margin(place.grid, place.judged_mm));
   }
   like.extend_to(place.grid, options.like);
   if (insert != nullptr) insert->extend_to(place.grid, options.like);

@@ -112,14 +112,15 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
   if (outcome.certificate) write_proof(*outcome.certificate, scene, target, info, options.certify);
   Json report = optimize::report(outcome);
   report["method"] = options.method;
+  report["judged_radius_mm"] = scene.circle.radius * scene.grid.voxel_mm;
   report["threshold_dose"] = options.demands.window.threshold();
   if (outcome.surface) {
     const double voxel_mm = scene.grid.voxel_mm;
     report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
   }
   report_delivered(report, task.source, scene, options);
-  const double full_scale = session::exposure_of(options.output, info, printer, 0).full_scale;
-  if (full_scale > 0) report["full_scale"] = full_scale;
+  const session::Exposure shown = session::exposure_of(options.output, info, printer, 0);
+  if (shown.full_scale > 0) report["full_scale"] = shown.full_scale;
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
     for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
@@ -134,7 +135,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     print.threshold = threshold;
     const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
     add_to(report, verdict);
-    const bool stated = options.in_vial() && info.piece.whole() && model::shown_turns(info.extra);
+    const bool stated = options.in_vial() && info.piece.whole() && shown.planned;
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words +
          session::how_to_show(printer.resin, stated, options.output == "-" ? "SINOGRAM" : options.output,
                               options.printer));

@@ -32,6 +32,8 @@ model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume&
     info.space = model::Space::projector;
     info.width = scene.printer.projector.columns;
     info.pixel_mm = scene.printer.projector.pixel_mm;
+  } else {
+    info.extra["vam:judged_radius_mm"] = format_number(scene.circle.radius * scene.grid.voxel_mm, 9);
   }
   info.z_start_mm = scene.poses.empty() ? scene.grid.z_mm(0) : scene.first_row_mm;
   info.angle_step_deg = 360.0 / scene.turn.angles;

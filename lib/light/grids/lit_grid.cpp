@@ -18,6 +18,8 @@ namespace vam::light {
 
 namespace {
 
+int voxels(double some) { return std::max(0, ceil_int(some - 1e-6)); }
+
 /// How much higher a low ray runs at one side of the circle than at the other.
 double climb_ratio(const model::Printer& printer, double radius_mm) {
   constexpr double low_mm = 1e-3;
@@ -45,12 +47,14 @@ double spread_mm(const model::Printer& printer, double radius_mm) {
 
 }  // namespace
 
-Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm, const model::Poses& poses) {
-  Margin margin;
+Margin round_margin(const model::Grid& grid, double radius_mm) {
   const double rim =
       0.5 * grid.voxel_mm + std::min({-grid.x_mm(0), -grid.y_mm(0), grid.x_mm(grid.nx - 1), grid.y_mm(grid.ny - 1)});
-  const auto voxels = [&](double mm) { return std::max(0, ceil_int(mm / grid.voxel_mm - 1e-6)); };
-  margin.side = voxels(radius_mm - rim);
+  return {voxels((radius_mm - rim) / grid.voxel_mm), 0, 0};
+}
+
+Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm, const model::Poses& poses) {
+  Margin margin = round_margin(grid, radius_mm);
   const double ratio = climb_ratio(printer, radius_mm);
   const model::LiftRange lift = model::lift_mm(poses);
   const double scale = model::vertical_magnification(printer);
@@ -67,8 +71,8 @@ Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double
     const auto in_image = [&](double lift_mm) { return std::clamp(end_mm + lift_mm / scale, lowest_mm, highest_mm); };
     return std::max(spread(sign * in_image(lift.least)), spread(sign * in_image(lift.most)));
   };
-  margin.above = voxels(most(grid.z_mm(grid.nz - 1), 1) + width_mm) + 1;
-  margin.below = voxels(most(grid.z_mm(0), -1) + width_mm) + 1;
+  margin.above = voxels((most(grid.z_mm(grid.nz - 1), 1) + width_mm) / grid.voxel_mm) + 1;
+  margin.below = voxels((most(grid.z_mm(0), -1) + width_mm) / grid.voxel_mm) + 1;
   return margin;
 }
 

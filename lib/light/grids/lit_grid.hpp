@@ -16,6 +16,8 @@ struct Margin {
   int above = 0;
 };
 
+/// Up to that radius on the sides.
+[[nodiscard]] Margin round_margin(const model::Grid& grid, double radius_mm);
 /// Up to that radius (optics::judged_radius_mm) on the sides; below and above as far as the light of the grid's own
 /// rows climbs, in any pose. Nothing below and above where rays stay level, but a slice where poses lift the part, as
 /// rows then stand between slices. Throws Fault::data as projector_view does.

@@ -19,4 +19,6 @@ TEST_CASE("a slice and a box of a grid keep their place in the grid with a margi
   CHECK(to[static_cast<std::size_t>(box.high[1]) * wide.nx + box.high[0]] == 6);
   CHECK(to.front() == 9);
   CHECK(to.back() == 9);
+  CHECK(light::round_margin(grid, 0.5).side == 0);  // its narrow side is 1 mm
+  CHECK(light::round_margin(grid, 1.01).side == 2);
 }

@@ -12,7 +12,6 @@ TEST_CASE("the writable circle is the smaller of the printer's and the grid's") 
   CHECK(wide.radius == doctest::Approx(radius_mm / 0.5));
   CHECK(writable_circle(centred_grid(21, 31, 1, 0.5), radius_mm).radius == doctest::Approx(10.5));
   CHECK(judged_circle(centred_grid(21, 31, 1, 0.5), radius_mm).radius == doctest::Approx(radius_mm / 0.5));
-  CHECK(inscribed_radius_mm(centred_grid(21, 31, 1, 0.5)) == doctest::Approx(5.25));
   CHECK_THROWS_AS((void)judged_circle({10, 10, 1, 0.5, {3, 0, 0}}, radius_mm), vam::Error);
   CHECK_THROWS_AS((void)writable_circle({10, 10, 1, 0.5, {3, 0, 0}}, radius_mm), vam::Error);
 }
