@@ -83,9 +83,15 @@ inline std::string box_3mf(const std::string& unit, const std::string& transform
   return zip.done();
 }
 
-/// The one line with which bytes are refused as a mesh.
-inline std::string refusal(const scratch::Folder& folder, const std::string& bytes) {
-  const std::string line = error_of([&] { (void)vam::io::read_mesh(folder.write("mesh", bytes)); }, vam::Fault::data);
+/// The mesh of a file of these bytes.
+inline TriangleSoup mesh_of(const std::string& bytes) {
+  const scratch::Folder folder;
+  return vam::io::read_mesh(folder.write("mesh", bytes));
+}
+
+/// The one line with which they are refused.
+inline std::string refused(const std::string& bytes) {
+  const std::string line = error_of([&] { (void)mesh_of(bytes); }, vam::Fault::data);
   CHECK(!has(line, "\n"));
   return line;
 }

@@ -7,7 +7,6 @@
 #include "testing.hpp"
 
 using namespace samples;
-using vam::io::read_mesh;
 
 namespace {
 
@@ -42,12 +41,11 @@ std::string package(const std::string& root, const std::string& second = "") {
 TEST_CASE(
     "3MF: components are placed from the inside out, mirrored ones keep their orientation, unprintable ones are left "
     "out") {
-  const scratch::Folder folder;
   const std::string nested = object(1, mesh_xml(box())) +
                              object(2, "<components>" + component(1, "transform=\"2 0 0 0 1 0 0 0 1 1 0 0\"") +
                                            component(1, "transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"") + "</components>");
-  const auto mesh = read_mesh(folder.write(
-      "a", package(model(nested, item(2, "transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"") + item(1, "printable=\"0\"")))));
+  const auto mesh =
+      mesh_of(package(model(nested, item(2, "transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"") + item(1, "printable=\"0\""))));
   CHECK(mesh.triangles.size() == 24);
   CHECK(volume(mesh) == doctest::Approx(12 + 6));
   double low = 1e9;
@@ -83,19 +81,17 @@ TEST_CASE("3MF is written in mm, the same bytes for the same mesh, and comes bac
 }
 
 TEST_CASE("3MF: supports are not printed, alone, as items or as components") {
-  const scratch::Folder folder;
   const auto typed = [](int id, const std::string& type) {
     return "<object id=\"" + std::to_string(id) + "\" type=\"" + type + "\">" + mesh_xml(box()) + "</object>";
   };
   const std::string objects = object(1, mesh_xml(box())) + typed(2, "support") + typed(3, "solidsupport") +
                               object(4, "<components>" + component(1) + component(2) + "</components>");
-  CHECK(read_mesh(folder.write("a", package(model(objects, item(1) + item(2) + item(3))))).triangles.size() == 12);
-  CHECK(read_mesh(folder.write("a", package(model(objects, item(4))))).triangles.size() == 12);
-  CHECK(has(refusal(folder, package(model(objects, item(2)))), "its build has supports only, and no part"));
+  CHECK(mesh_of(package(model(objects, item(1) + item(2) + item(3)))).triangles.size() == 12);
+  CHECK(mesh_of(package(model(objects, item(4)))).triangles.size() == 12);
+  CHECK(has(refused(package(model(objects, item(2)))), "its build has supports only, and no part"));
 }
 
 TEST_CASE("3MF: an object of another part, whose unit is its own") {
-  const scratch::Folder folder;
   const std::string production =
       "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" "
       "requiredextensions=\"p\"";
@@ -103,12 +99,11 @@ TEST_CASE("3MF: an object of another part, whose unit is its own") {
       model(object(1, "<components>" + component(7, "p:path=\"/3D/Objects/second.model\"") + "</components>"), item(1),
             production);
   const std::string bytes = package(root, model(object(7, mesh_xml(box())), "", "unit=\"centimeter\""));
-  CHECK(volume(read_mesh(folder.write("a", bytes))) == doctest::Approx(6000));
-  CHECK(has(refusal(folder, package(root)), "3D/Objects/second.model"));
+  CHECK(volume(mesh_of(bytes)) == doctest::Approx(6000));
+  CHECK(has(refused(package(root)), "3D/Objects/second.model"));
 }
 
 TEST_CASE("3MF: rejects unbounded components and non-mesh geometry") {
-  const scratch::Folder folder;
   const auto ten = [](int id) {
     std::string text = "<components>";
     for (int i = 0; i < 10; ++i) text += component(id);
@@ -116,43 +111,41 @@ TEST_CASE("3MF: rejects unbounded components and non-mesh geometry") {
   };
   std::string levels = object(1, mesh_xml(box()));
   for (int id = 2; id <= 10; ++id) levels += object(id, ten(id - 1));
-  CHECK(has(refusal(folder, package(model(levels, item(10)))),
+  CHECK(has(refused(package(model(levels, item(10)))),
             "expand to 1111111111 objects of 12000000000 triangles and 8000000000 vertices"));
   for (int id = 11; id <= 40; ++id) levels += object(id, ten(id - 1));
-  CHECK(has(refusal(folder, package(model(levels, item(40)))), "more than 10^12"));
-  CHECK(has(refusal(folder, package(model(object(1, "<components>" + component(2) + "</components>") +
-                                              object(2, "<components>" + component(1) + "</components>"),
-                                          item(1)))),
+  CHECK(has(refused(package(model(levels, item(40)))), "more than 10^12"));
+  CHECK(has(refused(package(model(object(1, "<components>" + component(2) + "</components>") +
+                                      object(2, "<components>" + component(1) + "</components>"),
+                                  item(1)))),
             "object 1 is a component of itself; mend it, or save"));
   std::string chain = object(1, mesh_xml(box()));
   for (int id = 2; id <= 100; ++id) chain += object(id, "<components>" + component(id - 1) + "</components>");
-  CHECK(has(refusal(folder, package(model(chain, item(100)))), "nested deeper than 64; save it as a plain mesh"));
+  CHECK(has(refused(package(model(chain, item(100)))), "nested deeper than 64; save it as a plain mesh"));
 
   const std::string lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"";
   std::string beams = mesh_xml(box());
   beams.insert(beams.find("</mesh>"),
                "<b:beamlattice radius=\"1\"><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice>");
-  CHECK(has(refusal(folder, package(model(object(3, beams), item(3), lattice))), "object 3 has a 'beamlattice'"));
-  CHECK(has(refusal(folder, package(model(object(3, mesh_xml(box())), item(3),
-                                          "xmlns:v=\"http://example.com/volumes\" requiredextensions=\"v\""))),
+  CHECK(has(refused(package(model(object(3, beams), item(3), lattice))), "object 3 has a 'beamlattice'"));
+  CHECK(has(refused(package(model(object(3, mesh_xml(box())), item(3),
+                                  "xmlns:v=\"http://example.com/volumes\" requiredextensions=\"v\""))),
             "needs the 3MF extension 'http://example.com/volumes'"));
-  CHECK(has(refusal(folder, package(model(object(1, mesh_xml(box())), ""))), "its build has no item"));
-  CHECK(has(refusal(folder, package(model(object(1, mesh_xml(box())), item(2)))), "refers to object 2"));
-  CHECK(has(refusal(folder, package(model(object(1, mesh_xml(box())), item(1, "transform=\"1 0 0\"")))),
+  CHECK(has(refused(package(model(object(1, mesh_xml(box())), ""))), "its build has no item"));
+  CHECK(has(refused(package(model(object(1, mesh_xml(box())), item(2)))), "refers to object 2"));
+  CHECK(has(refused(package(model(object(1, mesh_xml(box())), item(1, "transform=\"1 0 0\"")))),
             "its <item> has transform '1 0 0'"));
-  CHECK(has(
-      refusal(folder, package("<!DOCTYPE model [<!ENTITY a \"aaaa\">]>" + model(object(1, mesh_xml(box())), item(1)))),
-      "declares a document type"));
+  CHECK(has(refused(package("<!DOCTYPE model [<!ENTITY a \"aaaa\">]>" + model(object(1, mesh_xml(box())), item(1)))),
+            "declares a document type"));
 }
 
 TEST_CASE("3MF: what a small file unpacks and expands to is bounded, and refused with numbers") {
-  const scratch::Folder folder;
   const auto packed_refusal = [&](const std::string& root) {
     Zip zip;
     zip.add_packed("3D/3dmodel.model", root);
     const std::string bytes = zip.done();
     const double begun_s = cpu_s();
-    const std::string line = refusal(folder, bytes);
+    const std::string line = refused(bytes);
     CHECK(cpu_s() - begun_s < 2);
     return line;
   };
@@ -174,33 +167,30 @@ TEST_CASE("3MF: what a small file unpacks and expands to is bounded, and refused
 }
 
 TEST_CASE("3MF: two files of a name in the archive, of which one would be read, are refused") {
-  const scratch::Folder folder;
   const std::string root = model(object(1, mesh_xml(box())), item(1));
   for (const char* name : {"3D/3dmodel.model", "3d/3DModel.MODEL"}) {
     Zip zip;
     zip.add("3D/3dmodel.model", root);
     zip.add(name, root);
-    CHECK(has(refusal(folder, zip.done()),
+    CHECK(has(refused(zip.done()),
               "holds two files called '3d/3dmodel.model', of which only one would be read; save it again"));
   }
 }
 
 TEST_CASE("3MF: what an object lacks or has twice is said with a remedy") {
-  const scratch::Folder folder;
   const std::string one = object(1, mesh_xml(box()));
-  CHECK(has(refusal(folder, package(model(one + one, item(1)))), "has two objects 1; mend it, or save the mesh again"));
+  CHECK(has(refused(package(model(one + one, item(1)))), "has two objects 1; mend it, or save the mesh again"));
   std::string beyond = one;
   beyond.replace(beyond.find("v1=\"") + 4, 1, "-1");
-  CHECK(has(refusal(folder, package(model(beyond, item(1)))),
+  CHECK(has(refused(package(model(beyond, item(1)))),
             "object 1 uses vertex -1 of 8 (counted from 0); mend it, or save the mesh again"));
 }
 
 TEST_CASE("3MF: the unit and the place of the build item count") {
-  const scratch::Folder folder;
-  CHECK(volume(read_mesh(folder.write("mesh", box_3mf("inch", "")))) == doctest::Approx(6 * std::pow(25.4, 3)));
-  CHECK(volume(read_mesh(folder.write("mesh", box_3mf("micron", "")))) == doctest::Approx(6e-9));
+  CHECK(volume(mesh_of(box_3mf("inch", ""))) == doctest::Approx(6 * std::pow(25.4, 3)));
+  CHECK(volume(mesh_of(box_3mf("micron", ""))) == doctest::Approx(6e-9));
   // 3MF matrices are row by row, row vectors, translation last: a quarter turn about z, then (10, 20, 30).
-  const auto mesh = read_mesh(folder.write("mesh", box_3mf("millimeter", "0 1 0 -1 0 0 0 0 1 10 20 30")));
+  const auto mesh = mesh_of(box_3mf("millimeter", "0 1 0 -1 0 0 0 0 1 10 20 30"));
   CHECK(volume(mesh) == doctest::Approx(6));
   std::array<double, 3> low{1e9, 1e9, 1e9};
   for (const auto& p : mesh.points) {
@@ -209,11 +199,10 @@ TEST_CASE("3MF: the unit and the place of the build item count") {
   CHECK(low[0] == doctest::Approx(8));  // x' = -y + 10, y in [0, 2]
   CHECK(low[1] == doctest::Approx(20));
   CHECK(low[2] == doctest::Approx(30));
-  CHECK(has(refusal(folder, box_3mf("furlong", "")), "unknown 3MF unit 'furlong'"));
+  CHECK(has(refused(box_3mf("furlong", "")), "unknown 3MF unit 'furlong'"));
 }
 
 TEST_CASE("3MF: the relations name the model, wherever they are in the archive") {
-  const scratch::Folder folder;
   const std::string relations =
       "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
       "Target=\"/3D/part.model\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
@@ -224,6 +213,6 @@ TEST_CASE("3MF: the relations name the model, wherever they are in the archive")
     zip.add("3D/another.model", model(object(1, mesh_xml(box())), item(1) + item(1)));
     zip.add("3D/part.model", model(object(1, mesh_xml(box())), item(1)));
     if (!first) zip.add("_rels/.rels", relations);
-    CHECK(read_mesh(folder.write("a", zip.done())).triangles.size() == 12);
+    CHECK(mesh_of(zip.done()).triangles.size() == 12);
   }
 }
