@@ -2,6 +2,7 @@
 // Arrays put together in a test, read back whole.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,16 +18,21 @@ inline std::string big(const std::string& bytes) { return {bytes.rbegin(), bytes
 struct ReadArray {
   std::vector<float> values;
   vam::io::ArraySize size;
+  [[nodiscard]] std::array<int, 3> shape() const { return {size.images, size.rows, size.columns}; }
 };
 
-inline ReadArray read_array(const std::string& bytes, const vam::io::ArrayOptions& options = {}) {
-  const scratch::Folder folder;
-  vam::io::ArrayReader reader(folder.write("array", bytes), options);
+inline ReadArray read_array_file(const std::string& path, const vam::io::ArrayOptions& options = {}) {
+  vam::io::ArrayReader reader(path, options);
   ReadArray all{{}, reader.size()};
   for (vam::Image image; reader.next(image);) {
     all.values.insert(all.values.end(), image.values.begin(), image.values.end());
   }
   return all;
+}
+
+inline ReadArray read_array(const std::string& bytes, const vam::io::ArrayOptions& options = {}) {
+  const scratch::Folder folder;
+  return read_array_file(folder.write("array", bytes), options);
 }
 
 inline std::string array_refusal(const std::string& bytes, const vam::io::ArrayOptions& options = {}) {

@@ -89,32 +89,24 @@ TEST_CASE("values that are no finite float are refused, with their place") {
 }
 
 TEST_CASE("C and Fortran order, axes in any order, planes, and more images than are gathered at a time") {
-  const auto at = [](const ReadArray& all, int image, int row, int column) {
-    return all.values[(static_cast<std::size_t>(image) * all.size.rows + row) * all.size.columns + column];
-  };
   for (const bool fortran : {false, true}) {
     CAPTURE(fortran);
     const std::string bytes = array_of(dictionary("|u1", fortran ? "True" : "False", "20, 3, 4"), counted(240));
     for (const std::array<int, 3>& axes : {std::array{0, 1, 2}, {2, 1, 0}, {1, 0, 2}, {0, 2, 1}}) {
       const ReadArray all = read_array(bytes, {"", axes});
       const std::array sizes{20, 3, 4};
-      REQUIRE(all.size.images == sizes[axes[0]]);
-      REQUIRE(all.size.rows == sizes[axes[1]]);
-      REQUIRE(all.size.columns == sizes[axes[2]]);
+      REQUIRE(all.shape() == std::array{sizes[axes[0]], sizes[axes[1]], sizes[axes[2]]});
+      std::size_t at = 0;
       for (const auto [image, row, column] : indices(all.size.images, all.size.rows, all.size.columns)) {
         std::array<int, 3> own{};
-        own[axes[0]] = image;
-        own[axes[1]] = row;
-        own[axes[2]] = column;
+        own[axes[0]] = image, own[axes[1]] = row, own[axes[2]] = column;
         const int place = fortran ? own[0] + 20 * (own[1] + 3 * own[2]) : (own[0] * 3 + own[1]) * 4 + own[2];
-        CHECK(at(all, image, row, column) == static_cast<float>(place));
+        CHECK(all.values[at++] == static_cast<float>(place));
       }
     }
   }
   const ReadArray plane = read_array(array_of(dictionary("|u1", "False", "3, 4"), counted(12), 3));
-  CHECK(plane.size.images == 1);
-  CHECK(plane.size.rows == 3);
-  CHECK(plane.size.columns == 4);
+  CHECK(plane.shape() == std::array{1, 3, 4});
   CHECK(plane.values[11] == 11);
   // More than are converted at a time.
   const ReadArray wide =

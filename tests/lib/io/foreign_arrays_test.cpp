@@ -28,9 +28,7 @@ std::string counted(bool big_endian = false) {
 }
 void check_counted(const std::string& bytes) {
   const ReadArray all = read_array(bytes);
-  CHECK(all.size.images == 2);
-  CHECK(all.size.rows == 3);
-  CHECK(all.size.columns == 4);
+  CHECK(all.shape() == std::array{2, 3, 4});
   REQUIRE(all.values.size() == 24);
   for (std::size_t i = 0; i < 24; ++i) CHECK(all.values[i] == static_cast<float>(i + 1));
   // Every beginning of it is refused, in one line.
