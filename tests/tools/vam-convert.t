@@ -4,28 +4,24 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 shown() { $npy show "$1" >shown; cat shown; }
+back() { vam-convert --voxel 0.5 "$@" | vam-convert >b.npy; shown b.npy; }  # back ARGUMENT...: the voxels of an array
 values() { seq 0 "$(($1 - 1))" | awk '{ printf " %d", $1 % 101 } END { print "" }'; }
 
 # Every type and order: the same numbers in [z][y][x].
 want="2 3 4 <f4$(values 24)"
 for kind in '|u1' '|i1' '<u2' '>u2' '<i2' '<u4' '>i4' '<i8' '>u8' '<f2' '>f2' '<f4' '>f4' '<f8' '>f8'; do
   $npy make a.npy "$kind" 2,3,4
-  vam-convert a.npy --voxel 0.5 --grid weight | vam-convert >b.npy
-  is "$kind in C order" "$(shown b.npy)" "$want"
+  is "$kind in C order" "$(back a.npy --grid weight)" "$want"
   $npy make f.npy "$kind" 2,3,4 F
-  vam-convert --voxel 0.5 --grid weight <f.npy | vam-convert >b.npy
-  is "$kind in Fortran order" "$(shown b.npy)" "$want"
+  is "$kind in Fortran order" "$(back --grid weight <f.npy)" "$want"
 done
 $npy make p.npy '<f4' 3,4
 $npy make a.npy '<f4' 2,3,4
-vam-convert a.npy --axes xyz --voxel 0.5 --grid weight | vam-convert >b.npy
-is 'axes in another order' "$(shown b.npy | cut -d' ' -f1-8)" '4 3 2 <f4 0 12 4 16'
-vam-convert a.npy --voxel 0.5 --full-scale 100 | vam-convert >b.npy
-is 'values divided' "$(shown b.npy | cut -d' ' -f5,6,28)" '0 0.01 0.23'
+is 'axes in another order' "$(back a.npy --axes xyz --grid weight | cut -d' ' -f1-8)" '4 3 2 <f4 0 12 4 16'
+is 'values divided' "$(back a.npy --full-scale 100 | cut -d' ' -f5,6,28)" '0 0.01 0.23'
 python3 -c 'import zipfile
 with zipfile.ZipFile("two.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "plan/e.npy"); z.write("p.npy", "text")'
-vam-convert --array dose --voxel 0.5 --grid weight <two.npz | vam-convert >b.npy
-is 'from a pipe' "$(shown b.npy)" "$want"
+is 'from a pipe' "$(back --array dose --grid weight <two.npz)" "$want"
 misuse --array 'arrays alone in a file' vam-convert a.npy --array dose --voxel 0.5 -o x.vdb
 
 # Where it lies.
