@@ -4,7 +4,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sanitized && { echo 'AddressSanitizer writes, too: no call can be counted'; exit 77; }
 strace -qq -o .log/trace -e trace=write true 2>.log/err || { echo 'strace may not trace here: nothing is tried'; exit 77; }
-inject() { fault=$1; shift; strace -f $(stops "$fault") -qq -o .log/trace -e trace="${fault%%:*}" -e inject="$fault" "$@" 2>.log/err; }
+inject() { fault=$1; shift; strace ${follow--f} $(stops "$fault") -qq -o .log/trace -e trace="${fault%%:*}" -e inject="$fault" "$@" 2>.log/err; }
 
 spoilt() {  # spoilt STATUS INJECTION TOOL...: the last argument is its output, of which there is an old one
   want=$1; what=$2; shift 2
@@ -23,14 +23,14 @@ done
 rm -f .vam-*  # killed between link and rename, the new file stands under a name of its own
 is 'nothing else is left' "$(ls -A)" "$(printf '.log\nout.exr\nout.vdb\nviews.exr')"
 
-# A capture folder: the number of these calls in a run of two frames.
+# A capture folder: the number of these calls in a run of two frames, but for the process that parses what is replayed.
 vam-capture --device 'sim:?pace=virtual&noise=0.004' --binning 12 --frames 2 -o views.exr
 take() { vam-capture --device replay:views.exr --frames 2 -o "$1/"; }
 take whole
 sort whole/manifest.jsonl >whole.lines
 resumed() {  # resumed INJECTION STATUS: of a first run; the second one completes it
   rm -rf folder
-  inject "$1" vam-capture --device replay:views.exr --frames 2 -o folder/; status=$?
+  follow= inject "$1" vam-capture --device replay:views.exr --frames 2 -o folder/; status=$?
   take folder 2>.log/again; again=$?
   sort folder/manifest.jsonl >lines
   different=$(for file in whole/*.png; do cmp -s "$file" "folder/$(basename "$file")" || echo "$file"; done; cmp lines whole.lines)
@@ -41,7 +41,7 @@ for call in fdatasync:1 fdatasync:2 fdatasync:3 fdatasync:4 fsync:1 fsync:2 writ
 done
 for call in fdatasync:2 fdatasync:3 write:2 write:3; do resumed "${call%:*}:error=EIO:when=${call#*:}" 74; done
 resumed write:error=ENOSPC:when=2 74
-is 'where the disk is full no image is left' "$(inject write:error=ENOSPC:when=2 vam-capture --device replay:views.exr --frames 2 -o full/; ls full)" manifest.jsonl
+is 'where the disk is full no image is left' "$(follow= inject write:error=ENOSPC:when=2 vam-capture --device replay:views.exr --frames 2 -o full/; ls full)" manifest.jsonl
 resumed fsync:error=EIO:when=2 74
 
 # A log of flips is on the disk every second, and what is there is stated.

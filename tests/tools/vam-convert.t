@@ -185,6 +185,29 @@ vam-convert odd $like_even --verbose 2>err
 is 'which is noted' "$(grep -c 'odd: 4 frames are taken as one turn, 90 degrees each; give --view-step otherwise' err)" 1
 vam-convert even $like_even --verbose 2>err
 is 'but not where it is stated' "$(grep -c 'one turn' err)" 0
+is 'whose angles are reported' "$(grep -c 'even: 4 projections from 0 deg in steps of -90 deg, by frames.csv' err)" 1
+
+# Stage angles of eight images, which must be even.
+place() { grep -a '^sizes\|^axis mins\|^spacings' | tr '\n' ' '; }
+mkdir eight; for n in 0 1 2 3 4 5 6 7; do cp even/00000.png eight/0000$n.png; done
+angles() {  # angles COUNT EXPRESSION OPTION...: where the eight lie with that many angles, an expression of n
+  python3 -c "print('file,time_s,angle_deg'); [print('%05d.png,%d,%.9g' % (n, n, $2)) for n in range($1)]" >eight/frames.csv; shift 2
+  vam-convert eight --geometry parallel --pixel 1 "$@" | vam-view --export /dev/stdout | place
+}
+is 'a turn and its start' "$(angles 8 '90 + 45 * n')" 'sizes: 6 8 4 spacings: 1 45 1 axis mins: -2.5 90 -1.5 '
+is 'backwards, beyond a turn, a little off' "$(angles 8 '360 - 90 * n + (0, 2, -2, 1, 0, 0, 3, 0)[n]')" 'sizes: 6 4 4 spacings: 1 90 1 axis mins: -2.5 0 -1.5 '
+is 'the option goes before' "$(angles 8 'n ** 2' --view-step 45)" 'sizes: 6 8 4 spacings: 1 45 1 axis mins: -2.5 0 -1.5 '
+uneven() {  # uneven COUNT EXPRESSION REGEX
+  angles "$1" "$2" >/dev/null 2>&1
+  fails 65 "$3" vam-convert eight --geometry parallel --pixel 1 -o x.exr
+}
+uneven 8 '45 * (n + (n > 2))' 'eight: the stage angles are uneven: from projection 2 to 3 they go from 90 to 180 degrees, while the median step is 45 \(frames.csv\); give --view-step'
+uneven 8 5 'from projection 0 to 1 they go from 5 to 5 degrees'
+uneven 8 '41.6 * n' 'the stage angles drift: that of projection [0-9]+ is [-0-9.]+ degrees beside even steps of 40'
+uneven 7 '45 * n' 'eight/frames.csv:8: the last line, of 7 for 8 images; restore it'
+uneven 0 n 'eight/frames.csv:1: the last line, of 0 for 8 images; restore it'
+uneven 8 '45 * n + 3e9 * (n == 2)' 'angle 2 of frames.csv is no angle; give --view-step'
+uneven 8 '22.5 * n' 'has 8 projections, 16 make a turn'
 
 # Frames of the projector, to 8 bits: the dose within one level of 255.
 set="--set projector.columns=64 --set projector.rows=48 --set projector.pixel_mm=0.5"
@@ -309,7 +332,7 @@ is 'nor where it was given' "$(remedy frames.npy --axes azx)" 'check --axis-row'
 rm -f x.exr
 
 # What is said of foreign frames moves them.
-middle() { vam-convert frames --geometry parallel --pixel 0.5 "$@" -o m.exr; vam-view m.exr --export /dev/stdout | grep -a '^sizes\|^axis mins\|^spacings' | tr '\n' ' '; }
+middle() { vam-convert frames --geometry parallel --pixel 0.5 "$@" -o m.exr; vam-view m.exr --export /dev/stdout | place; }
 is 'a parallel beam: the middle is the axis' "$(middle)" 'sizes: 64 360 48 spacings: 0.5 1 0.5 axis mins: -15.75 0 -11.75 '
 is 'another axis: its middle' "$(middle --axis-column 30.5 --axis-row 21)" 'sizes: 66 360 48 spacings: 0.5 1 0.5 axis mins: -16.25 0 -13 '
 fails 64 '--pixel: 0.1 mm, but projector.pixel_mm is' vam-convert frames --geometry vial --pixel 0.1 -o x.exr

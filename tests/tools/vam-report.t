@@ -12,7 +12,7 @@ vam-score dose.vdb --target part.vdb --report score.json >table
 vam-view part.vdb -o part.png
 
 ok 'a page of a whole print' vam-report part.vdb light.exr dose.vdb light.json score.json trace.csv part.png -o report.html
-is 'the page begins with the verdict of vam-score' "$(sed -n 's/.*<p class="verdict [a-z]*">\(.*\)<.p>/\1/p' report.html)" "$(sed -n 's/; dose and time are relative:.*//; s/^verdict *//p' table)"
+is 'the page begins with the verdict of vam-score' "$(sed -n 's/.*<p class="verdict [a-z]*">\(.*\)<.p>/\1/p' report.html)" "$(sed -n 's/; dose and time are relative without.*//; s/^verdict *//p' table)"
 is 'the page loads nothing' "$(grep -Eoc 'src="[^d]|href=|@import|url\(|https?:' report.html)" 0
 for words in 'Part and print' 'target, sections across z' 'dose, sections across y' 'Projections' 'Sinograms' \
   'Dose in part and void' 'Convergence' 'score.json, vam-score/1' 'vam-optimize 0' 'part.png'; do

@@ -17,12 +17,10 @@ void scale(Image& image, const std::optional<double>& full_scale) {
 class Array : public Images {
  public:
   Array(const Options& options, const std::string& letters)
-      : reader_(options.input,
-                {options.array, axes_of(options, letters), options.geometry != "none", options.axes.empty()}),
-        full_scale_(options.full_scale) {}
+      : reader_(options.input, {options.array, axes_of(options, letters)}), full_scale_(options.full_scale) {}
   [[nodiscard]] io::ArraySize size() const override { return reader_.size(); }
   [[nodiscard]] bool are_frames() const override { return false; }
-  [[nodiscard]] const io::StatedViews& views() const override { return reader_.views(); }
+  [[nodiscard]] double voxel_mm() const override { return reader_.voxel_mm(); }
   bool next(Image& image) override {
     if (!reader_.next(image)) return false;
     scale(image, full_scale_);
@@ -51,7 +49,7 @@ class Frames : public Images {
   [[nodiscard]] bool are_frames() const override { return true; }
   [[nodiscard]] model::StackInfo stated() const override { return source_->info(); }
   [[nodiscard]] bool are_grey() const override { return source_->is_grey(); }
-  [[nodiscard]] const io::StatedViews& views() const override { return views_; }
+  [[nodiscard]] StatedViews views() const override { return views_; }
   bool next(Image& image) override {
     model::ImageInfo about;
     if (!source_->next(image, about)) return false;
@@ -61,7 +59,7 @@ class Frames : public Images {
 
  private:
   std::unique_ptr<io::ImageSource> source_;
-  io::StatedViews views_;
+  StatedViews views_;
   std::optional<double> full_scale_;
 };
 

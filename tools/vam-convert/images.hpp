@@ -11,6 +11,7 @@
 #include "io/stream/file_type.hpp"
 #include "model/stack.hpp"
 #include "vam-convert/options.hpp"
+#include "vam-convert/stage_angles.hpp"
 
 namespace vam::convert_tool {
 
@@ -29,8 +30,10 @@ class Images {
   [[nodiscard]] virtual model::StackInfo stated() const { return {}; }
   /// Are the values grey levels, not intensities?
   [[nodiscard]] virtual bool are_grey() const { return false; }
-  /// What is stated about projections, in an array's file or beside the frames.
-  [[nodiscard]] virtual const io::StatedViews& views() const = 0;
+  /// What frames state about their angles.
+  [[nodiscard]] virtual StatedViews views() const { return {}; }
+  /// The edge of the voxels that an array's file states; 0: none.
+  [[nodiscard]] virtual double voxel_mm() const { return 0; }
 };
 
 /// An array with these axes for images, rows and columns; or the images of a folder or video. Throws what opening them

@@ -56,8 +56,7 @@ void declare_projections(cli::App& app, Options& options) {
              "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections "
              "of several turns are averaged; frames that state more turns are then all of the print.");
   app.default_is(
-      "that of frames.csv beside the images, or of the angles in an HDF5 file; else one turn divided by the "
-      "projections");
+      "that of frames.csv beside the images, or of a video that states it; else one turn divided by the projections");
   app.option("--axis-column", "PX", options.axis_column, on_image, "Column of the projections on which the axis lies.");
   app.default_is("projector.axis_column in images as wide as the projector's, else the middle");
   app.option("--axis-row", "PX", options.axis_row, on_image,
@@ -82,12 +81,12 @@ void declare(cli::App& app, Options& options) {
   app.group("Arrays", {}, own_files);
   app.option("--array", "NAME", options.array, "Name of the array in a .npz file, path of the dataset in an HDF5 file.")
       .not_for({"images", "arrays alone in a file"});
-  app.default_is("the only one; of HDF5 /exchange/data, or what a NeXus group shows, before the only one of 3 axes");
+  app.default_is("the only one; of HDF5 the only one of 3 axes");
   app.option("--axes", "ORDER", options.axes,
              "Axes of the array from the slowest to the fastest, as NumPy indexes them: x, y and z of a volume; z, a "
              "(angle) and x (column) of projections.")
       .not_for({"images"});
-  app.default_is("zyx, zax; azx from the top, of DXchange and NXtomo projections");
+  app.default_is("zyx, zax");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
              "Value that becomes 1, full coverage or full intensity.");
   app.default_is("1; full grey of images");

@@ -52,7 +52,7 @@ struct Plan {
 
 /// From row to row: as given, measured or stated, else a turn in all; the measured start.
 double angle_step_deg(const Options& options, const Slices& slices, Plan& plan) {
-  const io::StatedViews& views = slices.views();
+  const StatedViews views = slices.views();
   if (options.view_step_deg) return *options.view_step_deg;
   if (!views.source.empty()) {  // also where it holds none
     const StageAngles measured = even_angles(views, slices.size().rows, io::input_name(options.input));
@@ -273,8 +273,7 @@ std::string place_remedy(const Options& options, const Slices& slices, const mod
   if (frames) {
     return is_exchanged(slices.size(), projector) ? "columns and rows look exchanged" : "check --axis-row";
   }
-  const bool own = !options.axes.empty() || slices.views().top_first;  // an order that was given or stated
-  const std::string axes = own ? "" : fitting_axes(slices.size(), projector);
+  const std::string axes = !options.axes.empty() ? "" : fitting_axes(slices.size(), projector);
   if (axes.empty()) return "check --axis-row";
   return "check --axes, as its sizes fit the projector in the order " + axes + ", and --axis-row";
 }
@@ -327,8 +326,7 @@ void make_projections(const cli::App& app, Options options, std::optional<io::Fi
   const std::optional<io::SparseVolume> like = volume_like(options);
   std::optional<model::Grid> grid;
   if (like) grid = lit_slices(*like, options, printer);
-  const bool from_top = frames || slices.views().top_first;
-  const Heights own = own_heights(options, printer.projector, slices.size().images, from_top);
+  const Heights own = own_heights(options, printer.projector, slices.size().images, frames);
   if (like) warn_of_dark(options, own, like->grid());
   Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
   const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;

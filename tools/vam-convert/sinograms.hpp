@@ -20,7 +20,7 @@ class Slices {
   ~Slices();
   /// Slices, angles and columns.
   [[nodiscard]] io::ArraySize size() const;
-  [[nodiscard]] const io::StatedViews& views() const { return images_->views(); }
+  [[nodiscard]] StatedViews views() const { return images_->views(); }
   /// The greatest level of frames, before the projector's response; 0 of arrays.
   [[nodiscard]] float peak() const { return peak_; }
   /// Upwards: a row for each angle; false after the last.

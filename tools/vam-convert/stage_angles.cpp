@@ -30,7 +30,7 @@ std::vector<double> steps_of(const std::vector<double>& angles_deg) {
   return steps;
 }
 
-void require_finite(const io::StatedViews& views, const std::string& name) {
+void require_finite(const StatedViews& views, const std::string& name) {
   const auto bad = std::find_if(views.angles_deg.begin(), views.angles_deg.end(),
                                 [](double angle) { return !(std::abs(angle) < 1e9); });
   if (bad == views.angles_deg.end()) return;
@@ -39,8 +39,7 @@ void require_finite(const io::StatedViews& views, const std::string& name) {
 }
 
 /// The first step that is not like the others.
-void require_alike(const io::StatedViews& views, const std::vector<double>& steps, double usual,
-                   const std::string& name) {
+void require_alike(const StatedViews& views, const std::vector<double>& steps, double usual, const std::string& name) {
   const auto other = std::find_if(steps.begin(), steps.end(), [&](double step) {
     return !(std::abs(step - usual) <= tolerance * std::abs(usual));
   });
@@ -53,7 +52,7 @@ void require_alike(const io::StatedViews& views, const std::vector<double>& step
 }
 
 /// Steps that are alike may still add up to another angle.
-void require_in_place(const io::StatedViews& views, const std::vector<double>& steps, double step,
+void require_in_place(const StatedViews& views, const std::vector<double>& steps, double step,
                       const std::string& name) {
   double sum = 0;
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -69,11 +68,11 @@ void require_in_place(const io::StatedViews& views, const std::vector<double>& s
 
 }  // namespace
 
-StageAngles even_angles(const io::StatedViews& views, int projections, const std::string& name) {
+StageAngles even_angles(const StatedViews& views, int projections, const std::string& name) {
   if (count_of(views.angles_deg) != projections) {
     throw Error{Fault::data, name + ": has " + std::to_string(views.angles_deg.size()) + " angles (" +
-                                 printable(views.source) + ") of " + std::to_string(projections) +
-                                 " projections; check --axes, or give --view-step"};
+                                 printable(views.source) + ") of " + std::to_string(projections) + " projections" +
+                                 remedy};
   }
   require_finite(views, name);
   StageAngles found{std::fmod(std::fmod(views.angles_deg.front(), 360.0) + 360.0, 360.0), 0};

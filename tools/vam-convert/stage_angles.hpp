@@ -3,10 +3,15 @@
 #pragma once
 
 #include <string>
-
-#include "io/array/array_reader.hpp"
+#include <vector>
 
 namespace vam::convert_tool {
+
+/// What is stated about the angles of projections, as measured; none where `source` is empty.
+struct StatedViews {
+  std::string source;  // frames.csv, or the key of a video
+  std::vector<double> angles_deg;
+};
 
 struct StageAngles {
   double start_deg = 0;
@@ -17,6 +22,6 @@ struct StageAngles {
 /// nothing in the vial by more than some tenth of a column where there are as many projections as those resolve. Notes
 /// what it found. Throws Fault::data that begins with `name`: uneven steps, with the first that differs; another number
 /// of angles than projections.
-[[nodiscard]] StageAngles even_angles(const io::StatedViews& views, int projections, const std::string& name);
+[[nodiscard]] StageAngles even_angles(const StatedViews& views, int projections, const std::string& name);
 
 }  // namespace vam::convert_tool

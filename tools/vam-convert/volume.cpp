@@ -138,7 +138,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   constexpr int slab = 8;
   const std::string height = height_doubt(options, printer);
   const auto in = open_source(options, type, "zyx");
-  const std::string edges = voxel_doubt(options, in->views().voxel_mm);
+  const std::string edges = voxel_doubt(options, in->voxel_mm());
   const double stretch_z = options.stretch_z.value_or(1);
   const model::Grid grid = grid_of(options, in->size(), stretch_z);
   require_voxels(options.input, grid);

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "base/compute/memory.hpp"
@@ -70,11 +69,9 @@ std::shared_ptr<const char> mapped_bytes(const InputFile& file) {
   return {static_cast<const char*>(bytes), [size = file.size(), bytes](const char*) { munmap(bytes, size); }};
 }
 
-auto members(StatedViews& views) { return std::tie(views.top_first, views.source, views.angles_deg, views.voxel_mm); }
-
-void send(arrays::Parser parser, Sender& out, StatedViews views = {}) {
+void send(arrays::Parser parser, Sender& out, double voxel_mm = 0) {
   for (const std::size_t size : parser.size()) out.put(std::uint64_t{size});
-  out.put(members(views));
+  out.put(voxel_mm);
   out.flush();
   Image image;
   for (std::size_t k = 0; k < parser.size()[0]; ++k) {
@@ -138,15 +135,15 @@ struct ArrayReader::State {
     }
     if (format == Format::hdf5) return parse_hdf5(options, out);
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); });
-    StatedViews stated;
-    const arrays::Head head = format == Format::npy ? take_npy_head(front) : take_nrrd_head(front, stated.voxel_mm);
-    send({head, std::move(front), options.axes}, out, stated);
+    double stated_mm = 0;
+    const arrays::Head head = format == Format::npy ? take_npy_head(front) : take_nrrd_head(front, stated_mm);
+    send({head, std::move(front), options.axes}, out, stated_mm);
   }
 
   void parse_hdf5(const ArrayOptions& options, Sender& out) {
     const std::string_view all = map == nullptr ? std::string_view(bytes) : std::string_view(map.get(), file.size());
     arrays::Hdf5Images array = arrays::open_hdf5(all, options, images_memory, file.name());
-    send({array.head, arrays::Bytes(std::move(array.read)), {0, 1, 2}}, out, array.views);
+    send({array.head, arrays::Bytes(std::move(array.read)), {0, 1, 2}}, out);
   }
 
   // What a child sends is not believed.
@@ -157,7 +154,7 @@ struct ArrayReader::State {
     if (product(size.rows, size.columns) > arrays::most_image) {
       throw Error{Fault::data, file.name() + ": is damaged (its parser failed)"};
     }
-    in.fill(members(views));
+    in.fill(voxel_mm);
   }
 
   InputFile file;
@@ -167,7 +164,7 @@ struct ArrayReader::State {
   std::optional<SandboxedReader> apart;
   std::uint64_t images_memory = 0;  // for those that are held at a time
   ArraySize size;
-  StatedViews views;
+  double voxel_mm = 0;
   int done = 0;
 };
 
@@ -178,7 +175,7 @@ ArrayReader::~ArrayReader() = default;
 
 const ArraySize& ArrayReader::size() const { return state_->size; }
 
-const StatedViews& ArrayReader::views() const { return state_->views; }
+double ArrayReader::voxel_mm() const { return state_->voxel_mm; }
 
 bool ArrayReader::next(Image& image) {
   if (state_->done == state_->size.images) return false;

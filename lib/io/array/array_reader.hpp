@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrays of other programs as images one after the other: NumPy's .npy and .npz, HDF5 (DXchange, NXtomo), NRRD as
-// vam-view writes it, TIFF of several pages.
+// Arrays of other programs as images one after the other: NumPy's .npy and .npz, HDF5, NRRD as vam-view writes it,
+// TIFF of several pages.
 #pragma once
 
 #include <array>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "base/image.hpp"
 
@@ -19,19 +18,9 @@ struct ArraySize {
   int columns = 0;
 };
 
-/// What a file of projections, or of a volume, states about them.
-struct StatedViews {
-  bool top_first = false;          // the file has its rows from the top; they are read upwards
-  std::string source;              // of the angles, a dataset
-  std::vector<double> angles_deg;  // of the rows of a sinogram, as measured; none where the file has none
-  double voxel_mm = 0;             // the edge of a volume's voxels; 0: not stated
-};
-
 struct ArrayOptions {
   std::string name;                  // of the array in a .npz or HDF5 file that holds several
   std::array<int, 3> axes{0, 1, 2};  // which axis of the array counts the images, the rows and the columns
-  bool projections = false;          // the rows are stage angles: what an HDF5 file states about them counts
-  bool own_order = false;            // `axes` was not asked for: the order of an HDF5 file's convention goes before it
 };
 
 /// Reads an array of 2 or 3 axes front to back, parsed in a child; what is not finite as float is refused. Where
@@ -44,8 +33,8 @@ class ArrayReader {
   ArrayReader(const std::string& path, const ArrayOptions& options);
   ~ArrayReader();
   [[nodiscard]] const ArraySize& size() const;
-  /// Of projections; only HDF5 states anything.
-  [[nodiscard]] const StatedViews& views() const;
+  /// The edge of a volume's voxels; 0: not stated, as only NRRD does.
+  [[nodiscard]] double voxel_mm() const;
   /// The next image; false after the last.
   bool next(Image& image);
 

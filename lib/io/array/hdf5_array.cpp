@@ -104,11 +104,7 @@ struct Images {
     rank = about.shape.size();
     shape = head.shape;
     std::copy(options.axes.begin(), options.axes.end(), axes.begin());
-    if (options.projections) take_convention(convention_of(file.id(), path), options.own_order, name);
-    if (rows.empty()) {
-      for (std::size_t row = 0; row < shape[axes[1]]; ++row) rows.push_back(row);
-    }
-    head.shape = {shape[axes[0]], rows.size(), shape[axes[2]]};
+    head.shape = {shape[axes[0]], shape[axes[1]], shape[axes[2]]};
     if (about.bits.words != 0) take_words(about.bits);
     const Handle properties(hdf5().H5Dget_create_plist(dataset.id()));
     require_values(dataset.id(), properties.id(), subject);
@@ -117,38 +113,10 @@ struct Images {
 
   [[noreturn]] void fail(const std::string& why) const { throw Error{Fault::data, subject + why}; }
 
-  void take_convention(const Convention& found, bool own_order, const std::string& name) {
-    if (found.known && own_order && rank == 3) {
-      axes = {1, 0, 2};
-      backwards = views.top_first = true;
-    }
-    const std::size_t frames = shape[axes[1]];
-    if (!found.angles.empty()) {
-      views.source = found.angles;
-      views.angles_deg = numbers_of(file.id(), found.angles, name);
-    }
-    if (found.image_keys.empty()) return;
-    const std::vector<double> keys = numbers_of(file.id(), found.image_keys, name);
-    if (keys.size() != frames) {
-      throw Error{Fault::data, name + ": " + printable(found.image_keys) + " has " + std::to_string(keys.size()) +
-                                   " keys of " + std::to_string(frames) + " frames; check --axes"};
-    }
-    std::vector<double> angles;
-    for (std::size_t i = 0; i < frames; ++i) {
-      if (keys[i] != 0) continue;
-      rows.push_back(i);
-      if (views.angles_deg.size() == frames) angles.push_back(views.angles_deg[i]);
-    }
-    if (rows.empty()) {
-      throw Error{Fault::data, name + ": " + printable(found.image_keys) + " marks no frame as a projection"};
-    }
-    if (!angles.empty()) views.angles_deg = angles;  // the user of another number examines it
-  }
-
   /// Of a BitArray, which from here on stand for the dataset.
   void take_words(const BitArray& bits) {
     const Hdf5& h5 = hdf5();
-    const std::uint64_t length = head.shape[0] * shape[axes[1]] * head.shape[2];
+    const std::uint64_t length = head.values();
     const std::vector<std::uint64_t> count{(length + 63) / 64};
     dataset = Handle(h5.H5Rdereference2(dataset.id(), H5P_DEFAULT, H5R_OBJECT, &bits.words));
     if (static_cast<std::uint64_t>(bits.length) != length || describe(dataset.id(), "").shape != count) {
@@ -172,10 +140,10 @@ struct Images {
     if (depth > deep) depth -= depth % deep;
   }
 
-  void read_block(std::uint64_t place) {
+  void read_block() {
     const Hdf5& h5 = hdf5();
     held = std::min(depth, head.shape[0] - done);
-    first = backwards ? place + 1 - held : place;
+    first = done;
     std::array<hsize_t, 3> start{};
     std::array<hsize_t, 3> count{shape[0], shape[1], shape[2]};
     start[axes[0]] = first;
@@ -206,14 +174,13 @@ struct Images {
   /// False after the last.
   bool next() {
     if (done == head.shape[0]) return false;
-    const std::uint64_t place = backwards ? head.shape[0] - 1 - done : done;
-    if (place < first || place >= first + held) read_block(place);
-    ++done;
+    if (done == first + held) read_block();
     image.clear();
-    for (const std::size_t row : rows) {
-      const float* value = block.data() + (place - first) * stride[axes[0]] + row * stride[axes[1]];
+    for (std::size_t row = 0; row < head.shape[1]; ++row) {
+      const float* value = block.data() + (done - first) * stride[axes[0]] + row * stride[axes[1]];
       for (std::size_t c = 0; c < head.shape[2]; ++c) image.push_back(value[c * stride[axes[2]]]);
     }
+    ++done;
     used = 0;
     return true;
   }
@@ -233,12 +200,9 @@ struct Images {
   Handle dataset;
   std::string subject;
   Head head;
-  StatedViews views;
   std::size_t rank = 3;
   std::array<std::uint64_t, 3> shape{};  // of the dataset
   std::array<std::size_t, 3> axes{};     // which of them count the images, rows and columns
-  std::vector<std::size_t> rows;         // those of the file that are rows of an image
-  bool backwards = false;                // the last image of the file is the first
   std::vector<std::uint64_t> words;      // of a BitArray
   std::uint64_t depth = 1;               // images read together
   std::vector<float> block;              // `held` images from `first` on
@@ -255,7 +219,7 @@ void load_hdf5() { (void)hdf5(); }
 Hdf5Images open_hdf5(std::string_view bytes, const ArrayOptions& options, std::uint64_t memory,
                      const std::string& name) {
   auto images = std::make_shared<Images>(bytes, options, memory, name);
-  return {images->head, images->views, [images](void* to, std::size_t size) { return images->read(to, size); }};
+  return {images->head, [images](void* to, std::size_t size) { return images->read(to, size); }};
 }
 
 }  // namespace vam::io::arrays

@@ -15,7 +15,6 @@ const Hdf5& hdf5() {
 #undef VAM_FIND
     library.find(found.file_access, "H5P_CLS_FILE_ACCESS_ID_g");
     library.find(found.native_float, "H5T_NATIVE_FLOAT_g");
-    library.find(found.native_double, "H5T_NATIVE_DOUBLE_g");
     library.find(found.native_word, "H5T_NATIVE_UINT64_g");
     return found;
   }();

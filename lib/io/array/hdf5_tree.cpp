@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <set>
 
-#include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
@@ -14,36 +13,10 @@ namespace vam::io::arrays {
 
 namespace {
 
-constexpr const char* exchange = "/exchange/data";
-constexpr std::size_t most_text = 4096;
-
-std::string parent_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
-
 /// An object of this file.
-Handle opened(hid_t file, const std::string& path) {
-  return Handle(hdf5().H5Oopen(file, path.empty() ? "/" : path.c_str(), H5P_DEFAULT));
-}
+Handle opened(hid_t file, const std::string& path) { return Handle(hdf5().H5Oopen(file, path.c_str(), H5P_DEFAULT)); }
 
 bool is_dataset(const Handle& object) { return object && hdf5().H5Iget_type(object.id()) == H5I_DATASET; }
-
-/// An attribute that is one text; empty where there is none.
-std::string text_of(const Handle& object, const char* name) {
-  const Hdf5& h5 = hdf5();
-  const Handle attribute(h5.H5Aopen(object.id(), name, H5P_DEFAULT));
-  const Handle type(h5.H5Aget_type(attribute.id()));
-  const Handle space(h5.H5Aget_space(attribute.id()));
-  if (h5.H5Tget_class(type.id()) != H5T_STRING || h5.H5Sget_simple_extent_npoints(space.id()) != 1) return "";
-  std::string text(most_text, '\0');
-  if (h5.H5Tis_variable_str(type.id()) > 0) {
-    char* where = nullptr;
-    if (h5.H5Aread(attribute.id(), type.id(), &where) < 0 || where == nullptr) return "";
-    text = where;
-    h5.H5free_memory(where);
-  } else if (h5.H5Tget_size(type.id()) >= most_text || h5.H5Aread(attribute.id(), type.id(), text.data()) < 0) {
-    return "";
-  }
-  return trimmed(text.c_str());  // Fortran pads
-}
 
 /// Where a link leads that is not in this file: "/entry/data", "/data of the file b.h5".
 std::string target_of(hid_t file, const std::string& path, const H5L_info_t& link) {
@@ -72,10 +45,6 @@ herr_t take_link(hid_t file, const char* name, const H5L_info_t* link, void* to)
   } else {
     return 0;
   }
-  const Handle group = opened(file, parent_of(path));
-  const std::string signal = text_of(group, "signal");
-  about.is_signal =
-      text_of(group, "NX_class") == "NXdata" && path == parent_of(path) + "/" + (signal.empty() ? "data" : signal);
   found.push_back(std::move(about));
   return found.size() < most_datasets ? 0 : 1;
 }
@@ -91,12 +60,11 @@ std::string list_of(const std::vector<Dataset>& all) {
 }
 
 /// Volumes at different places of the file, the first path of each.
-std::vector<Dataset> volumes_of(const std::vector<Dataset>& all, bool signals) {
+std::vector<Dataset> volumes_of(const std::vector<Dataset>& all) {
   std::vector<Dataset> some;
   std::set<haddr_t> addresses;
   for (const Dataset& d : all) {
-    const bool wanted = d.holds.empty() && d.shape.size() == 3 && (d.is_signal || !signals);
-    if (wanted && addresses.insert(d.address).second) some.push_back(d);
+    if (d.holds.empty() && d.shape.size() == 3 && addresses.insert(d.address).second) some.push_back(d);
   }
   return some;
 }
@@ -139,72 +107,23 @@ Dataset describe(hid_t dataset, const std::string& path) {
 }
 
 std::string chosen_path(hid_t file, const std::string& named, const std::string& name) {
-  const std::string wanted = named.empty() ? exchange : named.starts_with('/') ? named : "/" + named;
+  const std::string wanted = named.starts_with('/') ? named : "/" + named;
   if (!named.empty() && is_dataset(opened(file, wanted))) return wanted;
   std::vector<Dataset> all;
   hdf5().H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, take_link, &all);
-  const std::vector<Dataset> volumes = volumes_of(all, false);
-  const std::vector<Dataset> signals = volumes_of(all, true);
   for (const Dataset& d : all) {
-    if (named.empty() && d.path == exchange && d.holds.empty() && d.shape.size() == 3) return exchange;
-  }
-  for (const Dataset& d : all) {  // what the file is there to show must not be replaced by what else it holds
-    const bool shown = named.empty() && d.is_signal && signals.empty();
-    if (!d.is_lost || !(shown || (wanted + "/").starts_with(d.path + "/"))) continue;
+    if (named.empty() || !d.is_lost || !(wanted + "/").starts_with(d.path + "/")) continue;
     throw Error{Fault::data,
                 name + ": " + printable(d.path) + " is " + printable(d.holds) + "; give a file that holds it"};
   }
   if (!named.empty()) {
     throw Error{Fault::usage, name + ": holds " + list_of(all) + ", but no dataset is called " + printable(named)};
   }
-  if (signals.size() == 1) return signals.front().path;
+  const std::vector<Dataset> volumes = volumes_of(all);
   if (volumes.size() == 1) return volumes.front().path;
   if (volumes.empty()) throw Error{Fault::data, name + ": has no array of 3 dimensions, but " + list_of(all)};
   throw Error{Fault::usage, name + ": holds " + std::to_string(volumes.size()) + " arrays of 3 dimensions (" +
                                 list_of(volumes) + "); name one by --array"};
-}
-
-Convention convention_of(hid_t file, const std::string& path) {
-  const auto first_of = [&](const std::string& beside, const std::vector<std::string>& below) {
-    std::vector<std::string> places{parent_of(path) + beside};
-    for (std::string group = parent_of(path); !group.empty(); group = parent_of(group)) {
-      for (const std::string& place : below) places.push_back(group + place);
-    }
-    for (const std::string& place : places) {
-      if (is_dataset(opened(file, place))) return place;
-    }
-    return std::string();
-  };
-  if (parent_of(path).ends_with("/exchange")) return {true, first_of("/theta", {}), ""};
-  Convention found;
-  found.angles = first_of("/rotation_angle", {"/sample/rotation_angle", "/data/rotation_angle"});
-  found.image_keys = first_of("/image_key", {"/instrument/detector/image_key", "/data/image_key"});
-  found.known = !found.angles.empty() || !found.image_keys.empty();
-  return found;
-}
-
-std::vector<double> numbers_of(hid_t file, const std::string& path, const std::string& name) {
-  constexpr hssize_t most_views = 1 << 20;
-  const Hdf5& h5 = hdf5();
-  const std::string subject = name + ": " + printable(path);
-  const Handle dataset = opened(file, path);
-  const Handle space(h5.H5Dget_space(dataset.id()));
-  const hssize_t count = h5.H5Sget_simple_extent_npoints(space.id());
-  if (!describe(dataset.id(), path).holds.empty() || count < 0 || count > most_views) {
-    throw Error{Fault::data, subject + " holds no numbers of projections"};
-  }
-  std::vector<double> values(static_cast<std::size_t>(count));
-  if (count > 0 && h5.H5Dread(dataset.id(), *h5.native_double, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    throw Error{Fault::data, subject + " is truncated or damaged" + hdf5_cause()};
-  }
-  const std::string units = text_of(dataset, "units");
-  const bool radians = units == "rad" || units == "radian" || units == "radians";
-  if (!radians && !units.empty() && units != "°" && !units.starts_with("deg")) {
-    throw Error{Fault::data,
-                subject + " has the unit " + excerpt(units) + "; degrees and radians are read; give --view-step"};
-  }
-  for (double& value : values) value *= radians ? deg_per_rad : 1;
-  return values;
 }
 
 }  // namespace vam::io::arrays

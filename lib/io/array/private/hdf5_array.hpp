@@ -16,8 +16,7 @@ namespace vam::io::arrays {
 void load_hdf5();
 
 struct Hdf5Images {
-  Head head;  // of floats: images, rows, columns
-  StatedViews views;
+  Head head;         // of floats: images, rows, columns
   Bytes::Read read;  // the values image by image
 };
 
@@ -25,7 +24,7 @@ struct Hdf5Images {
 /// is read (gzip, shuffle, szip), of integers, floats and booleans of any size and byte order, and a Julia BitArray.
 /// The bytes must outlive `read`. Throws Error that begins with `name`: data (truncated, damaged, not numbers, values
 /// in other files, another number of dimensions), usage (several datasets and none named, none of that name), with the
-/// datasets that are there. The conventions are those of [formats: Arrays].
+/// datasets that are there.
 [[nodiscard]] Hdf5Images open_hdf5(std::string_view bytes, const ArrayOptions& options, std::uint64_t memory,
                                    const std::string& name);
 

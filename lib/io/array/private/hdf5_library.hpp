@@ -12,14 +12,13 @@
 // Every function of libhdf5 that is called.
 // clang-format off
 #define VAM_HDF5_FUNCTIONS(X)                                                                                       \
-  X(H5Aget_space) X(H5Aget_type) X(H5Aopen) X(H5Aread) X(H5Dget_create_plist) X(H5Dget_space)                       \
-  X(H5Dget_space_status) X(H5Dget_type) X(H5Dread) X(H5Eset_auto2) X(H5Ewalk2) X(H5Fget_create_plist)               \
-  X(H5Fopen) X(H5Idec_ref) X(H5Iget_type) X(H5Lget_val) X(H5Lunpack_elink_val) X(H5Lvisit) X(H5Oget_info2)          \
-  X(H5Oopen) X(H5PLset_loading_state) X(H5Pcreate) X(H5Pget_chunk) X(H5Pget_external_count) X(H5Pget_filter2)       \
-  X(H5Pget_layout) X(H5Pget_nfilters) X(H5Pget_userblock) X(H5Pset_fapl_core) X(H5Pset_file_image)                  \
-  X(H5Pset_file_image_callbacks) X(H5Rdereference2) X(H5Screate_simple) X(H5Sget_simple_extent_dims)                \
-  X(H5Sget_simple_extent_npoints) X(H5Sselect_hyperslab) X(H5Tget_class) X(H5Tget_member_index) X(H5Tget_nmembers)  \
-  X(H5Tget_size) X(H5Tis_variable_str) X(H5Zfilter_avail) X(H5free_memory) X(H5open)
+  X(H5Dget_create_plist) X(H5Dget_space) X(H5Dget_space_status) X(H5Dget_type) X(H5Dread) X(H5Eset_auto2)           \
+  X(H5Ewalk2) X(H5Fget_create_plist) X(H5Fopen) X(H5Idec_ref) X(H5Iget_type) X(H5Lget_val) X(H5Lunpack_elink_val)   \
+  X(H5Lvisit) X(H5Oget_info2) X(H5Oopen) X(H5PLset_loading_state) X(H5Pcreate) X(H5Pget_chunk)                      \
+  X(H5Pget_external_count) X(H5Pget_filter2) X(H5Pget_layout) X(H5Pget_nfilters) X(H5Pget_userblock)                \
+  X(H5Pset_fapl_core) X(H5Pset_file_image) X(H5Pset_file_image_callbacks) X(H5Rdereference2) X(H5Screate_simple)    \
+  X(H5Sget_simple_extent_dims) X(H5Sselect_hyperslab) X(H5Tget_class) X(H5Tget_member_index) X(H5Tget_nmembers)     \
+  X(H5Tget_size) X(H5Zfilter_avail) X(H5open)
 // clang-format on
 
 namespace vam::io::arrays {
@@ -31,7 +30,6 @@ struct Hdf5 {
   // Set by H5open().
   const hid_t* file_access;
   const hid_t* native_float;
-  const hid_t* native_double;
   const hid_t* native_word;
 };
 
