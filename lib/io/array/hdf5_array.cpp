@@ -20,9 +20,10 @@ constexpr std::uint64_t enough = std::uint64_t{1} << 26;  // bytes read together
 
 /// The end of the file that its superblock states, from the first byte on; the superblock is at `begin`.
 std::uint64_t stated_end(std::string_view bytes, std::size_t begin) {
-  const bool old = bytes[begin + 8] < 2;
-  const auto width = static_cast<std::size_t>(bytes[begin + (old ? 13 : 9)]);
-  const std::size_t at = begin + (old ? 24 + 4 * static_cast<std::size_t>(bytes[begin + 8]) : 12);
+  const auto number = [&](std::size_t n) { return std::size_t{static_cast<unsigned char>(bytes[begin + n])}; };
+  const bool old = number(8) < 2;
+  const std::size_t width = number(old ? 13 : 9);
+  const std::size_t at = begin + (old ? 24 + 4 * number(8) : 12);
   const auto address = [&](std::size_t n) {
     std::uint64_t value = 0;
     std::memcpy(&value, bytes.data() + at + n * width, std::min(width, sizeof value));

@@ -107,7 +107,7 @@ Dataset describe(hid_t dataset, const std::string& path) {
 }
 
 std::string chosen_path(hid_t file, const std::string& named, const std::string& name) {
-  const std::string wanted = named.starts_with('/') ? named : "/" + named;
+  std::string wanted = named.starts_with('/') ? named : "/" + named;
   if (!named.empty() && is_dataset(opened(file, wanted))) return wanted;
   std::vector<Dataset> all;
   hdf5().H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, take_link, &all);
