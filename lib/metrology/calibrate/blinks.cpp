@@ -30,7 +30,8 @@ double Blinks::integral(double t_s) const {
   const auto i = static_cast<std::size_t>(after - 1);
   const double since_s = t_s - change_s_[i];
   const double shown = i % 2 == 0 ? 1 : 0;
-  const double level = shown + (level_[i] - shown) * std::exp(-since_s / rise_s_);
+  const double rest = since_s < 40 * rise_s_ ? std::exp(-since_s / rise_s_) : 0;
+  const double level = shown + (level_[i] - shown) * rest;
   return lit_before_s_[i] + shown * since_s - rise_s_ * level;
 }
 

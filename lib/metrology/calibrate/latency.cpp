@@ -2,6 +2,7 @@
 #include "metrology/calibrate/latency.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -55,23 +56,12 @@ struct Valley {
   Line line;
 };
 
-// The lowest misfit between two values, by golden section.
+// Where the misfit between two values is lowest; to 1e-6 of what it varies by.
 template <class Misfit>
-double lowest(const Misfit& misfit, double low, double high, double width = 1e-6) {
-  constexpr double golden = 0.6180339887498949;
-  double a = high - golden * (high - low);
-  double b = low + golden * (high - low);
-  double at_a = misfit(a);
-  double at_b = misfit(b);
-  while (high - low > width) {
-    const bool left = at_a < at_b;
-    (left ? high : low) = left ? b : a;
-    (left ? b : a) = left ? a : b;
-    (left ? at_b : at_a) = left ? at_a : at_b;
-    (left ? a : b) = left ? high - golden * (high - low) : low + golden * (high - low);
-    (left ? at_a : at_b) = misfit(left ? a : b);
-  }
-  return 0.5 * (low + high);
+double lowest(const Misfit& misfit, double low, double high) {
+  constexpr int bits = 20;
+  return low + boost::math::tools::brent_find_minima([&](double up) { return misfit(low + up); }, 0.0, high - low, bits)
+                   .first;
 }
 
 Valley valley_between(const BlinkScan& scan, double rise_s, double low_s, double high_s) {
@@ -137,7 +127,7 @@ Valley refined(const BlinkScan& scan, const MisfitCurve& all) {
     return valley_between(scan, rise, rough.latency_s - about_s, rough.latency_s + about_s);
   };
   return valley(std::exp(lowest([&](double log_rise) { return valley(std::exp(log_rise)).line.misfit; },
-                                std::log(rough.rise_s / 4), std::log(rough.rise_s * 4), 0.02)));
+                                std::log(rough.rise_s / 4), std::log(rough.rise_s * 4))));
 }
 
 // The deepest but for those in the best one's own: where blinks explain more than half of what the best explain.
