@@ -63,8 +63,8 @@ struct PrinterStage {
   std::string device;  // empty: none is named
   double speed_deg_s = 10;
   int turns = 1;
-  int direction = 1;  // +1: the vial turns clockwise seen from above and theta increases; -1: the other way
-  std::string motion = "stepped";  // during a frame: stepped, the stage stands; held, or interpolated, it turns
+  int direction = 1;            // +1: the vial turns clockwise seen from above and theta increases; -1: the other way
+  std::string motion = "held";  // during a frame: stepped, the stage stands; held, or interpolated, it turns
 };
 
 struct PrinterCamera {

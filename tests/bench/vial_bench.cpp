@@ -18,10 +18,8 @@ using namespace vam;
 
 light::VialSetup setup_of(bool climbs, int slices, bool wide = false) {
   model::Printer printer;
-  if (wide) {
-    printer.projector.half_angle_deg = 0.64;
-    printer.stage.motion = "held";
-  }
+  if (wide) printer.projector.half_angle_deg = 0.64;
+  if (!wide) printer.stage.motion = "stepped";
   const double voxel_mm = 0.065;
   light::VialSetup setup =
       light::vial_setup(printer, model::centred_grid(256, 256, slices, voxel_mm, -0.5 * slices * voxel_mm), 360,

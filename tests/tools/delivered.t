@@ -28,7 +28,9 @@ volumes fall whole.vdb 1.6 0 over.vdb
 vam-optimize $resin --angles 90 part.vdb --delivered over.vdb --init whole.exr --iterations 2 -o late.exr --report late.json 2>late
 is 'which does not print, whatever its window' "$(json late.json verdict | grep -c '^will not print at the threshold of 0.8 (void up to 1[.].*, part at least 1[.]')" 1
 ok 'what has gelled in the void is a warning' grep -q 'over.vdb: [0-9]* voxels of the void have received the critical dose already, which no light can undo; stop earlier, or with less light$' late
-volumes fall whole.vdb "$(awk "BEGIN { print 50.001 / $(json whole.score.json max_void) }")" 0 edge.vdb
+volumes fall whole.vdb 1 0.01 tilted.vdb  # doses are alike in pairs
+vam-score $resin tilted.vdb --target part.vdb --report tilted.json >/dev/null
+volumes fall tilted.vdb "$(awk "BEGIN { print 50.001 / $(json tilted.json max_void) }")" 0 edge.vdb
 vam-optimize $resin --angles 90 part.vdb --delivered edge.vdb --init whole.exr --iterations 1 -o late.exr 2>late
 ok 'of one voxel, too' grep -q 'edge.vdb: 1 voxel of the void has received the critical dose already' late
 volumes fall half.vdb 0.25 0 quarter.vdb

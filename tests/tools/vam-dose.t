@@ -54,7 +54,7 @@ ok "half the intensity at full scale 1" vam-dose flat.exr $flat --size 0.065 --f
 holds "gives half the dose" "($(json half.json dose_per_turn_max_mj_cm3) / $(json flat.json dose_per_turn_max_mj_cm3) - 0.5)^2 < 1e-10"
 
 # Width: frames that are held while the stage turns, and the aperture of the lens
-for width in '' 'stage.motion=held' 'projector.half_angle_deg=1.5' 'stage.motion=interpolated projector.half_angle_deg=1.5'; do
+for width in 'stage.motion=stepped' 'stage.motion=held' 'stage.motion=stepped projector.half_angle_deg=1.5' 'stage.motion=interpolated projector.half_angle_deg=1.5'; do
   set --; for key in $width; do set -- "$@" --set $key; done
   vam-dose frames.exr --like part.vdb "$@" | vam-score --target part.vdb --report wide.json >/dev/null
   printf '%s %s\n' "$(json wide.json pw)" "$(json wide.json verdict | sed 's/.*; by //')"
@@ -63,7 +63,7 @@ holds "every width takes some of the process window" \
   "$(awk 'NR == 1 { first = $1 } NR > 1 && !($1 < first) { bad = 1 } END { print bad + 0 }' widths) == 0"
 is "the verdict states the width" "$(sed -n 4p widths | cut -d' ' -f2-)" \
   "light of half angle 1.5 deg, each frame over 1.54 deg of the stage"
-vam-dose frames.exr --in-plane --like part.vdb --set projector.half_angle_deg=1.5 | vam-score --target part.vdb --report wide.json >/dev/null
+vam-dose frames.exr --in-plane --like part.vdb --set projector.half_angle_deg=1.5 --set stage.motion=stepped | vam-score --target part.vdb --report wide.json >/dev/null
 is "but not what is left out" "$(json wide.json verdict | sed 's/.*; by //')" "light of half angle 1.5 deg across only"
 # What frames of a virtual projector leave that are held over 6 degrees, by 16 angles for each.
 vam-sinogram part.vdb --angles 60 --filter ram-lak --negative clip -o coarse.exr
@@ -76,10 +76,10 @@ values, facts = vam.read("coarse.exr")
 rows = (4 * width * (s * angles + (j + 8) // 16 % angles) for s in range(count) for j in range(16 * angles))
 vam.write_stack("fine.exr", array.array("f", b"".join(data[at:at + 4 * width] for at in rows)), pitch, height,
                 space="virtual", z_start_mm=facts["origin"][0], shape=(count, 16 * angles, width))
-def dose(*light):
-    subprocess.run(["vam-dose", *light, "--like", "part.vdb", "-o", "wide.vdb"], check=True)
+def dose(motion, light):
+    subprocess.run(["vam-dose", light, "--set", "stage.motion=" + motion, "--like", "part.vdb", "-o", "wide.vdb"], check=True)
     return array.array("f", vam.read("wide.vdb", "dose")[0].tobytes())
-fine, held, thin = dose("fine.exr"), dose("coarse.exr", "--set", "stage.motion=held"), dose("coarse.exr")
+fine, held, thin = dose("stepped", "fine.exr"), dose("held", "coarse.exr"), dose("stepped", "coarse.exr")
 print(sum((a - b) ** 2 for a, b in zip(held, fine)) / sum((a - b) ** 2 for a, b in zip(thin, fine)))
 PY
 )

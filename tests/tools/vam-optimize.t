@@ -49,7 +49,7 @@ is 'and ends when they are met' "$(value small.json stopped_by)" goal
 vam-optimize --method dose-norm --angles 24 --bits 8 --set optimize.full_scale=0.01 small.vdb -o small.exr 2>clipped
 ok 'full grey below the peak is a warning' grep -q 'the peak intensity of .* exceeds optimize.full_scale 0.01 and is clipped' clipped
 vam-slice --shape cylinder:diameter=4,height=2.25 --voxel 0.5 -o cut.vdb  # its end slices are covered by a half or so
-level='--set projector.telecentric=true'
+level='--set projector.telecentric=true --set stage.motion=stepped'
 judged() {  # judged NAME PART PRINTER OPTIONS...: the report and vam-dose | vam-score agree
   name=$1 judged_part=$2 printer=$3
   shift 3
@@ -88,7 +88,7 @@ quiet "a part in the corners of its volume" vam-optimize --geometry parallel --a
 quiet "has a dose" vam-dose corners.exr --like corners.vdb -o corners-dose.vdb
 quiet "with a parallel beam" vam-optimize --geometry parallel --angles 90 --method apg --iterations 10 boat.vdb -o parallel.exr
 for how in footprints fourier; do
-  quiet "line integrals by $how" vam-optimize --geometry parallel --angles 90 --method apg --iterations 10 --set optimize.line_integrals=$how boat.vdb -o sums.exr
+  quiet "line integrals by $how" vam-optimize --geometry parallel --angles 90 --method apg --iterations 10 --set stage.motion=stepped --set optimize.line_integrals=$how boat.vdb -o sums.exr
   vam-dose sums.exr --like boat.vdb -o dose.vdb && vam-score dose.vdb --target boat.vdb --report judged-$how.json >table
 done
 # 1e-3 of the largest dose lies between them at most, and a voxel's dose rises by several per cent at the surface.
@@ -113,7 +113,7 @@ is "without wrong voxels no face is reported as blurred" "$(value vial.json blur
 
 # A wide lid far above a short lens, with little time
 vam-slice --shape cylinder:diameter=14,height=20 --voxel 0.4 --set projector.throw_ratio=0.6 -o lid.vdb
-vam-optimize --angles 60 --method dose-norm --set projector.throw_ratio=0.6 lid.vdb -o lid.exr --report lid.json 2>lid.txt
+vam-optimize --angles 60 --method dose-norm --set projector.throw_ratio=0.6 --set stage.motion=stepped lid.vdb -o lid.exr --report lid.json 2>lid.txt
 is "a warning names blurred faces, their width and the tilt that helps" \
   "$(grep -c 'warning: lid.vdb: climbing rays blur 2 horizontal faces of the part, .* 12.4 mm wide, over .* voxels .*--rotate [0-9]*,0,0' lid.txt)" 1
 holds "the report contains the blurred faces" "$(value lid.json blurred_faces.0.blur_voxels) > 2 && $(value lid.json blurred_faces.0.wrong_voxels) > 0 &&

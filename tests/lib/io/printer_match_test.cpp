@@ -55,8 +55,8 @@ TEST_CASE("settings that a calibration changes, or that are applied at the print
 
 TEST_CASE("what decides a print in any way is named") {
   using enum vam::io::Matter;
-  CHECK(difference({}, {"stage.speed_deg_s=20", "stage.motion=held"}, dose) ==
-        "stage.speed_deg_s 10, now 20; stage.motion stepped, now held; ");
+  CHECK(difference({}, {"stage.speed_deg_s=20", "stage.motion=stepped"}, dose) ==
+        "stage.speed_deg_s 10, now 20; stage.motion held, now stepped; ");
   for (const char* one : {"resin.psf_mm 0, now 0.1", "resin.diffusion_mm2_s 0, now 0.001", "resin.dark_s 0, now 60",
                           "resin.critical_dose_mj_cm3 not set, now 50", "projector.min_intensity_mw_cm2 0, now 0.2",
                           "projector.response not set, now /r.csv", "projector.axis_row 383.5, now 390"}) {

@@ -29,7 +29,8 @@ const Form ring = [](double x, double y) {
 
 model::Printer printer(double absorption_per_mm) {
   return {.projector = {.columns = 400, .pixel_mm = 0.065, .lens_distance_mm = 119.808, .axis_column = 199.5},
-          .resin = {.absorption_per_mm = absorption_per_mm}};
+          .resin = {.absorption_per_mm = absorption_per_mm},
+          .stage = {.motion = "stepped"}};
 }
 
 model::StackInfo stack(model::Space space, int columns, double pixel_mm) {

@@ -20,7 +20,8 @@ model::Printer low_picture() {
                         .pixel_mm = 0.1,
                         .lens_distance_mm = 120,
                         .axis_column = 119.5,
-                        .axis_row = 19.5}};
+                        .axis_row = 19.5},
+          .stage = {.motion = "stepped"}};
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ model::StackInfo stack(model::Space space, int columns, double pixel_mm, int cou
 }
 
 model::Printer small_printer() {
-  return {.projector = {.columns = 200, .pixel_mm = 0.15, .lens_distance_mm = 120, .axis_column = 99.5}};
+  return {.projector = {.columns = 200, .pixel_mm = 0.15, .lens_distance_mm = 120, .axis_column = 99.5},
+          .stage = {.motion = "stepped"}};
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ TEST_CASE("the width of light is stated where there is some, and read again") {
   CHECK(words({1, 0.64}) == "light of half angle 0.64 deg, each frame over 1 deg of the stage");
   CHECK(words({}).empty());
   Printer printer;
-  CHECK(light_width(printer, 1, true) == LightWidth{});
+  CHECK(light_width(printer, 1, true) == LightWidth{1, 0});
+  printer.stage.motion = "stepped";
   printer.projector.half_angle_deg = 0.64;
   state_width(metadata, light_width(printer, 1, true));
   CHECK(words(stated_width(metadata)) == "light of half angle 0.64 deg across only");

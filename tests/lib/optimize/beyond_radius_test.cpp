@@ -13,7 +13,10 @@ constexpr double half_mm = 6.75;  // corners at 1.15 R/n
 constexpr int angles = 60;
 
 model::Printer printer() {
-  return {.projector = {.telecentric = true}, .vial = {.wall_mm = 0.5}, .resin = {.absorption_per_mm = 0.05}};
+  return {.projector = {.telecentric = true},
+          .vial = {.wall_mm = 0.5},
+          .resin = {.absorption_per_mm = 0.05},
+          .stage = {.motion = "stepped"}};
 }
 
 parts::Part bar(double voxel_mm) {

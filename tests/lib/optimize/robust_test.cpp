@@ -26,6 +26,7 @@ const model::Tolerances coarse{2, 0.01, 1, 0.5, 3, 0.1};
 light::VialSetup setup_of(const model::DeviatingPrinter& off) {
   light::VialSetup setup = light::vial_setup(off.printer, grid, angles, circle.radius * grid.voxel_mm);
   setup.angle_offset_rad = off.angle_offset_rad;
+  setup.hold_rad = 0;  // 48 frames, shown while the stage stands
   return setup;
 }
 
