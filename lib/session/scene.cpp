@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/log/log.hpp"
@@ -14,6 +15,7 @@
 #include "light/operators/make_operator.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/dose/dose_spread.hpp"
+#include "model/grid_size.hpp"
 #include "model/magnification.hpp"
 #include "optics/lit_fraction.hpp"
 #include "optics/writable_radius.hpp"
@@ -190,6 +192,9 @@ double blur_px(const model::Resin& resin, double seconds, const Scene& scene, co
 
 std::unique_ptr<light::Operator> make_light(const Scene& scene, const JobOptions& options,
                                             std::span<const Slab> inserts) {
+  constexpr double bytes_of_rays = 80;  // a voxel of a slice, at most
+  require_memory(bytes_of_rays * static_cast<double>(scene.grid.slice_size()),
+                 io::input_name(options.input) + ": " + model::size_text(scene.grid), "use larger voxels");
   return light::make_operator(beam_of(scene, options, !inserts.empty()), inserts);
 }
 

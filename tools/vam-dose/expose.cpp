@@ -149,6 +149,11 @@ Exposed expose(Light& light, const model::StackInfo& info, const Options& option
                const Place& place, io::SparseVolume& volume) {
   const bool projector = info.space == model::Space::projector;
   const auto climb = options.in_plane ? light::Climb::flat : light::Climb::follow;
+  const auto require_slices = [&](double slices) {
+    require_memory(sizeof(float) * slices * static_cast<double>(place.grid.slice_size()),
+                   options.inputs.front() + ": " + model::size_text(place.grid), "use larger voxels");
+  };
+  require_slices(climbing_slices);  // the fewer, before rays are traced
   const light::Simulation simulation(printer, options.alignment, info, place.grid, climb);
   const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);
   std::optional<model::Circle> judged;
@@ -165,12 +170,10 @@ Exposed expose(Light& light, const model::StackInfo& info, const Options& option
   }
   Blurred blurred(exposed.blur_mm / place.grid.voxel_mm, sink);
   exposed.climbs = simulation.climbs();
-  require_memory(
-      sizeof(float) * (exposed.climbs ? climbing_slices : 3.0 * batch) * static_cast<double>(place.grid.slice_size()),
-      options.inputs.front() + ": " + model::size_text(place.grid), "use larger voxels");
   if (exposed.climbs) {
     expose_volume(light, info.count, simulation, place.grid.nz, insert, blurred);
   } else {
+    require_slices(3.0 * batch);
     expose_slices(light, info.count, simulation, first, insert, blurred);
   }
   exposed.light = light.seen();
