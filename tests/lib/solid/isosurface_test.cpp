@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "oracle/meshes.hpp"
 #include "testing.hpp"
 
 using namespace vam;
@@ -18,19 +19,6 @@ model::Volume ball(double radius_mm, double voxel_mm, int n) {
         static_cast<float>(10 + radius_mm - std::hypot(g.x_mm(i) - 0.3, g.y_mm(j) + 0.2, g.z_mm(k) - 0.1)));
   }
   return volume;
-}
-
-double signed_volume(const model::TriangleSoup& mesh) {
-  double sum = 0;
-  for (const auto& t : mesh.triangles) {
-    const auto& a = mesh.points[t[0]];
-    const auto& b = mesh.points[t[1]];
-    const auto& c = mesh.points[t[2]];
-    sum +=
-        (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) /
-        6;
-  }
-  return sum;
 }
 
 bool closed(const model::TriangleSoup& mesh) {
@@ -50,7 +38,8 @@ TEST_CASE("a ball: closed, outward, its volume, its vertices on the sphere") {
   const double radius = 4;
   const auto mesh = solid::isosurface(ball(radius, 0.25, 48), 10);
   CHECK(closed(mesh));
-  CHECK(signed_volume(mesh) == doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius).epsilon(0.005));
+  CHECK(oracle::signed_volume(mesh) ==
+        doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius).epsilon(0.005));
   for (const auto& p : mesh.points)
     CHECK(std::abs(std::hypot(p[0] - 0.3, p[1] + 0.2, p[2] - 0.1) - radius) <
           0.1 * 0.25);  // dual vertices lie inside their cell; a tenth of a voxel at this curvature
@@ -59,7 +48,7 @@ TEST_CASE("a ball: closed, outward, its volume, its vertices on the sphere") {
 TEST_CASE("a surface closes at the grid's border") {
   const auto mesh = solid::isosurface(ball(8, 0.25, 48), 10);  // reaches beyond the 12 mm cube in the corners only
   CHECK(closed(mesh));
-  CHECK(signed_volume(mesh) > 0);
+  CHECK(oracle::signed_volume(mesh) > 0);
 }
 
 TEST_CASE("nothing above the level is an empty mesh; invalid levels are refused") {
@@ -134,8 +123,8 @@ TEST_CASE("of rods of two voxels the fine surface has the volume of the trilinea
     const double wanted = volume_above(volume, 10);
     const auto fine = solid::fine_isosurface(volume, 10);
     CHECK(closed(fine));
-    CHECK(signed_volume(fine) == doctest::Approx(wanted).epsilon(0.1));  // chords of a circle of 3 voxels
-    CHECK(signed_volume(solid::isosurface(volume, 10)) < 0.9 * wanted);
+    CHECK(oracle::signed_volume(fine) == doctest::Approx(wanted).epsilon(0.1));  // chords of a circle of 3 voxels
+    CHECK(oracle::signed_volume(solid::isosurface(volume, 10)) < 0.9 * wanted);
   }
 }
 
