@@ -17,6 +17,7 @@ namespace vam::optics {
 struct Shell {
   double radius_mm = 0;
   double index = 1;
+  bool operator==(const Shell&) const = default;
 };
 
 /// What one instrument sees of the vial. Columns are measured from the axis in the plane y = 0, light runs along +y.
@@ -26,6 +27,7 @@ struct View {
   double window_mm = 0;           // L, flat window from air to bath at y = -L; without effect when n_0 = 1
   std::vector<Shell> shells;      // outermost first; the last is the resin
   std::optional<double> rows_lens_mm = std::nullopt;  // lens to axis as the rows see it; empty = rays stay level
+  bool operator==(const View&) const = default;
 };
 
 /// One chief ray. In the lab it runs along the line of offset x_v at angle delta, so at stage angle theta it lights

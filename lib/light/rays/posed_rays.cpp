@@ -65,7 +65,7 @@ PosedRays::PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const 
 }
 
 int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, const HeightScale& scale,
-                    RayNode* to) const {
+                    const LightSpread& spread, RayNode* to) const {
   const FramePose& here = frames_[frame];
   const auto x = static_cast<float>(x_mm * here.cosine + y_mm * here.sine + here.x_mm);
   const auto y = static_cast<float>(y_mm * here.cosine - x_mm * here.sine + here.y_mm);
@@ -87,12 +87,12 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
   if (r <= static_cast<float>(table.inner_edge_mm) || (here.shifted && r <= static_cast<float>(table.reach_mm))) {
     NodeValues values = node_of(table.inner, 0);
     if (here.shifted) shift_.add(r, turn, here.powers, values);
-    to[0] = node_at(std::bit_cast<TableNode>(values), scale, table.spread(), x, y);
+    to[0] = node_at(std::bit_cast<TableNode>(values), scale, spread, x, y);
     return 1;
   }
   if (table.outer.rows == 0 || here.shifted) return 0;
   for (int sheet = 0; sheet < table.outer.sheets; ++sheet) {
-    to[sheet] = node_at(std::bit_cast<TableNode>(node_of(table.outer, sheet)), scale, table.spread(), x, y);
+    to[sheet] = node_at(std::bit_cast<TableNode>(node_of(table.outer, sheet)), scale, spread, x, y);
   }
   return table.outer.sheets;
 }

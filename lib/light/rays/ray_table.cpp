@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "base/compute/parallel.hpp"
 #include "base/constants.hpp"
@@ -16,18 +17,23 @@ namespace {
 
 constexpr int least_directions = 1440;  // alpha in steps of at most 0.25 deg: column to 1e-3 at 400 columns radius
 
+/// Directions are even in number: one half of them mirrors the other.
+int phases_of(int angles) {
+  const int least = (least_directions + angles - 1) / angles;
+  return least + least * angles % 2;
+}
+
 float value(const TableNode::Even& even, float z2) { return even[0] + z2 * (even[1] + z2 * even[2]); }
 
 }  // namespace
 
 RayTable::RayTable(const Scope& scope)
-    : phases((least_directions + scope.angles - 1) / scope.angles),
+    : phases(phases_of(scope.angles)),
       directions(scope.angles * phases),
       reach_mm(optics::reach_mm(scope.view)),
       edge_mm(optics::resin_radius_mm(scope.view)),
       scope_(scope),
       climbs_(scope.view.rows_lens_mm.has_value()) {
-  scope_.height_mm = std::max(scope.height_mm, 1e-3);
   const ChiefRayDose light{scope_, edge_mm, reach_mm};
   const double pitch_mm = climbs_ ? scope.voxel_mm : 0.5 * scope.voxel_mm;
   const double inside = std::min(reach_mm * (climbs_ ? 0.9995 : optics::rim), std::max(scope.r_max_mm, pitch_mm));
@@ -59,6 +65,19 @@ RayTable::RayTable(const Scope& scope)
   for (int row = 0; row < outer.rows; ++row) continue_outer_row(row);
 }
 
+std::shared_ptr<const RayTable> RayTable::of(const Scope& scope) {
+  static std::mutex guard;
+  static std::vector<std::weak_ptr<const RayTable>> all;
+  const std::scoped_lock lock(guard);
+  std::erase_if(all, [](const auto& table) { return table.expired(); });
+  for (const auto& one : all) {
+    if (const auto table = one.lock(); table && table->scope_ == scope) return table;
+  }
+  auto made = std::make_shared<const RayTable>(scope);
+  all.push_back(made);
+  return made;
+}
+
 RayTable::RowPair RayTable::Zone::rows_at(double r_mm) const {
   const double place = std::clamp((r_mm - first_mm) / pitch_mm, 0.0, rows - 1.0);
   const int low = floor_int(place);
@@ -75,7 +94,7 @@ HeightScale RayTable::scale_at(double z_mm, const RayScale& scale) const {
           static_cast<float>(scale.columns_per_voxel)};
 }
 
-void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const {
+void RayTable::at_height(double z_mm, const RayScale& scale, const LightSpread& spread, RayNodes& nodes) const {
   const int rows = inner.rows + outer.rows * outer.sheets;
   nodes.resize(rows * static_cast<std::size_t>(directions + 1));
   const HeightScale here = scale_at(z_mm, scale);
@@ -86,19 +105,19 @@ void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) co
     const auto r = static_cast<float>(
         circle < 0 || outer.rows == 0 ? row * inner.pitch_mm : outer.first_mm + circle / outer.sheets * outer.pitch_mm);
     for (int i = 0; i < directions; ++i) {
-      to[i] = node_at(from[i], here, scope_.spread, r * cosines_[i], r * sines_[i]);
+      to[i] = node_at(from[i], here, spread, r * cosines_[i], r * sines_[i]);
     }
     to[directions] = to[0];
   });
 }
 
-double RayTable::spread_along_mm(double x_mm, double y_mm) const {
+double RayTable::spread_along_mm(double x_mm, double y_mm, const LightSpread& spread) const {
   const int row = std::min(round_int(std::hypot(x_mm, y_mm) / inner.pitch_mm), inner.rows - 1);
   const double turn = scope_.sense * std::atan2(y_mm, x_mm) / turn_rad;
   const int direction = round_int((turn - std::floor(turn)) * directions) % directions;
   const TableNode& node = nodes_[static_cast<std::size_t>(row) * directions + direction];
   const float depth = depth_mm(node, static_cast<float>(x_mm), static_cast<float>(y_mm));
-  return static_cast<double>(scope_.spread.along_mm(node.x_p[0], depth) * node.row[0]);
+  return static_cast<double>(spread.along_mm(node.x_p[0], depth) * node.row[0]);
 }
 
 double RayTable::drift_mm(double from_mm, double to_mm, double r_mm) const {

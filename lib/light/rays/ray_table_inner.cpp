@@ -25,21 +25,34 @@ ChiefRayDose::OnCircle level_ray(const ChiefRayDose& light, double r_mm, double 
 
 }  // namespace
 
+TableNode RayTable::inner_node(const ChiefRayDose& light, double r_mm, double alpha, double& b_rad) const {
+  const ChiefRayDose::OnCircle point = level_ray(light, r_mm, alpha, b_rad);
+  const double zoom = climbs_ ? light.low_zoom(point.x_p_mm, point.u_mm) : 1;
+  const FoundRay level{true,
+                       point.x_p_mm,
+                       zoom,
+                       point.dose() * zoom,
+                       light.spacing(1 / (point.ray.jacobian * point.alpha_rate)),
+                       point.ray.delta_rad};
+  return climbs_ ? node_over_heights(light, r_mm * std::cos(alpha), r_mm * std::sin(alpha), level)
+                 : node_of(level, level, level);
+}
+
+/// From alpha = 0 to a quarter of a turn either way. The other half of the circle is its mirror image: vial and lens
+/// are symmetric about the plane of the light's axis.
 void RayTable::fill_inner_row(const ChiefRayDose& light, int row) {
-  const double r = row * inner.pitch_mm;
-  double b = 0;
-  for (int index = 0; index < directions; ++index) {
-    const double alpha = scope_.sense * index * (2 * std::numbers::pi) / directions;
-    const ChiefRayDose::OnCircle point = level_ray(light, r, alpha, b);
-    const double zoom = climbs_ ? light.low_zoom(point.x_p_mm, point.u_mm) : 1;
-    const FoundRay level{true,
-                         point.x_p_mm,
-                         zoom,
-                         point.dose() * zoom,
-                         light.spacing(1 / (point.ray.jacobian * point.alpha_rate)),
-                         point.ray.delta_rad};
-    row_of(inner, row, 0)[index] = climbs_ ? node_over_heights(light, r * std::cos(alpha), r * std::sin(alpha), level)
-                                           : node_of(level, level, level);
+  TableNode* nodes = row_of(inner, row, 0);
+  for (const int way : {1, -1}) {
+    double b = 0;
+    for (int step = 0; step <= directions / 4; ++step) {
+      const int index = way * step;
+      const double alpha = scope_.sense * index * (2 * std::numbers::pi) / directions;
+      TableNode node = inner_node(light, row * inner.pitch_mm, alpha, b);
+      nodes[(index + directions) % directions] = node;
+      for (float& x_p : node.x_p) x_p = -x_p;
+      node.sine = -node.sine;
+      nodes[directions / 2 - index] = node;
+    }
   }
 }
 

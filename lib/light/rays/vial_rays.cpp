@@ -53,17 +53,17 @@ RayTable::Scope VialRays::table_scope() const {
   table.r_max_mm = farthest_mm(setup_) + model::farthest_mm(setup_.poses, model::Moves::part);
   table.voxel_mm = setup_.grid.voxel_mm;
   table.height_mm = std::max(top_mm(), least_height_mm);
-  table.spread = LightSpread(setup_);
   return table;
 }
 
-VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(table_scope()) {
+VialRays::VialRays(const VialSetup& setup)
+    : setup_(completed(setup)), table_(RayTable::of(table_scope())), widths_(setup_) {
   tomo::require_translucent(setup_.absorption_per_mm, optics::resin_radius_mm(setup_.view));
-  if (posed()) posed_ = PosedRays(setup_, table_scope(), table_);
+  if (posed()) posed_ = PosedRays(setup_, table_scope(), *table_);
   note_columns();
   note_rows();
   RayNodes level;
-  table_.at_height(0, scale(), level);
+  table_->at_height(0, scale(), widths_, level);
   float widest2 = 0;  // of a box as variable as a shadow
   for (const RayNode& node : level) widest2 = std::max(widest2, node.edge * node.edge + node.spread2);
   taps_ = ceil_int(std::numbers::sqrt2 * std::sqrt(widest2)) + 1;
@@ -102,13 +102,13 @@ void VialRays::note_columns() {
 
 /// The widest anywhere in the circle.
 void VialRays::note_spread() {
-  if (!table_.spread().along()) return;
+  if (!widths_.along()) return;
   double most_mm = 0;
   constexpr int directions = 360;
   for (const double r : {0.0, 0.5 * farthest_mm(setup_), farthest_mm(setup_)}) {
     for (int i = 0; i < directions; ++i) {
       const double alpha = i * turn_rad / directions;
-      most_mm = std::max(most_mm, table_.spread_along_mm(r * std::cos(alpha), r * std::sin(alpha)));
+      most_mm = std::max(most_mm, table_->spread_along_mm(r * std::cos(alpha), r * std::sin(alpha), widths_));
     }
   }
   spread_ = RowSpread(most_mm / setup_.grid.voxel_mm);
@@ -124,7 +124,7 @@ double VialRays::spread_rows(int i, int j, int angle) const {
   const double y = setup_.grid.y_mm(j);
   const auto c = static_cast<double>(cosines_[static_cast<std::size_t>(angle)]);
   const auto s = static_cast<double>(sines_[static_cast<std::size_t>(angle)]);
-  return table_.spread_along_mm(x * c + y * s, y * c - x * s) / setup_.grid.voxel_mm;
+  return table_->spread_along_mm(x * c + y * s, y * c - x * s, widths_) / setup_.grid.voxel_mm;
 }
 
 void VialRays::note_rows() {
@@ -138,9 +138,9 @@ void VialRays::note_rows() {
   constexpr float spare = 0.05F;  // for heights and displaced vials
   least_row_ = 1e9F;
   most_row_ = 0;
-  for (int row = 0; row < table_.inner.rows; ++row) {
-    const TableNode* points = table_.points(table_.inner, row, 0);
-    for (int i = 0; i < table_.directions; ++i) {
+  for (int row = 0; row < table_->inner.rows; ++row) {
+    const TableNode* points = table_->points(table_->inner, row, 0);
+    for (int i = 0; i < table_->directions; ++i) {
       least_row_ = std::min(least_row_, (1 - spare) * points[i].row[0]);
       most_row_ = std::max(most_row_, (1 + spare) * points[i].row[0]);
     }
@@ -186,7 +186,7 @@ RowRange VialRays::posed_rows_to(int first, int slices) const {
 }
 
 HeightScale VialRays::posed_scale(int first, int slices, int frame) const {
-  return table_.scale_at(height_mm(first + 0.5 * (slices - 1)) + posed_.lift_mm(frame), scale());
+  return table_->scale_at(height_mm(first + 0.5 * (slices - 1)) + posed_.lift_mm(frame), scale());
 }
 
 void VialRays::find_posed_taps(const RayNodes& nodes, int count, int frame, int slices, RayTaps& taps) const {
@@ -201,13 +201,13 @@ void VialRays::find_posed_taps(const RayNodes& nodes, int count, int frame, int 
 
 /// The row kernels hold a tile's rows: 64 slices under the largest zoom, and what the rays climb across the tile.
 void VialRays::require_moderate_rays(RayNodes& nodes) const {
-  if (!table_.climbs()) return;
+  if (!table_->climbs()) return;
   constexpr float least_zoom = 0.55F, largest_zoom = 1.85F;
   constexpr double steepest = 1.7;
   const double top = top_mm();
   float low = 1, high = 1;
   for (const double z : {0.0, top}) {
-    table_.at_height(z, scale(), nodes);
+    table_->at_height(z, scale(), widths_, nodes);
     for (const RayNode& node : nodes) {
       low = std::min(low, node.zoom);
       high = std::max(high, node.zoom);
@@ -236,7 +236,7 @@ int VialRays::chunk(double r_mm) const {
   int slices = widest;
   while (slices > lanes) {
     const double middle = std::max(0.0, top - 0.5 * slices * setup_.z_scale * setup_.grid.voxel_mm);
-    if (table_.drift_mm(middle, top, r_mm) < columns * setup_.projector.pixel_mm) break;
+    if (table_->drift_mm(middle, top, r_mm) < columns * setup_.projector.pixel_mm) break;
     slices /= 2;
   }
   return slices;
@@ -246,19 +246,19 @@ int VialRays::find(int i, int j, RaySource* rays) const {
   const double x = setup_.grid.x_mm(i);
   const double y = setup_.grid.y_mm(j);
   const double r = std::hypot(x, y);
-  if (r > setup_.radius_mm || r >= table_.edge_mm) return 0;
-  const bool outside = r > table_.inner_edge_mm;
-  if (outside && table_.outer.rows == 0) return 0;
-  const RayTable::Zone& zone = outside ? table_.outer : table_.inner;
+  if (r > setup_.radius_mm || r >= table_->edge_mm) return 0;
+  const bool outside = r > table_->inner_edge_mm;
+  if (outside && table_->outer.rows == 0) return 0;
+  const RayTable::Zone& zone = outside ? table_->outer : table_->inner;
   const RayTable::RowPair rows = zone.rows_at(r);
   // alpha = psi - theta: the voxel seen from the lab. In steps of the table, increasing with the row.
   const double theta = setup_.part_angle_rad(0);
   double alpha = sense() * (std::atan2(y, x) - theta) / turn_rad;
-  alpha = (alpha - std::floor(alpha)) * table_.directions;
-  const int index = std::min(static_cast<int>(alpha), table_.directions - 1);
+  alpha = (alpha - std::floor(alpha)) * table_->directions;
+  const int index = std::min(static_cast<int>(alpha), table_->directions - 1);
   for (int sheet = 0; sheet < zone.sheets; ++sheet) {
-    rays[sheet] = {static_cast<int>(table_.row_begin(zone, rows.low, sheet)),
-                   static_cast<int>(table_.row_begin(zone, rows.high, sheet)), index, rows.part,
+    rays[sheet] = {static_cast<int>(table_->row_begin(zone, rows.low, sheet)),
+                   static_cast<int>(table_->row_begin(zone, rows.high, sheet)), index, rows.part,
                    static_cast<float>(alpha - index)};
   }
   return zone.sheets;
@@ -286,7 +286,7 @@ RayScale VialRays::scale() const {
 }
 
 void VialRays::at_slices(int first, int slices, RayNodes& nodes) const {
-  table_.at_height(climbs() ? height_mm(first + 0.5 * (slices - 1)) : 0, scale(), nodes);
+  table_->at_height(climbs() ? height_mm(first + 0.5 * (slices - 1)) : 0, scale(), widths_, nodes);
 }
 
 void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count, const PartTurn& part, int slices,
@@ -299,7 +299,7 @@ void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count
                        part.sine,
                        static_cast<float>(columns() + 2 * padding() - 1),
                        climbs() ? 0.5F * static_cast<float>(slices - 1) : 0.0F,
-                       table_.spread().across(),
+                       widths_.across(),
                        taps_};
   kernel(nodes.data(), rays, count, frame, taps);
 }
@@ -307,7 +307,7 @@ void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count
 void VialRays::find_taps(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices,
                          RayTaps& taps) const {
   const auto a = static_cast<std::size_t>(angle);
-  take_from(nodes, rays, count, {angle * table_.phases, table_.phases, table_.directions, cosines_[a], sines_[a]},
+  take_from(nodes, rays, count, {angle * table_->phases, table_->phases, table_->directions, cosines_[a], sines_[a]},
             slices, taps);
 }
 

@@ -2,6 +2,7 @@
 // Columns and rows of the projector that light a voxel of the turning vial, and their weights.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/index.hpp"
@@ -32,7 +33,7 @@ class VialRays {
   /// table at a height, at_slices() and find_taps().
   [[nodiscard]] bool posed() const { return !setup_.poses.empty(); }
   /// Whether rows light other slices than their own.
-  [[nodiscard]] bool climbs() const { return table_.climbs() || posed(); }
+  [[nodiscard]] bool climbs() const { return table_->climbs() || posed(); }
   /// 4 where grid and stage angles are the same after a quarter of a turn, else 1.
   [[nodiscard]] int quarters() const;
   /// The stage angle at which voxels so many quarters of a turn on have the rays that these have at `angle`.
@@ -67,7 +68,7 @@ class VialRays {
   [[nodiscard]] HeightScale posed_scale(int first, int slices, int frame) const;
   /// Nodes of the rays through a voxel column, at most most_rays; returns how many.
   int find_posed(int i, int j, int frame, const HeightScale& scale, RayNode* to) const {
-    return posed_.find(table_, setup_.grid.x_mm(i), setup_.grid.y_mm(j), frame, scale, to);
+    return posed_.find(*table_, setup_.grid.x_mm(i), setup_.grid.y_mm(j), frame, scale, widths_, to);
   }
   /// Where `count` rays, whole blocks of them, take light from: one node each, and one more.
   void find_posed_taps(const RayNodes& nodes, int count, int frame, int slices, RayTaps& taps) const;
@@ -106,7 +107,8 @@ class VialRays {
   [[nodiscard]] RowRange posed_rows_to(int first, int slices) const;
 
   VialSetup setup_;
-  RayTable table_;
+  std::shared_ptr<const RayTable> table_;
+  LightSpread widths_;
   PosedRays posed_;
   RowSpread spread_;
   float least_row_ = 1, most_row_ = 1;  // z_p over height, of any ray

@@ -20,7 +20,8 @@ class PosedRays {
   [[nodiscard]] double lift_mm(int frame) const { return frames_[frame].lift_mm; }
 
   /// The nodes of the rays through a point of the part, at most RayTable::most_sheets; returns how many.
-  int find(const RayTable& table, double x_mm, double y_mm, int frame, const HeightScale& scale, RayNode* to) const;
+  int find(const RayTable& table, double x_mm, double y_mm, int frame, const HeightScale& scale,
+           const LightSpread& spread, RayNode* to) const;
 
  private:
   struct FramePose {

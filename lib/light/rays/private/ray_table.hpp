@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "base/compute/slab.hpp"
@@ -102,14 +103,16 @@ class RayTable {
     double r_max_mm = 0;   // radii up to this are needed
     double voxel_mm = 0;   // edge of a voxel
     double height_mm = 0;  // largest |z| above or below the lens's axis that is needed
-    LightSpread spread;
+    bool operator==(const Scope&) const = default;
   };
   explicit RayTable(const Scope& scope);
+  /// One that is in use, where there is one of that scope: printers that differ in what is not of it share their rays.
+  [[nodiscard]] static std::shared_ptr<const RayTable> of(const Scope& scope);
 
   [[nodiscard]] HeightScale scale_at(double z_mm, const RayScale& scale) const;
   /// The nodes at that height: element row_begin(zone, row, sheet) + i is direction alpha = sense * i * 2 pi /
   /// directions, i = 0 to directions.
-  void at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const;
+  void at_height(double z_mm, const RayScale& scale, const LightSpread& spread, RayNodes& nodes) const;
   [[nodiscard]] std::size_t row_begin(const Zone& zone, int row, int sheet) const {
     return static_cast<std::size_t>(zone.first_row + row * zone.sheets + sheet) *
            static_cast<std::size_t>(directions + 1);
@@ -119,10 +122,9 @@ class RayTable {
     return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
   [[nodiscard]] bool climbs() const { return climbs_; }
-  [[nodiscard]] const LightSpread& spread() const { return scope_.spread; }
   /// Standard deviation of the spread along z of the light that passes a point of the plan view, in mm of the image
   /// plane.
-  [[nodiscard]] double spread_along_mm(double x_mm, double y_mm) const;
+  [[nodiscard]] double spread_along_mm(double x_mm, double y_mm, const LightSpread& spread) const;
   /// Largest change of x_p, in mm of the image plane, from one height to another, at that radius.
   [[nodiscard]] double drift_mm(double from_mm, double to_mm, double r_mm) const;
 
@@ -136,6 +138,7 @@ class RayTable {
 
  private:
   void fill_inner_row(const ChiefRayDose& light, int row);
+  [[nodiscard]] TableNode inner_node(const ChiefRayDose& light, double r_mm, double alpha, double& b_rad) const;
   void fill_outer_rows(const ChiefRayDose& light, int first, int end);
   void continue_outer_row(int row);
   [[nodiscard]] TableNode* row_of(const Zone& zone, int row, int sheet) {
