@@ -17,17 +17,6 @@ namespace vam::optimize {
 
 namespace {
 
-/// An image for each slice, from 0 on; dark ones beyond the last.
-class Frames {
- public:
-  Frames(std::span<const Image> images, light::Shape shape) : images_(images), dark_(shape.width, shape.height) {}
-  [[nodiscard]] const Image& operator[](int k) const { return k < count_of(images_) ? images_[k] : dark_; }
-
- private:
-  std::span<const Image> images_;
-  Image dark_;
-};
-
 /// The print of a resin that sets at that dose: figures, and wrong voxels slice by slice.
 VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, const Frames& frames, double threshold) {
   const SliceReader reader(task.source, light.object());

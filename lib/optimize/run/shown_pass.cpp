@@ -4,7 +4,6 @@
 #include <memory>
 #include <utility>
 
-#include "optimize/run/private/pass_setup.hpp"
 #include "optimize/target/exclusions.hpp"
 
 namespace vam::optimize {
@@ -24,12 +23,17 @@ PassSetup set_up(const VolumeTask& task, const light::Operator& light, const Sli
           PassLight(light, std::move(around), task.blur_px, pass.slices())};
 }
 
+std::vector<Slab> dose_of(const Pass& pass, const PassLight& light, const std::function<Image(int job)>& image) {
+  const std::vector<Slab> sinograms = collapse_images(pass, image, light.sharp());
+  std::vector<Slab> dose = slabs(sinograms.size(), light.sharp().object().width, light.sharp().object().height);
+  light.blurred().adjoint(sinograms, dose);
+  return dose;
+}
+
 ShownPass shown_pass(const VolumeTask& task, const light::Operator& light, const SliceReader& reader, const Pass& pass,
                      const std::function<int(int job)>& slice, const std::function<Image(int job)>& image) {
   PassSetup setup = set_up(task, light, reader, pass, slice);
-  const std::vector<Slab> sinograms = collapse_images(pass, image, setup.light.sharp());
-  std::vector<Slab> dose = slabs(sinograms.size(), light.object().width, light.object().height);
-  setup.light.blurred().adjoint(sinograms, dose);
+  std::vector<Slab> dose = dose_of(pass, setup.light, image);
   add_delivered(setup.problem, dose);
   return {std::move(setup.problem), std::move(dose)};
 }

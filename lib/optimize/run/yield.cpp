@@ -8,11 +8,10 @@
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/json.hpp"
-#include "light/blur/blur_stream.hpp"
-#include "light/simulation/simulation.hpp"
+#include "light/operators/make_operator.hpp"
 #include "model/dose/dose_spread.hpp"
 #include "model/magnification.hpp"
-#include "optimize/run/private/pass.hpp"
+#include "optimize/run/private/shown_pass.hpp"
 #include "optimize/target/exclusions.hpp"
 
 namespace vam::optimize {
@@ -21,57 +20,42 @@ namespace {
 
 constexpr std::uint64_t seed = 13;
 
-std::vector<Image> blurred(std::vector<Image> sharp, double sigma_px) {
-  if (sigma_px <= 0) return sharp;
-  std::vector<Image> out;
-  light::BlurStream blur(sigma_px, [&](Image slice) { out.push_back(std::move(slice)); });
-  for (const Image& slice : sharp) blur.push(slice);
-  blur.finish();
-  return out;
-}
-
 /// The voxels to be judged and the inserts in the light's way.
 class Bench {
  public:
   Bench(const Trial& trial, const VolumeTask& task, std::span<const Image> frames)
       : trial_(trial), frames_(frames), input_(read(trial, task)) {
     if (!input_.inserts.empty()) exclude(input_.problem, input_.inserts);
-    for (int k = 0; k < trial.grid.nz && !input_.inserts.empty(); ++k) {
-      Image& insert = inserts_.emplace_back(trial.grid.nx, trial.grid.ny);
-      const float* from = input_.inserts[k / lanes].values.data() + k % lanes;
-      for (std::size_t i = 0; i < insert.size(); ++i) insert.values[i] = from[i * lanes];
-    }
   }
 
   [[nodiscard]] Printed print(const model::PrinterDeviation& by) const {
     const model::DeviatingPrinter off = model::deviate(trial_.printer, trial_.tolerances, by);
     light::VialSetup setup = trial_.setup(off.printer);
     setup.angle_offset_rad += off.angle_offset_rad;
-    setup.radius_mm = 0;                                            // light is judged wherever it goes
     setup.z_scale = model::vertical_magnification(trial_.printer);  // of which the part was sliced
-    const light::Simulation simulation(setup);
-    std::vector<Image> doses(trial_.grid.nz);
-    simulation.dose(frames_, doses, inserts_);
-    const double blur_mm = model::spread_mm(off.printer.resin, trial_.seconds);
-    return judged(blurred(std::move(doses), trial_.blur ? blur_mm / trial_.grid.voxel_mm : 0), off.intensity);
+    const auto clear = light::make_operator(setup, input_.inserts);
+    const double blur_mm = trial_.blur ? model::spread_mm(off.printer.resin, trial_.seconds) : 0;
+    const PassLight light(*clear, nullptr, blur_mm / trial_.grid.voxel_mm, trial_.grid.nz);
+    const Frames frames(frames_, clear->image());
+    return judged(dose_of(all(), light, [&](int k) { return frames[k]; }), off.intensity);
   }
 
  private:
-  static PassInput read(const Trial& trial, const VolumeTask& task) {
-    const Pass all{0, trial.grid.nz, 0, trial.grid.nz};
+  [[nodiscard]] Pass all() const { return {0, trial_.grid.nz, 0, trial_.grid.nz}; }
+  [[nodiscard]] PassInput read(const Trial& trial, const VolumeTask& task) const {
     const SliceReader reader(task.source, {trial.grid.nx, trial.grid.ny});
     return read_pass(
-        all, [](int k) { return k; }, reader, {trial.grid.nx, trial.grid.ny}, task.circle, task.demands, true);
+        all(), [](int k) { return k; }, reader, {trial.grid.nx, trial.grid.ny}, task.circle, task.demands, true);
   }
 
-  [[nodiscard]] Printed judged(const std::vector<Image>& doses, double intensity) const {
+  [[nodiscard]] Printed judged(const std::vector<Slab>& dose, double intensity) const {
     const auto unit = static_cast<float>(intensity / trial_.threshold);
     std::vector<model::DoseStatistics> slices;
-    for (std::size_t k = 0; k < doses.size(); ++k) slices.emplace_back(1.0);
-    parallel_for(count_of(doses), [&](int k) {
-      const Label* labels = input_.problem.labels[k / lanes].data() + k % lanes;
-      const std::vector<float>& values = doses[k].values;
-      for (std::size_t i = 0; i < values.size(); ++i) slices[k].add(unit * values[i], labels[i * lanes]);
+    for (int k = 0; k < trial_.grid.nz; ++k) slices.emplace_back(1.0);
+    parallel_for(trial_.grid.nz, [&](int k) {
+      const std::vector<Label>& labels = input_.problem.labels[k / lanes];
+      const auto& values = dose[k / lanes].values;
+      for (std::size_t i = k % lanes; i < values.size(); i += lanes) slices[k].add(unit * values[i], labels[i]);
     });
     model::DoseStatistics all(1.0);
     for (const model::DoseStatistics& slice : slices) all.merge(slice);
@@ -81,7 +65,6 @@ class Bench {
   const Trial& trial_;
   std::span<const Image> frames_;
   PassInput input_;
-  std::vector<Image> inserts_;
 };
 
 double least_margin(const Trials::Single& single) { return std::min(single.minus.margin(), single.plus.margin()); }

@@ -3,18 +3,34 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
-#include "optimize/run/private/pass.hpp"
+#include "base/index.hpp"
+#include "optimize/run/private/pass_setup.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
+
+/// An image for each slice, from 0 on; dark ones beyond the last.
+class Frames {
+ public:
+  Frames(std::span<const Image> images, light::Shape shape) : images_(images), dark_(shape.width, shape.height) {}
+  [[nodiscard]] const Image& operator[](int k) const { return k < count_of(images_) ? images_[k] : dark_; }
+
+ private:
+  std::span<const Image> images_;
+  Image dark_;
+};
 
 struct ShownPass {
   Problem problem;         // without what inserts fill and hide
   std::vector<Slab> dose;  // with what has been delivered
 };
 
+/// What the light of images gives, a slab for every 16 of the pass; image(job): fluence.
+[[nodiscard]] std::vector<Slab> dose_of(const Pass& pass, const PassLight& light,
+                                        const std::function<Image(int job)>& image);
 /// slice(job): the slice of the volume that the job computes; image(job): its projections, fluence.
 [[nodiscard]] ShownPass shown_pass(const VolumeTask& task, const light::Operator& light, const SliceReader& reader,
                                    const Pass& pass, const std::function<int(int job)>& slice,
