@@ -75,17 +75,8 @@ Preview preview(const PreviewTask& wanted) {
   const double threshold = task.demands.window.threshold();
   const auto aimed = [&](const model::DoseMetrics&) { return threshold; };
   const double seconds = judge_exposed(task, *light, frames, aimed, wanted.seconds, blur_px, made.outcome);
-  for (const int more : {0, 1}) {
-    const double dose = (1 + (more == 1 ? verdict::dose_margin : -verdict::dose_margin)) * threshold;
-    judge_shown(
-        task, *light, frames, [&](const model::DoseMetrics&) { return dose; }, made.beside[more]);
-  }
-  for (const int angles : {120, 180, 240, 360, 720}) {
-    if (setup.hold_rad == 0) break;
-    VolumeOutcome held = made.outcome;
-    judge_shown(task, *light::make_operator(setup_for(wanted.printer, angles)), frames, aimed, held);
-    made.by_angles.emplace_back(angles, held.metrics.pw);
-  }
+  made.beside = prints_at(task, *light, frames,
+                          {{(1 - verdict::dose_margin) * threshold, (1 + verdict::dose_margin) * threshold}});
   Trial trial;
   trial.printer = wanted.printer;
   trial.tolerances = wanted.tolerances;
@@ -94,6 +85,12 @@ Preview preview(const PreviewTask& wanted) {
   trial.seconds = seconds;
   trial.threshold = threshold;
   made.trials = run_trials(trial, task, frames);
+  for (const int angles : {120, 180, 240, 360, 720}) {
+    if (setup.hold_rad == 0) break;
+    trial.setup = [&](const model::Printer& printer) { return setup_for(printer, angles); };
+    const model::DoseMetrics held = print_as_set(trial, task, frames).figures;
+    made.by_angles.emplace_back(angles, held.pw / held.max_dose);
+  }
   return made;
 }
 

@@ -2,7 +2,6 @@
 // A print in short: few iterations on coarse voxels, and what becomes of them in a printer off its settings.
 #pragma once
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -32,7 +31,7 @@ struct Preview {
   VolumeOutcome outcome;
   /// If the resin set at a dose that is lower and higher by verdict::dose_margin, by which the dose differs from that
   /// of more iterations on voxels as large.
-  std::array<VolumeOutcome, 2> beside;
+  std::vector<VolumeOutcome> beside;
   Trials trials;
   /// Process windows of the same light in frames of prints of so many angles, each of which is shown while the stage
   /// turns to the next; empty where it stands.

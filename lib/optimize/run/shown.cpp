@@ -15,42 +15,51 @@
 
 namespace vam::optimize {
 
-namespace {
-
-/// The print of a resin that sets at that dose: figures, and wrong voxels slice by slice.
-VolumeOutcome printed(const VolumeTask& task, const light::Operator& light, const Frames& frames, double threshold) {
+std::vector<VolumeOutcome> prints_at(const VolumeTask& task, const light::Operator& light,
+                                     std::span<const Image> frames, std::span<const double> doses) {
   const SliceReader reader(task.source, light.object());
   const Jobs jobs = every_slice(task.source.slices, division_of(task, light));
-  RunTotals totals;
-  VolumeOutcome outcome;
+  const Frames shown_frames(frames, light.image());
   const light::Shape object = light.object();
-  std::optional<verdict::PrintPieceCounter> pieces;
-  if (!task.demands.grey && threshold > 0) pieces.emplace(object.width, object.height, threshold);
+  struct Print {
+    RunTotals totals;
+    std::optional<verdict::PrintPieceCounter> pieces;
+    VolumeOutcome outcome;
+  };
+  std::vector<Print> prints(doses.size());
+  for (std::size_t i = 0; i < doses.size(); ++i) {
+    if (!task.demands.grey && doses[i] > 0) prints[i].pieces.emplace(object.width, object.height, doses[i]);
+  }
   for (const Pass& pass : jobs.passes) {
     ShownPass shown = shown_pass(
-        task, light, reader, pass, [](int k) { return k; }, [&](int k) { return frames[k]; });
-    shown.problem.demands.window = {threshold, threshold};
-    totals.add(shown.dose, shown.problem, pass, jobs, task.part);
-    if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
-    if (pieces) {
-      count_pieces(shown.dose, shown.problem, pass.first - pass.low, pass.last - pass.low, task.source, pass.low,
-                   *pieces);
+        task, light, reader, pass, [](int k) { return k; }, [&](int k) { return shown_frames[k]; });
+    for (std::size_t i = 0; i < doses.size(); ++i) {
+      auto& [totals, pieces, outcome] = prints[i];
+      shown.problem.demands.window = {doses[i], doses[i]};
+      totals.add(shown.dose, shown.problem, pass, jobs, task.part);
+      if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
+      if (pieces) {
+        count_pieces(shown.dose, shown.problem, pass.first - pass.low, pass.last - pass.low, task.source, pass.low,
+                     *pieces);
+      }
     }
   }
-  totals.complete(outcome, task.demands.grey, jobs.schedule.job_of_slice);
-  if (pieces) outcome.pieces = pieces->found();
-  return outcome;
+  std::vector<VolumeOutcome> outcomes;
+  for (auto& [totals, pieces, outcome] : prints) {
+    totals.complete(outcome, task.demands.grey, jobs.schedule.job_of_slice);
+    if (pieces) outcome.pieces = pieces->found();
+    outcomes.push_back(std::move(outcome));
+  }
+  return outcomes;
 }
-
-}  // namespace
 
 void judge_shown(const VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
                  const AimedDose& aimed, VolumeOutcome& outcome) {
   const Frames shown(frames, light.image());
   const double threshold = task.demands.window.threshold();
-  VolumeOutcome judged = printed(task, light, shown, threshold);
+  VolumeOutcome judged = prints_at(task, light, frames, {{threshold}}).front();
   const double dose = task.demands.grey ? threshold : aimed(judged.metrics);
-  if (dose != threshold) judged = printed(task, light, shown, dose);
+  if (dose != threshold) judged = prints_at(task, light, frames, {{dose}}).front();
   outcome.metrics = judged.metrics;
   outcome.all_cut = judged.all_cut;
   outcome.with_cut = judged.with_cut;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "base/image.hpp"
 #include "optimize/run/volume.hpp"
@@ -15,6 +16,11 @@ using AimedDose = std::function<double(const model::DoseMetrics& doses)>;
 
 /// Seconds that the print of a light with these figures takes.
 using PrintSeconds = std::function<double(const VolumeOutcome& outcome)>;
+
+/// The prints of resins that set at these doses, of frames as in judge_shown(): figures, pieces, and wrong voxels slice
+/// by slice.
+[[nodiscard]] std::vector<VolumeOutcome> prints_at(const VolumeTask& task, const light::Operator& light,
+                                                   std::span<const Image> frames, std::span<const double> doses);
 
 /// Makes the figures, demands and intensities of `outcome` those of `frames`: one image a slice, columns x angles,
 /// fluence; slices without one are dark. What gels outside the part's box is counted at the dose aimed at. The

@@ -26,6 +26,7 @@ class Bench {
   Bench(const Trial& trial, const VolumeTask& task, std::span<const Image> frames)
       : trial_(trial), frames_(frames), input_(read(trial, task)) {
     if (!input_.inserts.empty()) exclude(input_.problem, input_.inserts);
+    input_.problem.near = surroundings(input_.problem, task.blur_px);
   }
 
   [[nodiscard]] Printed print(const model::PrinterDeviation& by) const {
@@ -37,7 +38,9 @@ class Bench {
     const double blur_mm = trial_.blur ? model::spread_mm(off.printer.resin, trial_.seconds) : 0;
     const PassLight light(*clear, nullptr, blur_mm / trial_.grid.voxel_mm, trial_.grid.nz);
     const Frames frames(frames_, clear->image());
-    return judged(dose_of(all(), light, [&](int k) { return frames[k]; }), off.intensity);
+    return judged(dose_of(
+                      all(), light, [&](int k) { return frames[k]; }, input_.problem.near),
+                  off.intensity);
   }
 
  private:
@@ -72,6 +75,10 @@ double least_margin(const Trials::Single& single) { return std::min(single.minus
 }  // namespace
 
 double Printed::margin() const { return std::min(figures.min_part - 1, 1 - figures.max_void); }
+
+Printed print_as_set(const Trial& trial, const VolumeTask& task, std::span<const Image> frames) {
+  return Bench(trial, task, frames).print({});
+}
 
 Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Image> frames) {
   const Bench bench(trial, task, frames);

@@ -50,6 +50,9 @@ struct Trials {
 };
 inline constexpr double allowed_wrong = 1e-3;
 
+/// The print of the printer as set.
+[[nodiscard]] Printed print_as_set(const Trial& trial, const VolumeTask& task, std::span<const Image> frames);
+
 /// Memory: all doses and frames once. Throws Fault::data as light::Simulation does.
 [[nodiscard]] Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Image> frames);
 
