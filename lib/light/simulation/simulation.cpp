@@ -66,13 +66,6 @@ Simulation::Simulation(const model::Printer& printer, const optics::AxisAlignmen
   state_->clear = make_operator(state_->beam);
 }
 
-Simulation::Simulation(const VialSetup& setup) : state_(std::make_unique<State>()) {
-  state_->grid = setup.grid;
-  state_->resin_mm = optics::resin_radius_mm(setup.view);
-  state_->beam = setup;
-  state_->clear = make_operator(state_->beam);
-}
-
 Simulation::~Simulation() = default;
 
 bool Simulation::climbs() const { return state_->clear->couples_slices(); }

@@ -28,8 +28,6 @@ class Simulation {
   /// that differ from the virtual columns.
   Simulation(const model::Printer& printer, const optics::AxisAlignment& alignment, const model::StackInfo& info,
              const model::Grid& grid, Climb climb = Climb::follow);
-  /// Chief rays in a vial that is not quite that of the part's slices, such as one with another z_scale.
-  explicit Simulation(const VialSetup& setup);
   ~Simulation();
   /// Whether rows light other slices than their own. Then dose() takes all sinograms of the stack and gives all slices
   /// of the grid, as DoseStream does with less memory; otherwise any slices with their own sinograms.

@@ -26,7 +26,6 @@ class Bench {
   Bench(const Trial& trial, const VolumeTask& task, std::span<const Image> frames)
       : trial_(trial), frames_(frames), input_(read(trial, task)) {
     if (!input_.inserts.empty()) exclude(input_.problem, input_.inserts);
-    input_.problem.near = surroundings(input_.problem, task.blur_px);
   }
 
   [[nodiscard]] Printed print(const model::PrinterDeviation& by) const {
@@ -38,9 +37,7 @@ class Bench {
     const double blur_mm = trial_.blur ? model::spread_mm(off.printer.resin, trial_.seconds) : 0;
     const PassLight light(*clear, nullptr, blur_mm / trial_.grid.voxel_mm, trial_.grid.nz);
     const Frames frames(frames_, clear->image());
-    return judged(dose_of(
-                      all(), light, [&](int k) { return frames[k]; }, input_.problem.near),
-                  off.intensity);
+    return judged(dose_of(all(), light, [&](int k) { return frames[k]; }), off.intensity);
   }
 
  private:
