@@ -46,7 +46,7 @@ void run(const cli::App& app, Options& options) {
   const model::StackInfo info = posed(app, in.info(), options);
   const dose_tool::Place place = place_of(options, printer, info);
   io::SparseVolume volume = empty_volume(app, place, printer, info, options);
-  dose_tool::Light light(in, info, options, printer);
+  dose_tool::Light light(in, info, options, printer, stated.planned && !anew ? stated.turns : 1);
   const dose_tool::Exposed exposed = expose(light, info, options, printer, place, volume);
 
   const dose_tool::Unit unit = unit_of(exposed, options, printer, info);

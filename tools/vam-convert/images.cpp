@@ -36,12 +36,15 @@ class Frames : public Images {
  public:
   Frames(const Options& options, io::FileType type)
       : source_(io::open_images(options.input, type)), full_scale_(options.full_scale) {
-    if (!source_->about().empty()) views_.source = "frames.csv";
-    for (const model::ImageInfo& about : source_->about()) views_.angles_deg.push_back(about.angle_deg);
+    views_.times_s = source_->times_s();
     const model::StackInfo& info = source_->info();
-    if (!views_.source.empty() || info.angle_step_deg == 0) return;
-    views_.source = "vam:angle_step_deg";
-    for (int n = 0; n < info.count; ++n) views_.angles_deg.push_back(n * info.angle_step_deg);
+    if (!source_->about().empty()) {
+      views_.source = "frames.csv";
+      for (const model::ImageInfo& about : source_->about()) views_.angles_deg.push_back(about.angle_deg);
+    } else if (info.angle_step_deg != 0) {
+      views_.source = "vam:angle_step_deg";
+      for (int n = 0; n < info.count; ++n) views_.angles_deg.push_back(n * info.angle_step_deg);
+    }
   }
   [[nodiscard]] io::ArraySize size() const override {
     return {source_->info().count, source_->info().height, source_->info().width};

@@ -53,10 +53,14 @@ void declare_projections(cli::App& app, Options& options) {
       .brief("Volume (VDB) whose slices the stack gets. Default: those of the array or images.");
   app.default_is("the slices of the array, the rows of the images");
   app.option("--view-step", "DEG", options.view_step_deg, {-180, 180, false, true},
-             "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections "
-             "of several turns are averaged; frames that state more turns are then all of the print.");
+             "Stage angle from one projection to the next, negative for a stage that turns the other way. Frames that "
+             "state more turns than they make are then all of the print.");
   app.default_is(
       "that of frames.csv beside the images, or of a video that states it; else one turn divided by the projections");
+  app.option("--speed", "DEG/S", options.speed_deg_s, {-3600, 3600, false, true},
+             "Speed at which the stage turns while a video plays, negative for the other way: its frames are shown for "
+             "as long as it states. Sets stage.speed_deg_s.")
+      .excludes({"--view-step"});
   app.option("--axis-column", "PX", options.axis_column, on_image, "Column of the projections on which the axis lies.");
   app.default_is("projector.axis_column in images as wide as the projector's, else the middle");
   app.option("--axis-row", "PX", options.axis_row, on_image,

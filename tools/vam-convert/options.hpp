@@ -30,6 +30,7 @@ struct Options {
   std::optional<double> slice_height_mm;
   std::string like;
   std::optional<double> view_step_deg;
+  std::optional<double> speed_deg_s;
   std::optional<double> axis_column;
   std::optional<double> axis_row;
   std::string orientation = "normal";

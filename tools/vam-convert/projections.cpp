@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/log/log.hpp"
@@ -28,6 +29,7 @@
 #include "vam-convert/resliced.hpp"
 #include "vam-convert/sinograms.hpp"
 #include "vam-convert/stage_angles.hpp"
+#include "vam-convert/turns.hpp"
 
 namespace vam::convert_tool {
 
@@ -40,78 +42,61 @@ struct Heights {
   double pitch_mm = 0;
 };
 
-/// Where the rows of a slice go, and its columns.
-struct Plan {
-  int per_turn = 0;  // angles
-  int turns = 0;
-  bool backwards = false;
-  double start_deg = 0;  // stage angle of the first row
-  double shift = 0;      // of columns, to the right
+/// Where the columns of a slice go.
+struct Place {
+  double shift = 0;  // to the right
   int columns = 0;
 };
 
-/// From row to row: as given, measured or stated, else a turn in all; the measured start.
-double angle_step_deg(const Options& options, const Slices& slices, Plan& plan) {
+bool is_step_given(const Options& options) { return options.view_step_deg || options.speed_deg_s; }
+
+/// As given, measured or stated, else of a turn in all.
+std::vector<double> edges_deg(const Options& options, const Slices& slices) {
   const StatedViews views = slices.views();
-  if (options.view_step_deg) return *options.view_step_deg;
-  if (!views.source.empty()) {  // also where it holds none
-    const StageAngles measured = even_angles(views, slices.size().rows, io::input_name(options.input));
-    plan.start_deg = measured.start_deg;
-    if (measured.step_deg != 0) return measured.step_deg;
-  }
-  return 360.0 / slices.size().rows;
-}
-
-void plan_turns(const Options& options, const Slices& slices, Plan& plan) {
   const int angles = slices.size().rows;
-  const double step_deg = angle_step_deg(options, slices, plan);
   const std::string name = io::input_name(options.input);
-  const double per_turn = 360 / std::abs(step_deg);
-  plan.per_turn = round_int(per_turn);
-  plan.backwards = step_deg < 0;
-  if (std::abs(per_turn - plan.per_turn) > 1e-3) {
-    throw Error{Fault::usage, "--view-step: " + format_number(step_deg) + " degrees make " + format_number(per_turn) +
-                                  " projections a turn, which is not an integer"};
-  }
-  plan.turns = angles / plan.per_turn;
-  if (plan.turns == 0) {
-    throw Error{Fault::data, name + ": has " + std::to_string(angles) + " projections, " +
-                                 std::to_string(plan.per_turn) + " make a turn; check --view-step"};
-  }
-  if (const int over = angles - plan.turns * plan.per_turn; over > 0) {
-    warn(name + ": the last " + std::to_string(over) + " of " + std::to_string(angles) +
-         " projections are left out, as they make no whole turn");
-  }
+  if (options.speed_deg_s) return timed_edges_deg(views, *options.speed_deg_s, name);
+  if (!options.view_step_deg && !views.source.empty()) return stated_edges_deg(views, angles, name);
+  return even_edges_deg(angles, options.view_step_deg.value_or(360.0 / angles));
 }
 
-/// As frames state it; no turns where they state no plan. Throws Fault::data where they are not all that it takes, as
-/// of a video that was cut, unless --view-step says that they are.
+/// Turns as frames state them, or as the projections make where they are no turn to be repeated; 0: not known. Throws
+/// Fault::data where frames are not all that they state, as of a video that was cut, unless an option says that they
+/// are.
 session::Exposure stated_exposure(const Options& options, const model::StackInfo& stated, const model::Printer& printer,
-                                  const Plan& plan) {
+                                  const Turns& turns, bool plays) {
   const std::string name = io::input_name(options.input);
   session::Exposure shown = session::exposure_of(name, stated, printer, 0);
-  const double frames = shown.planned ? shown.turns * plan.per_turn : stated.count;
-  const bool all = std::abs(frames - stated.count) <= 0.5;
-  if (!all && !options.view_step_deg) {
-    throw Error{Fault::data, name + ": has " + std::to_string(stated.count) + " of the " + format_number(frames) +
-                                 " frames of its light (vam:shown_turns " + format_number(shown.turns) +
-                                 "); write all of them again, or give --view-step " +
-                                 format_number(360.0 / plan.per_turn) + " to take those that are there"};
+  if (!shown.planned || is_step_given(options)) {
+    shown.turns = plays || turns.count() != 1 ? turns.count() : 0;
+    return shown;
   }
-  if (!all) shown.turns = plan.turns;
-  if (!shown.planned) shown.turns = 0;
-  return shown;
+  const double per_turn = stated.count / turns.count(), frames = shown.turns * per_turn;
+  if (std::abs(frames - stated.count) <= 0.5) return shown;
+  throw Error{Fault::data, name + ": has " + std::to_string(stated.count) + " of the " + format_number(frames) +
+                               " frames of its light (vam:shown_turns " + format_number(shown.turns) +
+                               "); write all of them again, or give --view-step " + format_number(360.0 / per_turn) +
+                               " to take those that are there"};
 }
 
 /// Frames of which nothing states the step may be those of several turns, as videos often are.
-void tell_step(const Options& options, const Slices& slices, bool video) {
-  if (options.view_step_deg || !slices.views().source.empty()) return;
-  const int frames = slices.size().rows;
+void tell_step(const Options& options, int frames, bool video) {
   const std::string step = io::input_name(options.input) + ": " + std::to_string(frames) +
                            " frames are taken as one turn, " + format_number(360.0 / frames, 4) +
-                           " degrees each; give --view-step otherwise";
+                           " degrees each; give --view-step" + (video ? " or --speed" : "") + " otherwise";
   if (video) return warn(step);
   note(step);
+}
+
+/// What they make together, and how exact the speed of the stage must be: the last one moves by half a column at the
+/// edge of the light.
+void tell_turns(const std::string& name, const Slices& slices, const Turns& turns, double axis) {
+  const double reach = std::max({axis - slices.lit().first, slices.lit().second - axis, 0.5});
+  note(name + ": " + std::to_string(slices.size().rows) + " projections in " + format_number(turns.count()) +
+       (turns.count() == 1 ? " turn" : " turns") + " from " + format_number(turns.start_deg()) + " deg, " +
+       format_number(slices.size().rows / turns.count()) + " a turn; a speed that is off by " +
+       format_number(100 * 0.5 / (turn_rad * turns.count() * reach), 2) +
+       " % moves the last one by half a column at the edge of the light");
 }
 
 double axis_column(const Options& options, const model::Projector& projector, int columns) {
@@ -127,15 +112,11 @@ double slice_of_zero(const Options& options, const model::Projector& projector, 
   return from_top ? slices - 1 - row : row;
 }
 
-void plan_columns(const Options& options, const model::Projector& projector, int columns, Plan& plan) {
+Place place_columns(const Options& options, const model::Projector& projector, int columns) {
   const double axis = axis_column(options, projector, columns);
-  if (options.in_vial()) {
-    plan.columns = projector.columns;
-    plan.shift = projector.axis_column - axis;
-    return;
-  }
-  plan.columns = ceil_int(2 * std::max(axis, columns - 1 - axis) + 1 - 1e-6);
-  plan.shift = 0.5 * (plan.columns - 1) - axis;
+  if (options.in_vial()) return {projector.axis_column - axis, projector.columns};
+  const int all = ceil_int(2 * std::max(axis, columns - 1 - axis) + 1 - 1e-6);
+  return {0.5 * (all - 1) - axis, all};
 }
 
 double pixel_mm(const Options& options, const model::Projector& projector) {
@@ -148,24 +129,12 @@ double pixel_mm(const Options& options, const model::Projector& projector) {
   return pitch;
 }
 
-/// The mean over the turns.
-Image one_turn(const Image& slice, const Plan& plan) {
-  Image turn(slice.width, plan.per_turn);
-  for (int n = 0; n < plan.turns * plan.per_turn; ++n) {
-    const int a = n % plan.per_turn;
-    float* to = turn.row(plan.backwards ? (plan.per_turn - a) % plan.per_turn : a);
-    const float* from = slice.row(n);
-    for (int c = 0; c < slice.width; ++c) to[c] += from[c] / static_cast<float>(plan.turns);
-  }
-  return turn;
-}
-
 /// Linear between columns.
-Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
-  if (plan.shift == 0 && plan.columns == turn.width) return turn;
-  const int whole = floor_int(plan.shift);
-  const auto part = static_cast<float>(plan.shift - whole);
-  Image placed(plan.columns, turn.height);
+Image shifted(const Image& turn, const Place& place, const std::string& name) {
+  if (place.shift == 0 && place.columns == turn.width) return turn;
+  const int whole = floor_int(place.shift);
+  const auto part = static_cast<float>(place.shift - whole);
+  Image placed(place.columns, turn.height);
   for (int a = 0; a < turn.height; ++a) {
     for (int c = 0; c < turn.width; ++c) {
       const float value = turn(c, a);
@@ -174,9 +143,9 @@ Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
         const float weight = right == 1 ? part : 1 - part;
         const int to = c + whole + right;
         if (weight == 0) continue;
-        if (to < 0 || to >= plan.columns) {
+        if (to < 0 || to >= place.columns) {
           throw Error{Fault::data, name + ": has light on column " + std::to_string(c) + ", which is column " +
-                                       std::to_string(to) + " of " + std::to_string(plan.columns) +
+                                       std::to_string(to) + " of " + std::to_string(place.columns) +
                                        " of the projector; check --axis-column and --set projector.columns"};
         }
         placed(to, a) += weight * value;
@@ -186,25 +155,25 @@ Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
   return placed;
 }
 
-model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Plan& plan,
-                         const Heights& heights, bool grey, const model::StackInfo& stated) {
+model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Turns& turns,
+                         int columns, const Heights& heights, bool grey, session::Exposure shown,
+                         const model::StackInfo& stated) {
   model::StackInfo info;
   info.extra = stated.extra;
   const bool projector = options.in_vial();
   info.space = projector ? model::Space::projector : model::Space::virtual_;
-  info.width = plan.columns;
-  info.height = plan.per_turn;
+  info.width = columns;
+  info.height = turns.rows();
   info.count = heights.count;
   info.pixel_mm = pixel_mm(options, printer.projector);
   info.row_mm = heights.pitch_mm;
   info.z_start_mm = heights.z0_mm;
-  info.angle_start_deg = plan.start_deg;
-  info.angle_step_deg = 360.0 / plan.per_turn;
+  info.angle_start_deg = turns.start_deg();
+  info.angle_step_deg = 360.0 / turns.rows();
   info.units = grey && options.units == "relative" ? "fraction of full intensity" : options.units;
   info.history = {app.history()};
-  session::Exposure shown = stated_exposure(options, stated, printer, plan);
   if (grey && options.units == "relative") shown.full_scale = 1;
-  if (shown.full_scale > 0) session::state_exposure(info.extra, shown.turns, shown.full_scale);
+  if (shown.turns > 0 || shown.full_scale > 0) session::state_exposure(info.extra, shown.turns, shown.full_scale);
   if (projector) info.extra["vam:printer"] = io::printer_settings(printer);
   return info;
 }
@@ -313,16 +282,21 @@ void warn_of_colour(const Options& options, double peak) {
 void make_projections(const cli::App& app, Options options, std::optional<io::FileType> type) {
   auto images = open_source(options, type, "zax");
   const model::StackInfo stated = images->stated();
-  const model::Printer printer = session::printer_of(options.printer, stated.extra, io::input_name(options.input));
+  const std::string name = io::input_name(options.input);
+  model::Printer printer = session::printer_of(options.printer, stated.extra, name);
+  printer.stage.speed_deg_s = std::abs(options.speed_deg_s.value_or(printer.stage.speed_deg_s));
   if (!app.given("--orientation") && stated.extra.contains("vam:printer"))
     options.orientation = printer.projector.orientation;
   const bool frames = images->are_frames();
   const bool grey = images->are_grey();
   Slices slices(std::move(images), options, printer);
-  Plan plan;
-  plan_turns(options, slices, plan);
-  if (frames) tell_step(options, slices, type == io::FileType::video);
-  plan_columns(options, printer.projector, slices.size().columns, plan);
+  const Turns turns(edges_deg(options, slices), options.speed_deg_s.has_value(), name);
+  if (turns.blurred()) printer.stage.motion = "stepped";  // the width of held frames is in the rows
+  const bool known = is_step_given(options) || !slices.views().source.empty();
+  const bool video = type == io::FileType::video;
+  if (frames && !known) tell_step(options, slices.size().rows, video);
+  const session::Exposure shown = stated_exposure(options, stated, printer, turns, video && known);
+  const Place place = place_columns(options, printer.projector, slices.size().columns);
   const std::optional<io::SparseVolume> like = volume_like(options);
   std::optional<model::Grid> grid;
   if (like) grid = lit_slices(*like, options, printer);
@@ -330,19 +304,22 @@ void make_projections(const cli::App& app, Options options, std::optional<io::Fi
   if (like) warn_of_dark(options, own, like->grid());
   Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
   const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
-  io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, grey, stated), options.stack);
+  io::StackWriter out(options.output,
+                      info_of(app, options, printer, turns, place.columns, heights, grey, shown, stated),
+                      options.stack);
   Image slice;
   float least = 0;
   Progress progress("converting", heights.count);
   while (resliced.next(slice)) {
     least = std::min(least, *std::min_element(slice.values.begin(), slice.values.end()));
-    out.write(shifted(one_turn(slice, plan), plan, io::input_name(options.input)));
+    out.write(shifted(turns.fold(slice), place, name));
     progress.tick();
   }
   warn_of_negative(options, least);
   warn_of_light(options, resliced.left_out(), place_remedy(options, slices, printer.projector, frames));
   if (grey && !options.full_scale) warn_of_colour(options, slices.peak());
   if (frames) warn_of_size(options, slices.size(), printer.projector);
+  if (known) tell_turns(name, slices, turns, axis_column(options, printer.projector, slices.size().columns));
   out.commit();
 }
 

@@ -56,7 +56,7 @@ void upright(Image& frame, const std::string& orientation) {
 }  // namespace
 
 Slices::Slices(std::unique_ptr<Images> images, const Options& options, const model::Printer& printer)
-    : images_(std::move(images)), size_(images_->size()) {
+    : images_(std::move(images)), size_(images_->size()), lit_columns_(0, size_.columns - 1) {
   if (images_->are_frames()) collect(options, printer);
 }
 
@@ -66,6 +66,7 @@ io::ArraySize Slices::size() const { return size_; }
 
 void Slices::collect(const Options& options, const model::Printer& printer) {
   const std::vector<float> table = images_->are_grey() ? intensities(options, printer) : std::vector<float>{};
+  std::pair<int, int> lit{65536, 0};
   Image frame;
   while (images_->next(frame)) {
     peak_ = std::max(peak_, *std::max_element(frame.values.begin(), frame.values.end()));
@@ -76,10 +77,14 @@ void Slices::collect(const Options& options, const model::Printer& printer) {
       const float* end = begin + frame.width;
       const float* first = std::find_if(begin, end, [](float value) { return value != 0; });
       while (end > first && end[-1] == 0) --end;
+      if (end > first)
+        lit = {std::min(lit.first, static_cast<int>(first - begin)),
+               std::max(lit.second, static_cast<int>(end - begin) - 1)};
       lit_.push_back({static_cast<int>(first - begin), {first, end}});
     }
   }
   size_ = {frame.height, count_of(lit_) / frame.height, frame.width};
+  if (lit.first <= lit.second) lit_columns_ = lit;
 }
 
 bool Slices::next(Image& slice) {

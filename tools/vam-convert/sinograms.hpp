@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/image.hpp"
@@ -23,6 +24,8 @@ class Slices {
   [[nodiscard]] StatedViews views() const { return images_->views(); }
   /// The greatest level of frames, before the projector's response; 0 of arrays.
   [[nodiscard]] float peak() const { return peak_; }
+  /// The first and the last column that are lit in some frame; all of arrays.
+  [[nodiscard]] std::pair<int, int> lit() const { return lit_columns_; }
   /// Upwards: a row for each angle; false after the last.
   bool next(Image& slice);
 
@@ -34,6 +37,7 @@ class Slices {
   std::vector<Lit> lit_;
   int done_ = 0;
   float peak_ = 0;
+  std::pair<int, int> lit_columns_;
 };
 
 }  // namespace vam::convert_tool

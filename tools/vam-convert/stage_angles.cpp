@@ -3,32 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/log/log.hpp"
 #include "base/stats/median.hpp"
 #include "base/text/printable.hpp"
-#include "base/text/text.hpp"
 
 namespace vam::convert_tool {
 
 namespace {
 
-constexpr double tolerance = 0.1;  // of a step
 constexpr const char* remedy = "; give --view-step where they are to be taken as even";
-
-std::string deg(double angle) { return format_number(angle, 7); }
-
-/// From each angle to the next, by the shorter way.
-std::vector<double> steps_of(const std::vector<double>& angles_deg) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < angles_deg.size(); ++i) {
-    steps.push_back(std::remainder(angles_deg[i] - angles_deg[i - 1], 360.0));
-  }
-  return steps;
-}
 
 void require_finite(const StatedViews& views, const std::string& name) {
   const auto bad = std::find_if(views.angles_deg.begin(), views.angles_deg.end(),
@@ -38,56 +23,44 @@ void require_finite(const StatedViews& views, const std::string& name) {
                                printable(views.source) + " is no angle" + remedy};
 }
 
-/// The first step that is not like the others.
-void require_alike(const StatedViews& views, const std::vector<double>& steps, double usual, const std::string& name) {
-  const auto other = std::find_if(steps.begin(), steps.end(), [&](double step) {
-    return !(std::abs(step - usual) <= tolerance * std::abs(usual));
-  });
-  if (other == steps.end() && usual != 0) return;
-  const auto at = other == steps.end() ? 0 : other - steps.begin();
-  throw Error{Fault::data, name + ": the stage angles are uneven: from projection " + std::to_string(at) + " to " +
-                               std::to_string(at + 1) + " they go from " + deg(views.angles_deg[at]) + " to " +
-                               deg(views.angles_deg[at + 1]) + " degrees, while the median step is " + deg(usual) +
-                               " (" + printable(views.source) + ")" + remedy};
-}
-
-/// Steps that are alike may still add up to another angle.
-void require_in_place(const StatedViews& views, const std::vector<double>& steps, double step,
-                      const std::string& name) {
-  double sum = 0;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    sum += steps[i];
-    const double off = sum - static_cast<double>(i + 1) * step;
-    if (std::abs(off) <= tolerance * std::abs(step)) continue;
-    throw Error{Fault::data, name + ": the stage angles drift: that of projection " + std::to_string(i + 1) + " is " +
-                                 deg(off) + " degrees beside even steps of " + deg(step) + ", of which " +
-                                 format_number(std::round(360 / std::abs(step))) + " make a turn (" +
-                                 printable(views.source) + ")" + remedy};
-  }
-}
-
 }  // namespace
 
-StageAngles even_angles(const StatedViews& views, int projections, const std::string& name) {
-  if (count_of(views.angles_deg) != projections) {
-    throw Error{Fault::data, name + ": has " + std::to_string(views.angles_deg.size()) + " angles (" +
-                                 printable(views.source) + ") of " + std::to_string(projections) + " projections" +
-                                 remedy};
+std::vector<double> even_edges_deg(int projections, double step_deg) {
+  std::vector<double> edges;
+  for (int n = 0; n <= projections; ++n) edges.push_back((n - 0.5) * step_deg);
+  return edges;
+}
+
+std::vector<double> timed_edges_deg(const StatedViews& views, double speed_deg_s, const std::string& name) {
+  if (views.times_s.empty()) {
+    throw Error{Fault::usage, "--speed: " + name + " is no video, and has no times; give --view-step"};
+  }
+  std::vector<double> edges = views.times_s;
+  std::vector<double> shown_s;
+  for (std::size_t n = 1; n < edges.size(); ++n) shown_s.push_back(edges[n] - edges[n - 1]);
+  const double half_s = 0.5 * stats::median(shown_s);
+  for (double& edge : edges) edge = speed_deg_s * (edge - half_s);
+  return edges;
+}
+
+std::vector<double> stated_edges_deg(const StatedViews& views, int projections, const std::string& name) {
+  const std::vector<double>& angles = views.angles_deg;
+  if (count_of(angles) != projections) {
+    throw Error{Fault::data, name + ": has " + std::to_string(angles.size()) + " angles (" + printable(views.source) +
+                                 ") of " + std::to_string(projections) + " projections" + remedy};
   }
   require_finite(views, name);
-  StageAngles found{std::fmod(std::fmod(views.angles_deg.front(), 360.0) + 360.0, 360.0), 0};
-  const std::vector<double> steps = steps_of(views.angles_deg);
-  if (steps.empty()) return found;
-  const double usual = stats::median(steps);
-  require_alike(views, steps, usual, name);
-  double sum = 0;
-  for (const double step : steps) sum += step;
-  const double per_turn = std::round(360 * static_cast<double>(steps.size()) / std::abs(sum));
-  found.step_deg = std::copysign(360 / per_turn, usual);
-  require_in_place(views, steps, found.step_deg, name);
-  note(name + ": " + std::to_string(projections) + " projections from " + deg(found.start_deg) + " deg in steps of " +
-       deg(found.step_deg) + " deg, by " + printable(views.source));
-  return found;
+  if (projections == 1) return {angles[0] - 180, angles[0] + 180};
+  std::vector<double> edges{0};
+  double at = angles[0];
+  for (int n = 1; n < projections; ++n) {
+    const double step = std::remainder(angles[n] - angles[n - 1], 360.0);
+    edges.push_back(at + 0.5 * step);
+    at += step;
+  }
+  edges.push_back(2 * at - edges.back());
+  edges[0] = 2 * angles[0] - edges[1];
+  return edges;
 }
 
 }  // namespace vam::convert_tool

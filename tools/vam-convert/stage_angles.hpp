@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measured stage angles as even steps.
+// Over which stage angles each projection is shown: from edges_deg[n] to edges_deg[n + 1], not wrapped.
 #pragma once
 
 #include <string>
@@ -7,21 +7,23 @@
 
 namespace vam::convert_tool {
 
-/// What is stated about the angles of projections, as measured; none where `source` is empty.
+/// What is stated about projections: nothing where all are empty.
 struct StatedViews {
-  std::string source;  // frames.csv, or the key of a video
-  std::vector<double> angles_deg;
+  std::string source = {};              // of the angles: frames.csv, or the key of a video
+  std::vector<double> angles_deg = {};  // at the middle of each
+  std::vector<double> times_s = {};     // of a video: at the beginning of each, and at the end
 };
 
-struct StageAngles {
-  double start_deg = 0;
-  double step_deg = 0;  // negative for a stage that turns the other way; 0: a single projection does not show it
-};
+/// Those of even steps, with projection n in the middle of its step at n step_deg.
+[[nodiscard]] std::vector<double> even_edges_deg(int projections, double step_deg);
 
-/// The steps, of which a whole number makes a turn. Each angle is within a tenth of a step of its place, which moves
-/// nothing in the vial by more than some tenth of a column where there are as many projections as those resolve. Notes
-/// what it found. Throws Fault::data that begins with `name`: uneven steps, with the first that differs; another number
-/// of angles than projections.
-[[nodiscard]] StageAngles even_angles(const StatedViews& views, int projections, const std::string& name);
+/// Those of a video that plays while the stage turns, negative for one that turns the other way; as those of even steps
+/// where it has even times. Throws Fault::usage where `views` has no times.
+[[nodiscard]] std::vector<double> timed_edges_deg(const StatedViews& views, double speed_deg_s,
+                                                  const std::string& name);
+
+/// Those of stated angles, each shown until half way to the next, the shorter way. Throws Fault::data that begins with
+/// `name` for another number of angles than projections, and for what is no angle.
+[[nodiscard]] std::vector<double> stated_edges_deg(const StatedViews& views, int projections, const std::string& name);
 
 }  // namespace vam::convert_tool

@@ -84,7 +84,7 @@ struct Light::Part {
 };
 
 Light::Light(io::StackReader& first, const model::StackInfo& info, const Options& options,
-             const model::Printer& printer)
+             const model::Printer& printer, double stated_turns)
     : sealed_(first.is_sealed()) {
   if (options.inputs.size() > 1 && options.shown.empty()) {
     throw Error{Fault::usage, "SINOGRAM: several add up only as a print showed them; give its --shown, or one of them"};
@@ -101,6 +101,7 @@ Light::Light(io::StackReader& first, const model::StackInfo& info, const Options
         options.inputs.size() == 1 ? options.full_scale : std::optional(shown_full_scale(options, path));
     std::vector<double> turns = shown_turns(options, path, full_scale, info, printer);
     for (const double t : turns) turns_ += t / static_cast<double>(turns.size());
+    if (options.shown.empty() && info.poses.empty()) turns = shares_of(stated_turns, info.height);
     io::StackReader& reader = own ? *own : first;
     parts_.push_back(std::make_unique<Part>(
         Part{std::move(own), reader,

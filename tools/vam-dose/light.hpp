@@ -19,7 +19,8 @@ class Light {
  public:
   /// Opens the sinograms; the first is `first`, of which `info` states the poses to judge it by. Throws Fault::usage
   /// for several without --shown, Fault::data where they differ in size, or nothing of any was shown.
-  Light(io::StackReader& first, const model::StackInfo& info, const Options& options, const model::Printer& printer);
+  Light(io::StackReader& first, const model::StackInfo& info, const Options& options, const model::Printer& printer,
+        double stated_turns);
   ~Light();
   Light(const Light&) = delete;
   Light& operator=(const Light&) = delete;

@@ -167,6 +167,14 @@ std::vector<double> shown_turns(const Options& options, const std::string& sinog
   return turns;
 }
 
+std::vector<double> shares_of(double turns, int rows) {
+  const double whole = std::floor(turns);
+  std::vector<double> shares;
+  for (int row = 0; row < rows && turns != whole; ++row)
+    shares.push_back((whole + std::clamp((turns - whole) * rows - row, 0.0, 1.0)) / turns);
+  return shares;
+}
+
 void require_all_sinograms(const Options& options) {
   std::set<std::string> given;  // "" from a pipe, which is the only one of its print [require_sinogram_of]
   for (const std::string& input : options.inputs) given.insert(input == "-" ? "" : io::sha256_of(input));

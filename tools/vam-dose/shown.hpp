@@ -36,6 +36,10 @@ void take_full_scale(Options& options);
                                               const std::optional<double>& full_scale, const model::StackInfo& info,
                                               const model::Printer& printer);
 
+/// How often each row is shown in that many turns that begin with the first one, over their mean; empty for whole
+/// turns.
+[[nodiscard]] std::vector<double> shares_of(double turns, int rows);
+
 /// Throws Fault::usage where a run of --shown showed a sinogram that is not given: the dose would lack its light.
 void require_all_sinograms(const Options& options);
 

@@ -53,7 +53,8 @@ class StackSource : public ImageSource {
 class VideoSource : public ImageSource {
  public:
   explicit VideoSource(const std::string& path) : reader_(path) {
-    info_ = frames_of(reader_.format().width, reader_.format().height, count_video_frames(path));
+    times_s_ = video_frame_times(path);
+    info_ = frames_of(reader_.format().width, reader_.format().height, count_of(times_s_) - 1);
     if (!reader_.format().facts.empty()) take_frame_facts(reader_.format().facts, info_, path);
     const double fps = reader_.format().fps, made_for = model::stated_number(info_.extra, "vam:fps").value_or(fps);
     constexpr double same = 1e-3;
@@ -68,11 +69,11 @@ class VideoSource : public ImageSource {
     if (!reader_.next(grey)) return false;
     image = fractions(grey);
     about = {};
-    about.has_time = reader_.format().fps > 0;
-    if (about.has_time) about.time_s = taken_ / reader_.format().fps;
-    ++taken_;
+    about.has_time = true;
+    about.time_s = times_s_[std::min(taken_++, times_s_.size() - 1)];
     return true;
   }
+  [[nodiscard]] std::vector<double> times_s() const override { return times_s_; }
   [[nodiscard]] bool is_grey() const override { return true; }
   [[nodiscard]] bool is_sealed() const override { return reader_.format().seal.has_value(); }
   [[nodiscard]] std::string seal() const override {
@@ -85,7 +86,8 @@ class VideoSource : public ImageSource {
   VideoReader reader_;
   model::StackInfo info_;
   std::vector<model::ImageInfo> about_;
-  int taken_ = 0;
+  std::vector<double> times_s_;
+  std::size_t taken_ = 0;
 };
 
 // frames.csv of vam-project beside the images: file,time_s,angle_deg, a line an image. Empty when there is none.

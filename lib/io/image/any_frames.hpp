@@ -24,6 +24,8 @@ class ImageSource {
   /// The facts of every image, where they are known before the first is read; else empty.
   [[nodiscard]] virtual const std::vector<model::ImageInfo>& about() const = 0;
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
+  /// Of a video: when each is shown, and when the last one ends [video_frame_times()]; empty for others.
+  [[nodiscard]] virtual std::vector<double> times_s() const { return {}; }
   /// Are the values grey levels, which a projector's response makes intensities of?
   [[nodiscard]] virtual bool is_grey() const { return false; }
   /// True if all of it has hashes, which are verified on reading.

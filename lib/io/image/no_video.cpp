@@ -30,6 +30,6 @@ VideoReader::~VideoReader() = default;
 const VideoFormat& VideoReader::format() const { return state_->format; }
 bool VideoReader::next(GreyImage&) { return false; }
 
-int count_video_frames(const std::string& path) { throw no_video(Fault::no_input, path); }
+std::vector<double> video_frame_times(const std::string& path) { throw no_video(Fault::no_input, path); }
 
 }  // namespace vam::io

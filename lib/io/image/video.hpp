@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/pixels.hpp"
 #include "io/stream/seal.hpp"
@@ -50,8 +51,8 @@ class VideoWriter {
 };
 
 /// Reads the first video stream, front to back, as grey: colour as luma, limited range (black 16, white 235 of 255, as
-/// of H.264 that states nothing else) widened to the full one, in 16 bits. Throws Error: no_input, data (no video,
-/// truncated, a pixel format that is not read).
+/// of H.264 that states nothing else) widened to the full one, in 16 bits; turned as the video states that it is to be
+/// shown. Throws Error: no_input, data (no video, truncated, a pixel format that is not read).
 class VideoReader {
  public:
   explicit VideoReader(const std::string& path);
@@ -62,12 +63,14 @@ class VideoReader {
   bool next(GreyImage& frame);
 
  private:
-  friend int count_video_frames(const std::string& path);
+  friend std::vector<double> video_frame_times(const std::string& path);
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// Frames of the first video stream, counted without decoding them. Throws as VideoReader does.
-int count_video_frames(const std::string& path);
+/// When each frame of the first video stream is shown, in s since the first one, and when the last one ends, without
+/// decoding them; times that a container rounds are even ones where those are within its unit. Throws as VideoReader
+/// does.
+[[nodiscard]] std::vector<double> video_frame_times(const std::string& path);
 
 }  // namespace vam::io

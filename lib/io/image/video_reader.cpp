@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <optional>
 
+#include "base/index.hpp"
 #include "base/text/format_version.hpp"
 #include "io/image/private/av_library.hpp"
 #include "io/image/private/matroska.hpp"
@@ -79,6 +81,28 @@ SliceState judged_slices(const std::uint8_t* bytes, std::size_t size, bool check
   return right ? SliceState::right : SliceState::wrong;
 }
 
+// How players turn what is stored: pixel (x, y) to (a x + c y, b x + d y), but for a shift.
+struct Turn {
+  int a = 1, b = 0, c = 0, d = 1;
+};
+
+// Nine numbers, those of the turn in 1/65536 [libavutil/display.h].
+Turn turn_of(const AVStream& stream, const std::string& path) {
+  std::size_t size = 0;
+  const std::uint8_t* stated = av::api().av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
+  std::array<std::int32_t, 9> matrix{};
+  if (stated == nullptr || size < sizeof matrix) return {};
+  std::memcpy(matrix.data(), stated, sizeof matrix);
+  constexpr int one = 1 << 16;
+  const Turn turn{matrix[0] / one, matrix[1] / one, matrix[3] / one, matrix[4] / one};
+  const bool whole = std::all_of(matrix.begin(), matrix.begin() + 5, [](int value) { return value % one == 0; });
+  const auto [a, b, c, d] = turn;
+  if (whole && a * a + b * b == 1 && c * c + d * d == 1 && std::abs(a * d - b * c) == 1) return turn;
+  throw Error{Fault::data, path +
+                               ": is to be shown turned by no multiple of 90 degrees, or scaled; write it as it is "
+                               "to be shown"};
+}
+
 }  // namespace
 
 struct VideoReader::State {
@@ -86,6 +110,7 @@ struct VideoReader::State {
   VideoFormat format;
   std::string version;  // empty: not stated
   PixelLayout layout;
+  Turn turn;
   AVFormatContext* container = nullptr;
   int stream = -1;
   av::Codec codec;
@@ -117,8 +142,9 @@ struct VideoReader::State {
     codec.reset(av::api().avcodec_alloc_context3(decoder));
     check(av::api().avcodec_parameters_to_context(codec.get(), found.codecpar), "video decoder");
     check(av::api().avcodec_open2(codec.get(), decoder, nullptr), "video decoder");
-    format.width = codec->width;
-    format.height = codec->height;
+    turn = turn_of(found, path);
+    format.width = turn.a != 0 ? codec->width : codec->height;
+    format.height = turn.a != 0 ? codec->height : codec->width;
     layout = layout_of(codec->pix_fmt);
     format.bits = layout.bits;
     format.fps = av_q2d(found.avg_frame_rate);
@@ -243,11 +269,14 @@ bool VideoReader::next(GreyImage& image) {
     return false;
   }
   const bool narrow = s.is_narrow();
-  image = GreyImage(s.frame->width, s.frame->height, narrow ? 16 : s.format.bits);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
+  const auto [a, b, c, d] = s.turn;
+  const int columns = s.frame->width, rows = s.frame->height;
+  image = GreyImage(a != 0 ? columns : rows, a != 0 ? rows : columns, narrow ? 16 : s.format.bits);
+  const int left = a + c < 0 ? image.width - 1 : 0, top = b + d < 0 ? image.height - 1 : 0;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
       const std::uint16_t level = s.level(x, y);
-      image(x, y) = narrow ? widened(level, s.layout.stored_bits) : level;
+      image(left + a * x + c * y, top + b * x + d * y) = narrow ? widened(level, s.layout.stored_bits) : level;
     }
   }
   if (s.read) s.read->add(VideoSeal::of(image));
@@ -255,11 +284,27 @@ bool VideoReader::next(GreyImage& image) {
   return true;
 }
 
-int count_video_frames(const std::string& path) {
+std::vector<double> video_frame_times(const std::string& path) {
   VideoReader reader(path);
-  int count = 0;
-  for (; reader.state_->read_packet(); ++count) av::api().av_packet_unref(reader.state_->packet.get());
-  return count;
+  VideoReader::State& s = *reader.state_;
+  const double tick_s = av_q2d(s.container->streams[s.stream]->time_base),
+               period_s = s.format.fps > 0 ? 1 / s.format.fps : 0;
+  std::vector<double> times_s;
+  double end_s = 0;
+  for (; s.read_packet(); av::api().av_packet_unref(s.packet.get())) {
+    const bool timed = s.packet->pts != AV_NOPTS_VALUE;
+    times_s.push_back(timed ? tick_s * static_cast<double>(s.packet->pts) : period_s * count_of(times_s));
+    const double shown_s = s.packet->duration > 0 ? tick_s * static_cast<double>(s.packet->duration) : period_s;
+    end_s = std::max(end_s, times_s.back() + shown_s);
+  }
+  times_s.push_back(end_s);
+  std::sort(times_s.begin(), times_s.end());
+  const double first_s = times_s.front();
+  for (int n = 0; n < count_of(times_s); ++n) {
+    const double even_s = n * period_s, time_s = times_s[n] - first_s;
+    times_s[n] = std::abs(time_s - even_s) < 1.5 * tick_s ? even_s : time_s;
+  }
+  return times_s;
 }
 
 }  // namespace vam::io

@@ -32,8 +32,8 @@ extern "C" {
 #define VAM_AVFORMAT_FUNCTIONS(X)                                                                                     \
   X(av_find_best_stream) X(av_interleaved_write_frame) X(av_read_frame) X(av_write_trailer)                           \
   X(avformat_alloc_output_context2) X(avformat_close_input) X(avformat_find_stream_info) X(avformat_free_context)     \
-  X(avformat_new_stream) X(avformat_open_input) X(avformat_write_header) X(avio_alloc_context) X(avio_context_free)   \
-  X(avio_flush)
+  X(av_stream_get_side_data) X(avformat_new_stream) X(avformat_open_input) X(avformat_write_header)                   \
+  X(avio_alloc_context) X(avio_context_free) X(avio_flush)
 // clang-format on
 
 namespace vam::io::av {
