@@ -4,6 +4,7 @@ reader.
 
     exr.py make FILE [key=value...]   a sinogram stack; keys: count width height pixel row space kind step value reach
                                       printer (vam:printer; none) full_scale shown_turns (vam:...)
+    exr.py image FILE width height LEVEL   one image alone, as other programs write it; LEVEL is an expression of x and y
     exr.py sum FILE                   "parts width height sum" of a stack written to a pipe
     exr.py get FILE part column row   one pixel
     exr.py attr FILE name             one attribute of part 0
@@ -31,8 +32,8 @@ def printer(job):
         job["width"], job["pixel"], (job["width"] - 1) / 2)
 
 
-def header(index, job):
-    window = struct.pack("<4i", 0, 0, job["width"] - 1, job["height"] - 1)
+def plain(width, height):
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     channels = b"Y\0" + struct.pack("<i4B2i", 2, 0, 0, 0, 0, 1, 1) + b"\0"
     return b"".join([
         attribute("channels", "chlist", channels),
@@ -42,7 +43,20 @@ def header(index, job):
         attribute("lineOrder", "lineOrder", b"\0"),
         attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
         attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
-        attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1))])
+
+
+def image(path, width, height, level):
+    rows = [struct.pack("<2i%df" % width, y, 4 * width, *[eval(level, {"x": x, "y": y}) for x in range(width)])
+            for y in range(height)]
+    head = struct.pack("<2i", 20000630, 2) + plain(width, height) + b"\0"
+    places = [len(head) + 8 * height + y * len(rows[0]) for y in range(height)]
+    open(path, "wb").write(head + struct.pack("<%dQ" % height, *places) + b"".join(rows))
+
+
+def header(index, job):
+    return b"".join([
+        plain(job["width"], job["height"]),
         text("name", "%s%04d" % ("z" if job["kind"] == "sinogram" else "a", index)),
         text("type", "scanlineimage"),
         attribute("chunkCount", "int", struct.pack("<i", job["height"])),
@@ -144,6 +158,8 @@ def main(verb, path, *rest):
             whole = key in ("count", "width", "height")
             job[key] = value if key in ("space", "kind", "printer") else int(value) if whole else float(value)
         make(path, job)
+    elif verb == "image":
+        image(path, *map(int, rest[:2]), rest[2])
     elif verb == "sum":
         parts, rows = read(path)
         total, width, height = 0.0, 0, 0

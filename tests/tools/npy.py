@@ -5,6 +5,7 @@
                                           their place in C order, stored in order C or F
     npy.py of FILE SHAPE EXPRESSION       '<f4', of 3 axes, by an expression of the places k, j and i along them
     npy.py show FILE                      shape, then the values in C order, on one line
+    npy.py eval EXPRESSION FILE...        of v[0], v[1], ..., the values of each file in C order
     npy.py head FILE DICTIONARY           a header with that text and no values
     npy.py cuts FILE STEP                 FILE.0, FILE.STEP, ...: its beginnings
 """
@@ -44,12 +45,21 @@ def of(path, shape, expression):
         out.write(struct.pack("<%df" % len(values), *values))
 
 
-def show(path):
+def load(path):
     data = open(path, "rb").read()
     size = struct.unpack("<H", data[8:10])[0]
     about = eval(data[10:10 + size])  # written by the tool under test
-    values = struct.unpack("<%df" % math.prod(about["shape"]), data[10 + size:])
+    return about, struct.unpack("<%df" % math.prod(about["shape"]), data[10 + size:])
+
+
+def show(path):
+    about, values = load(path)
     print(*about["shape"], about["descr"], *("%g" % value for value in values))
+
+
+def evaluate(expression, *paths):
+    values = eval(expression, vars(math) | {"v": [load(path)[1] for path in paths]})
+    print(*values if isinstance(values, tuple) else [values])
 
 
 def cuts(path, step):
@@ -61,4 +71,4 @@ def cuts(path, step):
 if sys.argv[1] == "head":
     open(sys.argv[2], "wb").write(head(sys.argv[3]))
 else:
-    {"make": make, "of": of, "show": show, "cuts": cuts}[sys.argv[1]](*sys.argv[2:])
+    {"make": make, "of": of, "show": show, "eval": evaluate, "cuts": cuts}[sys.argv[1]](*sys.argv[2:])

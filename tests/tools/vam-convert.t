@@ -41,11 +41,10 @@ is 'the factor is recorded' "$(vam-check --verbose tall.vdb 2>/dev/null | grep -
 vam-convert ramp.npy --voxel 0.5 --full-scale 9 -o short.vdb 2>err
 is 'a target that is not is told' "$(grep -c 'ramp.npy: the print will be 3.7 % too short.*--stretch-z 1.038[0-9]* corrects it' err)" 1
 quiet 'as it is, if so meant' vam-convert ramp.npy --voxel 0.5 --full-scale 9 --stretch-z 1 -o short.vdb
-below() { $npy make low.npy '<f4' 1,1,2; perl -pi -e 's/\0\0\0\0\0\0\x80\x3f$/pack("f<2", '"$1"', 1)/e' low.npy; }
-below -5e-5
+$npy of low.npy 1,1,2 'i or -5e-5'
 quiet 'a value that rounding left just below 0' vam-convert low.npy --voxel 0.5 --stretch-z 1 -o low.vdb
 ok 'is taken by those that read targets' vam-sinogram low.vdb -o low.exr
-below -2e-4
+$npy of low.npy 1,1,2 'i or -2e-4'
 fails 65 "low.npy: grid 'target' has -0.0002 in voxel .0, 0, 0." vam-convert low.npy --voxel 0.5 --stretch-z 1 -o none.vdb
 $npy make one.npy '<f4' 1,3,4
 quiet 'a plane stays one, however low' vam-convert one.npy --voxel 0.5 --grid weight --stretch-z 0.1 -o low.vdb
@@ -72,24 +71,7 @@ fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.ti
 
 # Patterns of Dr.TVAM: an EXR file an angle, of intensities, the top row first.
 mkdir patterns
-python3 - <<'PY'
-import struct
-def attribute(name, kind, data):
-    return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
-w, h, n = 4, 3, 8
-box = struct.pack("<4i", 0, 0, w - 1, h - 1)
-value = lambda a, y, x: 50.0 * a + 10 * y + x
-for a in range(n):
-    head = struct.pack("<2i", 20000630, 2) + attribute(b"channels", b"chlist", b"Y\0" + struct.pack("<4i", 2, 0, 1, 1) + b"\0") \
-        + attribute(b"compression", b"compression", b"\0") + attribute(b"dataWindow", b"box2i", box) \
-        + attribute(b"displayWindow", b"box2i", box) + attribute(b"lineOrder", b"lineOrder", b"\0") \
-        + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) \
-        + attribute(b"screenWindowCenter", b"v2f", bytes(8)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
-    chunks = [struct.pack("<2i4f", y, 4 * w, *[value(a, y, x) for x in range(w)]) for y in range(h)]
-    first = len(head) + 8 * h
-    table = b"".join(struct.pack("<Q", first + y * len(chunks[0])) for y in range(h))
-    open("patterns/%04d.exr" % a, "wb").write(head + table + b"".join(chunks))
-PY
+for a in 0 1 2 3 4 5 6 7; do $exr image patterns/000$a.exr 4 3 "50.0 * $a + 10 * y + x"; done
 $npy of patterns.npy 8,3,4 '50.0 * k + 10 * (2 - j) + i'
 for how in 'parallel --pixel 0.1' 'vial --axis-column 1.5 --set projector.response=[[0,0],[0.5,0.2],[1,1]]'; do
   vam-convert patterns --geometry $how -o exr.exr
@@ -158,7 +140,6 @@ with zipfile.ZipFile("bomb.npz", "w", zipfile.ZIP_DEFLATED) as z:
 fails 65 'bomb.npz: has bytes behind its 24 values' vam-convert bomb.npz --voxel 1 -o x.vdb
 
 # Projections: a stack goes out and comes back, and its dose is the same to the byte.
-vam-slice --shape disc-grid --voxel 0.5 -o part.vdb
 vam-sinogram part.vdb --filter ram-lak --negative clip -o sino.exr
 vam-convert sino.exr -o sino.npy
 vam-convert sino.npy --geometry parallel --pixel 0.5 -o back.exr
@@ -246,20 +227,14 @@ done
 vam-convert side.mkv --view-step 1 --geometry vial --like part.vdb $set -o side.exr 2>err
 is 'which is told where it is not given' "$(sed 's/.*; //' err | sort -u)" "$(printf '%s\n' 'columns and rows look exchanged' \
   'columns and rows look exchanged: give --orientation rotate-90 or rotate-270')"
-cat >compare.py <<'PY'
-import struct, sys
-def floats(path):
-    data = open(path, "rb").read()
-    at = 10 + struct.unpack("<H", data[8:10])[0]
-    return struct.unpack("<%df" % ((len(data) - at) // 4), data[at:])
-a, b = floats(sys.argv[1]), floats(sys.argv[2])
-scale = sum(x * y for x, y in zip(a, b)) / sum(y * y for y in b)
-print(len(a) == len(b), max(abs(x - scale * y) for x, y in zip(a, b)) / max(a))
-PY
-python3 compare.py projector.npy back.npy >difference; read -r sizes worst <difference
+compare() {  # compare ONE OTHER: are they of one size, and how far is one from another beside a factor
+  $npy eval '(len(v[0]) == len(v[1]), (scale := sum(x * y for x, y in zip(*v)) / sum(y * y for y in v[1])) and
+    max(abs(x - scale * y) for x, y in zip(*v)) / max(v[0]))' "$1" "$2"
+}
+compare projector.npy back.npy >difference; read -r sizes worst <difference
 is 'doses of one size' "$sizes" True
 holds "within the 8 bits: $worst of the largest dose" "$worst < 0.004 && $worst > 0"
-python3 compare.py turned.npy back.npy >difference; read -r sizes worst <difference
+compare turned.npy back.npy >difference; read -r sizes worst <difference
 holds "turns are averaged: $worst" "$worst < 1e-5"
 
 # Slices as images: the top row at the largest y, as vam-slice has it.
@@ -269,14 +244,11 @@ for k in 0 1; do
 done
 vam-slice seen --voxel 0.5 --set projector.telecentric=true -o sliced.vdb
 vam-convert seen --voxel 0.5 -o converted.vdb
-seen() { python3 - "$VAM_SOURCE/scripts" "$1" <<'PY'
-import sys
-sys.path.insert(0, sys.argv[1])
-import vam
-values, facts = vam.read(sys.argv[2], "target")
-(_, ny, nx), (_, y, x), (step, _, _) = facts["shape"], facts["origin"], facts["spacing"]
-print(*sorted((x + i % nx * step, y + i // nx * step) for i, value in enumerate(values[:nx * ny]) if value == 1))
-PY
+seen() {  # seen VOLUME: where voxels of its first slice are full
+  vam-convert "$1" -o seen.npy
+  corner=$(vam-view "$1" --export /dev/stdout | grep -a '^space origin' | tr -dc '0-9.,-')
+  $npy eval "(n := isqrt(len(v[0]) // 2)) and tuple(sorted(
+    (($corner)[0] + i % n / 2, ($corner)[1] + i // n / 2) for i in range(n * n) if v[0][i] == 1))" seen.npy
 }
 is 'images are slices as one sees them' "$(seen converted.vdb)" '(-0.75, 0.75) (0.25, -0.25) (0.75, -0.25)'
 is 'as vam-slice reads them' "$(seen sliced.vdb)" '(-0.75, 0.75) (0.25, -0.25) (0.75, -0.25)'
@@ -295,12 +267,8 @@ film rgb.mp4 rgb24 blue -c:v libx264rgb -qp 0
 film rgb.mkv rgb24 blue -c:v ffv1 -pix_fmt bgr0
 quarters() {  # quarters FILE: the mean of each 8 rows of the first frame, in thousandths
   vam-convert "$1" --geometry parallel --pixel 0.5 --view-step 90 2>quarters.err | vam-convert >quarters.npy
-  python3 - <<'PY'
-import struct
-data = open("quarters.npy", "rb").read()[-32 * 4 * 32 * 4:]  # [slice][angle][column], slices upwards
-rows = [sum(struct.unpack_from("<32f", data, (31 - row) * 4 * 128)) / 32 for row in range(32)]
-print(*["%.0f" % (sum(rows[i:i + 8]) / 8 * 1000) for i in (0, 8, 16, 24)])
-PY
+  $npy eval 'tuple(round(125 * sum(sum(v[0][(31 - row) * 128:][:32]) / 32 for row in range(at, at + 8)))
+    for at in (0, 8, 16, 24))' quarters.npy  # [slice][angle][column], slices upwards
 }
 # Grey pixels are of the full range whatever is stated, as ffmpeg takes them.
 for name in tv.mp4 pc.mp4 grey.mkv full.mkv; do is "levels of $name" "$(quarters $name)" '0 333 667 1000'; done
@@ -344,8 +312,7 @@ middle() { vam-convert frames --geometry parallel --pixel 0.5 "$@" -o m.exr; vam
 is 'a parallel beam: the middle is the axis' "$(middle)" 'sizes: 64 360 48 spacings: 0.5 1 0.5 axis mins: -15.75 0 -11.75 '
 is 'another axis: its middle' "$(middle --axis-column 30.5 --axis-row 21)" 'sizes: 66 360 48 spacings: 0.5 1 0.5 axis mins: -16.25 0 -13 '
 fails 64 '--pixel: 0.1 mm, but projector.pixel_mm is' vam-convert frames --geometry vial --pixel 0.1 -o x.exr
-$npy make minus.npy '<f4' 1,2,3
-python3 -c 'import struct; f = open("minus.npy", "r+b"); f.seek(-4, 2); f.write(struct.pack("<f", -0.5))'
+$npy of minus.npy 1,2,3 'i - 0.5 - i * j'
 vam-convert minus.npy --geometry parallel --pixel 1 -o minus.exr 2>err
 is 'light that no projector shows is reported' "$(grep -c 'minus.npy: has values down to -0.5' err)" 1
 $npy of five.npy 1,5,1 j
@@ -384,8 +351,7 @@ for name, kept in ("all", range(4000)), ("some", [n for n in range(800) if n * n
     numpy.savetxt(name + ".times", numpy.append(kept, kept[-1] + 1) / 60)
 print(rows.shape[1])
 PY
-  size=$("$numpy" play.py)x4
-  ffmpeg -v error -f rawvideo -pix_fmt gray -s "$size" -r 60 -i all.raw -c:v ffv1 all.mkv
+  ffmpeg -v error -f rawvideo -pix_fmt gray -s "$("$numpy" play.py)x4" -r 60 -i all.raw -c:v ffv1 all.mkv
   ffmpeg -v error -i all.mkv -vf "select='lt(n,800)*lt(mod(n*n,7),3)'" -vsync vfr -c:v libx264 -qp 0 -pix_fmt yuvj420p some.mp4
   played() {  # played NAME SPEED MIDDLE TURNS: that many turns, and the dose within a thousandth of its largest value
     "$numpy" "$VAM_SOURCE/tests/oracle/video_dose.py" "${1%.*}.rows" "${1%.*}.times" "$2" "$3" 48 0.15 0.15 5 >want

@@ -15,16 +15,8 @@ quiet 'a resin that needs a ninth more' correct scatter.vdb --acted dose.vdb -o 
 is 'light may be made' "$(json report.json verdict)" go
 holds 'its sensitivity' "($(json report.json sensitivity_mean) - 0.9) ^ 2 < 0.002 ^ 2 && $(json report.json sensitivity_sigma) < 0.03"
 vam-convert delivered.vdb -o delivered.npy; vam-convert field.vdb -o field.npy
-python3 - >judged <<'PY'
-import struct
-def load(path):
-    data = open(path, "rb").read()
-    size = struct.unpack("<H", data[8:10])[0]
-    return struct.unpack("<%df" % 24 ** 3, data[10 + size:])
-off = max(abs(d - (p + 50 * (1 - 1 / s))) for d, p, s in zip(load("delivered.npy"), load("dose.npy"), load("field.npy")))
-print("%.9f" % off)
-PY
-holds 'the dose that planned light completes' "$(cat judged) < 1e-4"  # floats of 50
+judged=$($npy eval 'max(abs(d - (p + 50 * (1 - 1 / s))) for d, p, s in zip(*v))' delivered.npy dose.npy field.npy)
+holds 'the dose that planned light completes' "$judged < 1e-4"  # floats of 50
 quiet 'the turn after it' correct scatter.vdb --acted dose.vdb --before report.json -o delivered.vdb --report later.json
 holds 'is surer' "$(json later.json sensitivity_sigma) < $(json report.json sensitivity_sigma)"
 

@@ -114,12 +114,7 @@ vam-score "$@" --void-band 0.5 void.vdb --target coarse.vdb --report is.json >.l
 holds 'with a band of the void the error rate is that of vam-optimize' "($(json is.json ver) - $(json want.json ver)) ^ 2 < 1e-8"
 grep -q 'are within their bands around the target' .log/score; report $? 'and the verdict says so'
 vam-convert coarse.vdb -o coarse.npy
-python3 - <<'EOF'
-import struct
-data = open('coarse.npy', 'rb').read()
-start = 10 + struct.unpack('<H', data[8:10])[0]
-open('band.npy', 'wb').write(data[:start] + struct.pack('<f', 0.3) * ((len(data) - start) // 4))
-EOF
+$npy of band.npy "$($npy show coarse.npy | cut -d' ' -f1-3 | tr ' ' ,)" 0.3
 vam-convert band.npy --voxel 0.4 --stretch-z 1 -o band.vdb 2>.log/band
 vam-convert coarse.npy --voxel 0.4 --stretch-z 1 -o alike.vdb 2>.log/alike
 vam-optimize --grey-target --band-volume band.vdb --angles 60 --iterations 10 --report want.json alike.vdb 2>.log/optimize | vam-dose --like alike.vdb -o banded.vdb

@@ -148,12 +148,7 @@ fails 64 '--output .svg: conflicts with --plain' vam-view part.vdb --plain -o x.
 fails 64 'pixels are more than 32767 a side; reduce --image-size or --dpi' \
   vam-view part.vdb --image-size 4000 --dpi 1200 -o x.png
 vam-convert part.vdb -o part.npy
-python3 - <<'END'
-import struct
-data = open('part.npy', 'rb').read()
-start = 10 + struct.unpack('<H', data[8:10])[0]
-open('dark.npy', 'wb').write(data[:start] + bytes(len(data) - start))
-END
+$npy of dark.npy "$($npy show part.npy | cut -d' ' -f1-3 | tr ' ' ,)" 0
 vam-convert dark.npy --voxel 0.4 --stretch-z 1 --grid dose -o dark.vdb 2>.log/dark
 vam-convert part.npy --voxel 0.4 --stretch-z 1 -o lit.vdb 2>.log/lit
 fails 65 'the dose is 0 everywhere' vam-view dark.vdb --target lit.vdb --cure-map -o x.png

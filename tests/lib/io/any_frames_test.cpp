@@ -45,10 +45,6 @@ std::vector<model::ImageInfo> facts_of(ImageSource& source) {
   return all;
 }
 
-}  // namespace
-
-namespace {
-
 /// As OpenEXR writes it by default (ZIP), all channels alike.
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channels) {
   Imf::Header header(image.width, image.height);
