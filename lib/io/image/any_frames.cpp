@@ -42,7 +42,7 @@ class StackSource : public ImageSource {
  public:
   explicit StackSource(const std::string& path) : reader_(path) {}
   [[nodiscard]] const model::StackInfo& info() const override { return reader_.info(); }
-  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return reader_.about(); }
+  [[nodiscard]] std::vector<model::ImageInfo> about() const override { return reader_.about(); }
   bool next(Image& image, model::ImageInfo& about) override { return reader_.next(image, about); }
   [[nodiscard]] bool is_sealed() const override { return reader_.is_sealed(); }
 
@@ -63,7 +63,6 @@ class VideoSource : public ImageSource {
                                  format_number(made_for) + " (vam:fps); give it this rate, or write it again"};
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
-  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return about_; }
   bool next(Image& image, model::ImageInfo& about) override {
     GreyImage grey;
     if (!reader_.next(grey)) return false;
@@ -85,7 +84,6 @@ class VideoSource : public ImageSource {
  private:
   VideoReader reader_;
   model::StackInfo info_;
-  std::vector<model::ImageInfo> about_;
   std::vector<double> times_s_;
   std::size_t taken_ = 0;
 };
@@ -138,32 +136,33 @@ std::map<std::string, CaptureRecord> captured_images(const std::string& folder) 
   return records;
 }
 
-/// Images of a folder, with the angles of its index.
+/// Images of a folder, grey or one a file as Dr.TVAM writes its patterns (0000.exr, 0001.exr, ...), with the angles of
+/// its index and its facts.
 class FolderSource : public ImageSource {
  public:
+  FolderSource(const std::string& path, FolderOf of)
+      : grey_(of == FolderOf::grey),
+        folder_(path, false, of),
+        facts_(path + "/facts.txt"),
+        index_(read_frame_index(path, folder_)) {
+    if (grey_) captured_ = captured_images(path);
+    first_ = read(0);
+    info_ = frames_of(first_.width, first_.height, folder_.count());
+    if (!grey_) info_.units = "relative";
+    if (has_regular_file(facts_)) take_facts(read_all(facts_, Content::text, std::uint64_t{1} << 20));
+    if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
+  }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
-  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
+  [[nodiscard]] std::vector<model::ImageInfo> about() const override { return index_; }
+  [[nodiscard]] bool is_grey() const override { return grey_; }
   [[nodiscard]] bool is_sealed() const override { return sealed_; }
   bool next(Image& image, model::ImageInfo& about) override {
     if (taken_ == folder_.count()) return false;
     about = index_.empty() ? model::ImageInfo{} : index_[taken_];
-    image = read(taken_++);
+    image = taken_ == 0 ? std::move(first_) : read(taken_);
+    ++taken_;
     return true;
   }
-
- protected:
-  FolderSource(const std::string& path, FolderOf of)
-      : folder_(path, false, of), facts_(path + "/facts.txt"), index_(read_frame_index(path, folder_)) {}
-  /// Those of the first image, which all must have.
-  void set_size(int width, int height) {
-    info_ = frames_of(width, height, folder_.count());
-    if (has_regular_file(facts_)) take_facts(read_all(facts_, Content::text, std::uint64_t{1} << 20));
-    if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
-  }
-  virtual Image read(int i) = 0;
-
-  ImageFolder folder_;
-  model::StackInfo info_;
 
  private:
   /// Where they end in a seal, the frames are held to it, too.
@@ -184,55 +183,29 @@ class FolderSource : public ImageSource {
                                  "last line if the change was intentional"};
   }
 
-  bool sealed_ = false;
+  Image read(int i) {
+    const std::string& path = folder_.path(i);
+    if (grey_) {
+      const GreyImage levels = folder_.read(i);
+      const auto record = captured_.find(std::filesystem::path(path).filename());
+      if (record != captured_.end()) require_captured(path, record->second, levels);
+      return fractions(levels);
+    }
+    Image image = read_exr_image(path);
+    if (i == 0 || (image.width == info_.width && image.height == info_.height)) return image;
+    throw Error{Fault::data, path + ": has " + size_text(image.width, image.height) +
+                                 " pixels, but those before have " + size_text(info_.width, info_.height)};
+  }
+
+  bool grey_;
+  ImageFolder folder_;
   std::string facts_;
   std::vector<model::ImageInfo> index_;
-  int taken_ = 0;
-};
-
-class GreyFolderSource : public FolderSource {
- public:
-  explicit GreyFolderSource(const std::string& path)
-      : FolderSource(path, FolderOf::grey), captured_(captured_images(path)) {
-    const GreyImage first = folder_.read(0);
-    set_size(first.width, first.height);
-  }
-  [[nodiscard]] bool is_grey() const override { return true; }
-
- private:
-  Image read(int i) override {
-    const std::string& path = folder_.path(i);
-    const GreyImage levels = folder_.read(i);
-    const auto record = captured_.find(std::filesystem::path(path).filename());
-    if (record != captured_.end()) require_captured(path, record->second, levels);
-    return fractions(levels);
-  }
-
   std::map<std::string, CaptureRecord> captured_;
-};
-
-/// One image a file, as Dr.TVAM writes its patterns: 0000.exr, 0001.exr, ...
-class ExrFolderSource : public FolderSource {
- public:
-  explicit ExrFolderSource(const std::string& path)
-      : FolderSource(path, FolderOf::exr), first_(read_exr_image(folder_.path(0))) {
-    set_size(first_.width, first_.height);
-    info_.units = "relative";
-  }
-
- private:
-  Image read(int i) override {
-    if (i == 0) return std::move(first_);
-    const std::string& path = folder_.path(i);
-    Image image = read_exr_image(path);
-    if (image.width != info_.width || image.height != info_.height) {
-      throw Error{Fault::data, path + ": has " + size_text(image.width, image.height) +
-                                   " pixels, but those before have " + size_text(info_.width, info_.height)};
-    }
-    return image;
-  }
-
+  model::StackInfo info_;
   Image first_;
+  bool sealed_ = false;
+  int taken_ = 0;
 };
 
 }  // namespace
@@ -241,8 +214,8 @@ std::unique_ptr<ImageSource> open_images(const std::string& path, FileType type)
   if (type == FileType::video && path == "-")
     throw Error{Fault::usage, "stdin: a video is read from a file only; name it"};
   if (type == FileType::video) return std::make_unique<VideoSource>(path);
-  if (type == FileType::images && is_exr_folder(path)) return std::make_unique<ExrFolderSource>(path);
-  if (type == FileType::images) return std::make_unique<GreyFolderSource>(path);
+  if (type == FileType::images)
+    return std::make_unique<FolderSource>(path, is_exr_folder(path) ? FolderOf::exr : FolderOf::grey);
   return std::make_unique<StackSource>(path);
 }
 

@@ -22,7 +22,7 @@ class ImageSource {
   ImageSource& operator=(const ImageSource&) = delete;
   [[nodiscard]] virtual const model::StackInfo& info() const = 0;
   /// The facts of every image, where they are known before the first is read; else empty.
-  [[nodiscard]] virtual const std::vector<model::ImageInfo>& about() const = 0;
+  [[nodiscard]] virtual std::vector<model::ImageInfo> about() const { return {}; }
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
   /// Of a video: when each is shown, and when the last one ends [video_frame_times()]; empty for others.
   [[nodiscard]] virtual std::vector<double> times_s() const { return {}; }
