@@ -116,9 +116,9 @@ struct VideoReader::State {
   av::Codec codec;
   av::AvFrame frame{av::api().av_frame_alloc()};
   av::Packet packet{av::api().av_packet_alloc()};
-  std::int64_t announced = 0;  // frames; 0: not known
-  std::int64_t packets = 0;
-  double end_s = 0;               // of the last one
+  std::int64_t announced = 0;     // frames; 0: not known
+  std::vector<double> times_s;    // at which the packets so far are shown
+  double end_s = 0;               // of the last one of them
   std::optional<VideoSeal> read;  // of the frames so far, where there is a seal
   bool held = false;              // to the seal
 
@@ -171,8 +171,8 @@ struct VideoReader::State {
     }
     if (status != AVERROR_EOF) check(status, "reading the video");
     if (status >= 0) check_packet();
-    if (status < 0 && ours() && announced > 0 && packets != announced) {
-      throw Error{Fault::data, path + ": the video has " + std::to_string(packets) + " of " +
+    if (status < 0 && ours() && announced > 0 && count_of(times_s) != announced) {
+      throw Error{Fault::data, path + ": the video has " + std::to_string(times_s.size()) + " of " +
                                    std::to_string(announced) + " frames; write it again"};
     }
     if (status < 0 && !ours()) require_end();
@@ -187,21 +187,25 @@ struct VideoReader::State {
     if (announced == 0) return;
     const auto missing = std::llround((static_cast<double>(container->duration) / AV_TIME_BASE - end_s) * format.fps);
     if (missing < 1) return;
-    throw Error{Fault::data, path + ": the video ends after " + std::to_string(packets) + " frames, " +
+    throw Error{Fault::data, path + ": the video ends after " + std::to_string(times_s.size()) + " frames, " +
                                  std::to_string(missing) + " before the end that it states; write it again"};
   }
 
   void check_packet() {
-    ++packets;
+    if ((packet->flags & AV_PKT_FLAG_DISCARD) != 0) return;  // before the beginning that an MP4 states
     const double tick_s = av_q2d(container->streams[stream]->time_base);
-    const double frame_s = std::max(1 / format.fps, static_cast<double>(packet->duration) * tick_s);
-    if (packet->pts != AV_NOPTS_VALUE) end_s = std::max(end_s, static_cast<double>(packet->pts) * tick_s + frame_s);
+    const double period_s = format.fps > 0 ? 1 / format.fps : 0;
+    const bool timed = packet->pts != AV_NOPTS_VALUE;
+    times_s.push_back(timed ? tick_s * static_cast<double>(packet->pts) : period_s * count_of(times_s));
+    const double shown_s = packet->duration > 0 ? tick_s * static_cast<double>(packet->duration) : period_s;
+    end_s = std::max(end_s, times_s.back() + shown_s);
     if (codec->codec_id != AV_CODEC_ID_FFV1 || codec->extradata_size == 0) return;  // before version 3: no slices
     const auto size = static_cast<std::size_t>(packet->size);
     SliceState judged = judged_slices(packet->data, size, true);
     if (judged == SliceState::broken) judged = judged_slices(packet->data, size, false);
     if (judged == SliceState::right) return;
-    throw Error{Fault::data, path + ": frame " + std::to_string(packets - 1) + " is damaged; write the video again"};
+    throw Error{Fault::data,
+                path + ": frame " + std::to_string(times_s.size() - 1) + " is damaged; write the video again"};
   }
 
   // With the last frame, or when there is no more.
@@ -287,21 +291,13 @@ bool VideoReader::next(GreyImage& image) {
 std::vector<double> video_frame_times(const std::string& path) {
   VideoReader reader(path);
   VideoReader::State& s = *reader.state_;
-  const double tick_s = av_q2d(s.container->streams[s.stream]->time_base),
-               period_s = s.format.fps > 0 ? 1 / s.format.fps : 0;
-  std::vector<double> times_s;
-  double end_s = 0;
-  for (; s.read_packet(); av::api().av_packet_unref(s.packet.get())) {
-    const bool timed = s.packet->pts != AV_NOPTS_VALUE;
-    times_s.push_back(timed ? tick_s * static_cast<double>(s.packet->pts) : period_s * count_of(times_s));
-    const double shown_s = s.packet->duration > 0 ? tick_s * static_cast<double>(s.packet->duration) : period_s;
-    end_s = std::max(end_s, times_s.back() + shown_s);
-  }
-  times_s.push_back(end_s);
+  while (s.read_packet()) av::api().av_packet_unref(s.packet.get());
+  std::vector<double> times_s = s.times_s;
+  times_s.push_back(s.end_s);
   std::sort(times_s.begin(), times_s.end());
-  const double first_s = times_s.front();
+  const double first_s = times_s.front(), tick_s = av_q2d(s.container->streams[s.stream]->time_base);
   for (int n = 0; n < count_of(times_s); ++n) {
-    const double even_s = n * period_s, time_s = times_s[n] - first_s;
+    const double even_s = s.format.fps > 0 ? n / s.format.fps : 0, time_s = times_s[n] - first_s;
     times_s[n] = std::abs(time_s - even_s) < 1.5 * tick_s ? even_s : time_s;
   }
   return times_s;
