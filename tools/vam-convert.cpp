@@ -4,11 +4,8 @@
 #include "io/stream/input_name.hpp"
 #include "manual_page.hpp"
 #include "session/printer.hpp"
-#include "vam-convert/export.hpp"
+#include "vam-convert/conversions.hpp"
 #include "vam-convert/options.hpp"
-#include "vam-convert/pieces.hpp"
-#include "vam-convert/projections.hpp"
-#include "vam-convert/volume.hpp"
 
 namespace {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-convert/export.hpp"
-
 #include <algorithm>
 #include <vector>
 
@@ -8,6 +6,7 @@
 #include "io/array/array_writer.hpp"
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
+#include "vam-convert/conversions.hpp"
 
 namespace vam::convert_tool {
 

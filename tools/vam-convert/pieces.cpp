@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-convert/pieces.hpp"
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +8,7 @@
 #include "io/exr/stack_pieces.hpp"
 #include "io/stream/input_name.hpp"
 #include "session/slices.hpp"
+#include "vam-convert/conversions.hpp"
 
 namespace vam::convert_tool {
 

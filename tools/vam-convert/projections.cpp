@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-convert/projections.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,6 +23,7 @@
 #include "session/exposure.hpp"
 #include "session/printer.hpp"
 #include "session/volumes.hpp"
+#include "vam-convert/conversions.hpp"
 #include "vam-convert/images.hpp"
 #include "vam-convert/resliced.hpp"
 #include "vam-convert/sinograms.hpp"

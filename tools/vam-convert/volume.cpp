@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-convert/volume.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,6 +15,7 @@
 #include "io/vdb/vdb.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/magnification.hpp"
+#include "vam-convert/conversions.hpp"
 #include "vam-convert/images.hpp"
 
 namespace vam::convert_tool {
