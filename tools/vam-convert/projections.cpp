@@ -24,10 +24,8 @@
 #include "session/printer.hpp"
 #include "session/volumes.hpp"
 #include "vam-convert/conversions.hpp"
-#include "vam-convert/images.hpp"
 #include "vam-convert/resliced.hpp"
-#include "vam-convert/sinograms.hpp"
-#include "vam-convert/stage_angles.hpp"
+#include "vam-convert/slices.hpp"
 #include "vam-convert/turns.hpp"
 
 namespace vam::convert_tool {
@@ -41,32 +39,24 @@ struct Heights {
   double pitch_mm = 0;
 };
 
+Heights heights_of(const model::Grid& grid) { return {grid.nz, grid.z_mm(0), grid.voxel_mm}; }
+
 /// Where the columns of a slice go.
 struct Place {
   double shift = 0;  // to the right
   int columns = 0;
 };
 
-bool is_step_given(const Options& options) { return options.view_step_deg || options.speed_deg_s; }
-
-/// As given, measured or stated, else of a turn in all.
-std::vector<double> edges_deg(const Options& options, const Slices& slices) {
-  const StatedViews views = slices.views();
-  const int angles = slices.size().rows;
-  const std::string name = io::input_name(options.input);
-  if (options.speed_deg_s) return timed_edges_deg(views, *options.speed_deg_s, name);
-  if (!options.view_step_deg && !views.source.empty()) return stated_edges_deg(views, angles, name);
-  return even_edges_deg(angles, options.view_step_deg.value_or(360.0 / angles));
-}
-
 /// Turns as frames state them, or as the projections make where they are no turn to be repeated; 0: not known. Throws
 /// Fault::data where frames are not all that they state, as of a video that was cut, unless an option says that they
 /// are.
-session::Exposure stated_exposure(const Options& options, const model::StackInfo& stated, const model::Printer& printer,
-                                  const Turns& turns, bool plays) {
+session::Exposure stated_exposure(const Options& options, const io::ImageSource& source, const model::Printer& printer,
+                                  const Turns& turns) {
   const std::string name = io::input_name(options.input);
+  const model::StackInfo& stated = source.info();
   session::Exposure shown = session::exposure_of(name, stated, printer, 0);
-  if (!shown.planned || is_step_given(options)) {
+  if (!shown.planned || options.view_step_deg || options.speed_deg_s) {
+    const bool plays = are_angles_stated(options, source) && !source.times_s().empty();
     shown.turns = plays || turns.count() != 1 ? turns.count() : 0;
     return shown;
   }
@@ -78,24 +68,24 @@ session::Exposure stated_exposure(const Options& options, const model::StackInfo
                                " to take those that are there"};
 }
 
-/// Frames of which nothing states the step may be those of several turns, as videos often are.
-void tell_step(const Options& options, int frames, bool video) {
-  const std::string step = io::input_name(options.input) + ": " + std::to_string(frames) +
-                           " frames are taken as one turn, " + format_number(360.0 / frames, 4) +
-                           " degrees each; give --view-step" + (video ? " or --speed" : "") + " otherwise";
-  if (video) return warn(step);
-  note(step);
-}
-
-/// What they make together, and how exact the speed of the stage must be: the last one moves by half a column at the
-/// edge of the light.
-void tell_turns(const std::string& name, const Slices& slices, const Turns& turns, double axis) {
-  const double reach = std::max({axis - slices.lit().first, slices.lit().second - axis, 0.5});
-  note(name + ": " + std::to_string(slices.size().rows) + " projections in " + format_number(turns.count()) +
-       (turns.count() == 1 ? " turn" : " turns") + " from " + format_number(turns.start_deg()) + " deg, " +
-       format_number(slices.size().rows / turns.count()) + " a turn; a speed that is off by " +
-       format_number(100 * 0.5 / (turn_rad * turns.count() * reach), 2) +
-       " % moves the last one by half a column at the edge of the light");
+/// What projections make together, and how exact the speed of the stage must be: the last one moves by half a column at
+/// the edge of the light. Frames of which nothing states the step may be those of several turns, as videos often are.
+void tell_turns(const Options& options, const Slices& slices, const Turns& turns, double axis) {
+  const std::string name = io::input_name(options.input) + ": ";
+  const int count = slices.size().rows;
+  if (are_angles_stated(options, slices.source())) {
+    const double reach = std::max({axis - slices.lit().first, slices.lit().second - axis, 0.5});
+    return note(name + std::to_string(count) + " projections in " + format_number(turns.count()) +
+                (turns.count() == 1 ? " turn" : " turns") + " from " + format_number(turns.start_deg()) + " deg, " +
+                format_number(count / turns.count()) + " a turn; a speed that is off by " +
+                format_number(100 * 0.5 / (turn_rad * turns.count() * reach), 2) +
+                " % moves the last one by half a column at the edge of the light");
+  }
+  if (!slices.are_frames()) return;
+  const bool video = !slices.source().times_s().empty();
+  (video ? warn : note)(name + std::to_string(count) + " frames are taken as one turn, " +
+                        format_number(360.0 / count, 4) + " degrees each; give --view-step" +
+                        (video ? " or --speed" : "") + " otherwise");
 }
 
 double axis_column(const Options& options, const model::Projector& projector, int columns) {
@@ -154,12 +144,11 @@ Image shifted(const Image& turn, const Place& place, const std::string& name) {
   return placed;
 }
 
-model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Turns& turns,
-                         int columns, const Heights& heights, bool grey, session::Exposure shown,
-                         const model::StackInfo& stated) {
+model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer,
+                         const io::ImageSource& source, const Turns& turns, int columns, const Heights& heights) {
   model::StackInfo info;
-  info.extra = stated.extra;
-  const bool projector = options.in_vial();
+  info.extra = source.info().extra;
+  const bool projector = options.in_vial(), levels = source.is_grey() && options.units == "relative";
   info.space = projector ? model::Space::projector : model::Space::virtual_;
   info.width = columns;
   info.height = turns.rows();
@@ -169,9 +158,10 @@ model::StackInfo info_of(const cli::App& app, const Options& options, const mode
   info.z_start_mm = heights.z0_mm;
   info.angle_start_deg = turns.start_deg();
   info.angle_step_deg = 360.0 / turns.rows();
-  info.units = grey && options.units == "relative" ? "fraction of full intensity" : options.units;
+  info.units = levels ? "fraction of full intensity" : options.units;
   info.history = {app.history()};
-  if (grey && options.units == "relative") shown.full_scale = 1;
+  session::Exposure shown = stated_exposure(options, source, printer, turns);
+  if (levels) shown.full_scale = 1;
   if (shown.turns > 0 || shown.full_scale > 0) session::state_exposure(info.extra, shown.turns, shown.full_scale);
   if (projector) info.extra["vam:printer"] = io::printer_settings(printer);
   return info;
@@ -190,12 +180,12 @@ std::optional<io::SparseVolume> volume_like(const Options& options) {
 }
 
 /// Its slices, and those above and below that the projector's climbing rays light as well.
-model::Grid lit_slices(const io::SparseVolume& like, const Options& options, const model::Printer& printer) {
-  if (!options.in_vial()) return like.grid();
+Heights lit_slices(const io::SparseVolume& like, const Options& options, const model::Printer& printer) {
+  if (!options.in_vial()) return heights_of(like.grid());
   const double radius_mm = optics::judged_radius_mm(printer, io::farthest_mm(like, model::coverage_rounding));
   light::Margin margin = light::lit_margin(printer, like.grid(), radius_mm);
   margin.side = 0;
-  return light::extended(like.grid(), margin);
+  return heights_of(light::extended(like.grid(), margin));
 }
 
 void warn_of_dark(const Options& options, const Heights& own, const model::Grid& grid) {
@@ -279,32 +269,30 @@ void warn_of_colour(const Options& options, double peak) {
 }  // namespace
 
 void make_projections(const cli::App& app, Options options, std::optional<io::FileType> type) {
-  auto images = open_source(options, type, "zax");
-  const model::StackInfo stated = images->stated();
+  Slices slices(options, type, "zax");
+  const io::ImageSource& source = slices.source();
+  const model::Metadata& stated = source.info().extra;
   const std::string name = io::input_name(options.input);
-  model::Printer printer = session::printer_of(options.printer, stated.extra, name);
+  model::Printer printer = session::printer_of(options.printer, stated, name);
   printer.stage.speed_deg_s = std::abs(options.speed_deg_s.value_or(printer.stage.speed_deg_s));
-  if (!app.given("--orientation") && stated.extra.contains("vam:printer"))
+  if (!app.given("--orientation") && stated.contains("vam:printer"))
     options.orientation = printer.projector.orientation;
-  const bool frames = images->are_frames();
-  const bool grey = images->are_grey();
-  Slices slices(std::move(images), options, printer);
-  const Turns turns(edges_deg(options, slices), options.speed_deg_s.has_value(), name);
+  const bool frames = slices.are_frames();
+  if (frames) slices.collect(options, printer);
+  const io::ArraySize size = slices.size();
+  const Turns turns(stage_edges_deg(options, source, size.rows), options.speed_deg_s.has_value(), name);
   if (turns.blurred()) printer.stage.motion = "stepped";  // the width of held frames is in the rows
-  const bool known = is_step_given(options) || !slices.views().source.empty();
-  const bool video = type == io::FileType::video;
-  if (frames && !known) tell_step(options, slices.size().rows, video);
-  const session::Exposure shown = stated_exposure(options, stated, printer, turns, video && known);
-  const Place place = place_columns(options, printer.projector, slices.size().columns);
-  const std::optional<io::SparseVolume> like = volume_like(options);
-  std::optional<model::Grid> grid;
-  if (like) grid = lit_slices(*like, options, printer);
-  const Heights own = own_heights(options, printer.projector, slices.size().images, frames);
-  if (like) warn_of_dark(options, own, like->grid());
-  Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
-  const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
-  io::StackWriter out(options.output,
-                      info_of(app, options, printer, turns, place.columns, heights, grey, shown, stated),
+  tell_turns(options, slices, turns, axis_column(options, printer.projector, size.columns));
+  const Place place = place_columns(options, printer.projector, size.columns);
+  const Heights own = own_heights(options, printer.projector, size.images, frames);
+  Heights heights = own;
+  if (const std::optional<io::SparseVolume> like = volume_like(options)) {
+    heights = lit_slices(*like, options, printer);
+    warn_of_dark(options, own, like->grid());
+  }
+  Resliced resliced(slices, heights.count, (heights.z0_mm - own.z0_mm) / own.pitch_mm, heights.pitch_mm / own.pitch_mm,
+                    true);
+  io::StackWriter out(options.output, info_of(app, options, printer, source, turns, place.columns, heights),
                       options.stack);
   Image slice;
   float least = 0;
@@ -316,9 +304,8 @@ void make_projections(const cli::App& app, Options options, std::optional<io::Fi
   }
   warn_of_negative(options, least);
   warn_of_light(options, resliced.left_out(), place_remedy(options, slices, printer.projector, frames));
-  if (grey && !options.full_scale) warn_of_colour(options, slices.peak());
-  if (frames) warn_of_size(options, slices.size(), printer.projector);
-  if (known) tell_turns(name, slices, turns, axis_column(options, printer.projector, slices.size().columns));
+  if (source.is_grey() && !options.full_scale) warn_of_colour(options, slices.peak());
+  if (frames) warn_of_size(options, size, printer.projector);
   out.commit();
 }
 

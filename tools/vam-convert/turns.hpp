@@ -6,15 +6,25 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "io/image/any_frames.hpp"
+#include "vam-convert/options.hpp"
 
 namespace vam::convert_tool {
 
+/// Do options or the frames state over which stage angles they are shown?
+[[nodiscard]] bool are_angles_stated(const Options& options, const io::ImageSource& from);
+
+/// Over which stage angles each projection is shown: from edge n to edge n + 1, not wrapped. By --speed as long as a
+/// video shows it; in the middle of even steps, as given, stated or of one turn in all; by frames.csv until half way to
+/// the next, the shorter way. Throws Fault::usage for a speed without times, Fault::data for what is no angle.
+[[nodiscard]] std::vector<double> stage_edges_deg(const Options& options, const io::ImageSource& from, int projections);
+
 class Turns {
  public:
-  /// Rows in the median step of the projections, whose edges stage_angles.hpp has, from the first projection on, and
-  /// from the last one on where they are backwards and no whole number of turns; finer ones, at least 720 a turn, where
-  /// they are `held` while the stage turns, or begin between rows. Throws Fault::data that begins with `name` where the
-  /// stage turns back, and for less than 0.9 of a turn.
+  /// Rows in the median step of the projections, from the first one on, and from the last one on where they are
+  /// backwards and no whole number of turns; finer ones, at least 720 a turn, where they are `held` while the stage
+  /// turns, or begin between rows. Throws Fault::data that begins with `name` where the stage turns back, and for less
+  /// than 0.9 of a turn.
   Turns(const std::vector<double>& edges_deg, bool held, const std::string& name);
 
   /// Is light of a projection on all rows that the stage passes meanwhile?
@@ -32,7 +42,6 @@ class Turns {
     int projection, row;
     float rows;
   };
-  void add(int projection, double from, double to);
   std::vector<Share> shares_;
   std::vector<float> shown_;  // times that each row is passed
   bool blurred_ = false;

@@ -16,7 +16,7 @@
 #include "model/dose/dose_metrics.hpp"
 #include "model/magnification.hpp"
 #include "vam-convert/conversions.hpp"
-#include "vam-convert/images.hpp"
+#include "vam-convert/resliced.hpp"
 
 namespace vam::convert_tool {
 
@@ -34,61 +34,12 @@ model::Grid grid_of(const Options& options, const io::ArraySize& size, double st
   return grid;
 }
 
-Image upside_down(const Image& image) {
-  Image turned(image.width, image.height);
-  for (int y = 0; y < image.height; ++y) std::copy_n(image.row(y), image.width, turned.row(image.height - 1 - y));
-  return turned;
-}
-
 void require_voxels(const std::string& name, const model::Grid& grid) {
   constexpr int most = 65536;
   if (std::max({grid.nx, grid.ny, grid.nz}) <= most) return;
   throw Error{Fault::data, name + ": has " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " x " +
                                std::to_string(grid.nz) + " voxels; up to 65536 along an axis are read"};
 }
-
-/// The slices of an array, upwards; where it is stretched, linear between its own.
-class StretchedSlices {
- public:
-  StretchedSlices(Images& images, const std::string& name, double stretch_z, int count)
-      : images_(images), name_(name), last_(images.size().images - 1), step_(1 / stretch_z) {
-    start_ = 0.5 * (last_ - (count - 1) * step_);
-  }
-
-  void next(Image& slice) {
-    const double place = std::clamp(start_ + done_++ * step_, 0.0, static_cast<double>(last_));
-    const int low = std::min(static_cast<int>(place), std::max(last_ - 1, 0));
-    const auto share = static_cast<float>(place - low);
-    while (taken_ <= std::min(low + 1, last_)) take();
-    slice = share == 1 || last_ == 0 ? high_ : low_;
-    if (share == 0 || share == 1) return;
-    for (std::size_t i = 0; i < slice.size(); ++i) slice.values[i] += share * (high_.values[i] - slice.values[i]);
-  }
-  /// Those that no slice needed are read, too, and with them whether the array is whole.
-  void finish() {
-    while (taken_ <= last_) take();
-  }
-
- private:
-  void take() {
-    std::swap(low_, high_);
-    if (!images_.next(high_)) {
-      throw Error{Fault::data, name_ + ": ends after " + std::to_string(taken_) + " of " + std::to_string(last_ + 1) +
-                                   " slices; it is incomplete"};
-    }
-    if (images_.are_frames()) high_ = upside_down(high_);  // row 0 is at the top, voxels begin at the least y
-    ++taken_;
-  }
-
-  Images& images_;
-  std::string name_;
-  int last_;
-  double step_;
-  double start_ = 0;
-  int done_ = 0;
-  int taken_ = 0;
-  Image low_, high_;  // the two that were taken last
-};
 
 // Prints are lower than their targets by the projector's vertical magnification, for which vam-slice has stretched
 // them.
@@ -136,13 +87,14 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
                  const model::Printer& printer) {
   constexpr int slab = 8;
   const std::string height = height_doubt(options, printer);
-  const auto in = open_source(options, type, "zyx");
-  const std::string edges = voxel_doubt(options, in->voxel_mm());
+  Slices in(options, type, "zyx");
+  const std::string edges = voxel_doubt(options, in.source().info().pixel_mm);
   const double stretch_z = options.stretch_z.value_or(1);
-  const model::Grid grid = grid_of(options, in->size(), stretch_z);
+  const model::Grid grid = grid_of(options, in.size(), stretch_z);
   require_voxels(options.input, grid);
   io::SparseVolume volume(options.grid.empty() ? "target" : options.grid, grid);
-  StretchedSlices slices(*in, options.input, stretch_z, grid.nz);
+  const double first = 0.5 * (in.size().images - 1 - (grid.nz - 1) / stretch_z);
+  Resliced slices(in, grid.nz, first, 1 / stretch_z, false);
   std::vector<float> values;
   float most = 0;
   Image image;
@@ -158,7 +110,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
     most = std::max(most, *std::max_element(values.begin(), values.end()));
     progress.tick(count);
   }
-  slices.finish();
+  slices.left_out();
   io::require_usable(options.input, volume, io::TargetKind::grey);
   volume.units = options.units;
   volume.history = {app.history()};

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-convert/sinograms.hpp"
+#include "vam-convert/slices.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/index.hpp"
+#include "io/stream/input_name.hpp"
 #include "optics/projector_frames.hpp"
 #include "session/printer.hpp"
 
@@ -17,6 +19,24 @@ struct Slices::Lit {
 };
 
 namespace {
+
+class ArraySource : public io::ImageSource {
+ public:
+  ArraySource(const Options& options, const std::string& letters)
+      : reader_(options.input, {options.array, axes_of(options, letters)}) {
+    const io::ArraySize size = reader_.size();
+    info_.count = size.images;
+    info_.height = size.rows;
+    info_.width = size.columns;
+    info_.pixel_mm = reader_.voxel_mm();
+  }
+  [[nodiscard]] const model::StackInfo& info() const override { return info_; }
+  bool next(Image& image, model::ImageInfo&) override { return reader_.next(image); }
+
+ private:
+  io::ArrayReader reader_;
+  model::StackInfo info_;
+};
 
 /// Intensity of every 16-bit level; nothing where the response is not known, and taken to be linear.
 std::vector<float> intensities(const Options& options, const model::Printer& printer) {
@@ -34,41 +54,50 @@ void respond(const std::vector<float>& table, Image& image) {
   }
 }
 
-/// The image turned by 90 degrees, as one sees it: row 0 is at the top.
-Image quarter_turned(const Image& image, bool clockwise) {
-  Image turned(image.height, image.width);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      if (clockwise) turned(image.height - 1 - y, x) = image(x, y);
-      if (!clockwise) turned(y, image.width - 1 - x) = image(x, y);
-    }
-  }
-  return turned;
-}
-
 /// As it was before it was turned for the projector.
 void upright(Image& frame, const std::string& orientation) {
-  if (orientation == "rotate-90") frame = quarter_turned(frame, false);
-  if (orientation == "rotate-270") frame = quarter_turned(frame, true);
-  optics::orient(frame, orientation);
+  if (orientation == "rotate-90" || orientation == "rotate-270") {
+    Image back(frame.height, frame.width);
+    for (int y = 0; y < frame.height; ++y) {
+      for (int x = 0; x < frame.width; ++x) back(y, frame.width - 1 - x) = frame(x, y);
+    }
+    frame = std::move(back);
+  }
+  optics::orient(frame, orientation == "rotate-270" ? "rotate-180" : orientation);
 }
 
 }  // namespace
 
-Slices::Slices(std::unique_ptr<Images> images, const Options& options, const model::Printer& printer)
-    : images_(std::move(images)), size_(images_->size()), lit_columns_(0, size_.columns - 1) {
-  if (images_->are_frames()) collect(options, printer);
+Slices::Slices(const Options& options, std::optional<io::FileType> type, const std::string& letters)
+    : name_(io::input_name(options.input)), full_scale_(options.full_scale.value_or(1)), frames_(type.has_value()) {
+  if (type) source_ = io::open_images(options.input, *type);
+  if (!type) source_ = std::make_unique<ArraySource>(options, letters);
+  const model::StackInfo& info = source_->info();
+  size_ = {info.count, info.height, info.width};
+  lit_columns_ = {0, info.width - 1};
 }
 
 Slices::~Slices() = default;
 
-io::ArraySize Slices::size() const { return size_; }
+bool Slices::take(Image& image) {
+  model::ImageInfo about;
+  const int count = source_->info().count;
+  if (!source_->next(image, about)) {
+    if (taken_ >= count) return false;
+    throw Error{Fault::data, name_ + ": ends after " + std::to_string(taken_) + " of " + std::to_string(count) +
+                                 " images; it is incomplete"};
+  }
+  ++taken_;
+  const auto factor = static_cast<float>(1 / full_scale_);
+  for (float& value : image.values) value *= factor;
+  return true;
+}
 
 void Slices::collect(const Options& options, const model::Printer& printer) {
-  const std::vector<float> table = images_->are_grey() ? intensities(options, printer) : std::vector<float>{};
+  const std::vector<float> table = source_->is_grey() ? intensities(options, printer) : std::vector<float>{};
   std::pair<int, int> lit{65536, 0};
   Image frame;
-  while (images_->next(frame)) {
+  while (take(frame)) {
     peak_ = std::max(peak_, *std::max_element(frame.values.begin(), frame.values.end()));
     upright(frame, options.orientation);
     respond(table, frame);
@@ -88,7 +117,11 @@ void Slices::collect(const Options& options, const model::Printer& printer) {
 }
 
 bool Slices::next(Image& slice) {
-  if (lit_.empty()) return images_->next(slice);
+  if (lit_.empty()) {
+    if (!take(slice)) return false;
+    if (frames_) optics::orient(slice, "flip-rows");  // voxels begin at the least y
+    return true;
+  }
   if (done_ == size_.images) return false;
   slice = Image(size_.columns, size_.rows);
   for (int a = 0; a < size_.rows; ++a) {
