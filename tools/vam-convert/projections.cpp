@@ -56,8 +56,7 @@ session::Exposure stated_exposure(const Options& options, const io::ImageSource&
   const model::StackInfo& stated = source.info();
   session::Exposure shown = session::exposure_of(name, stated, printer, 0);
   if (!shown.planned || options.view_step_deg || options.speed_deg_s) {
-    const bool plays = are_angles_stated(options, source) && !source.times_s().empty();
-    shown.turns = plays || turns.count() != 1 ? turns.count() : 0;
+    shown.turns = shown.planned || options.speed_deg_s || turns.count() != 1 ? turns.count() : 0;
     return shown;
   }
   const double per_turn = stated.count / turns.count(), frames = shown.turns * per_turn;
