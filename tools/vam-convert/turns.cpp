@@ -113,9 +113,9 @@ Turns::Turns(const std::vector<double>& edges_deg, bool held, const std::string&
   for (int n = 0; n < projections; ++n) {
     const auto [from, to] =
         std::minmax({on_edge((edges_deg[n] - origin) / row_deg), on_edge((edges_deg[n + 1] - origin) / row_deg)});
-    for (double row = std::floor(from); row < to; ++row) {
-      const auto passed = static_cast<float>(std::min(row + 1, to) - std::max(row, from));
-      const int at = static_cast<int>(row - this->rows() * std::floor(row / this->rows()));
+    for (int row = floor_int(from); row < to; ++row) {
+      const auto passed = static_cast<float>(std::min(row + 1.0, to) - std::max<double>(row, from));
+      const int at = (row % this->rows() + this->rows()) % this->rows();
       shares_.push_back({n, at, passed});
       shown_[at] += passed;
     }
