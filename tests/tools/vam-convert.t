@@ -352,7 +352,7 @@ for name, kept in ("all", range(4000)), ("some", [n for n in range(800) if n * n
 print(rows.shape[1])
 PY
   ffmpeg -v error -f rawvideo -pix_fmt gray -s "$("$numpy" play.py)x4" -r 60 -i all.raw -c:v ffv1 all.mkv
-  ffmpeg -v error -i all.mkv -vf "select='lt(n,800)*lt(mod(n*n,7),3)'" -vsync vfr -c:v libx264 -qp 0 -pix_fmt yuvj420p some.mp4
+  ffmpeg -v error -i all.mkv -vf "select='lt(n,800)*lt(mod(n*n,7),3)'" -vsync vfr -c:v libx264 -qp 0 -pix_fmt yuvj420p -video_track_timescale 60 some.mp4
   played() {  # played NAME SPEED MIDDLE TURNS: that many turns, and the dose within a thousandth of its largest value
     "$numpy" "$VAM_SOURCE/tests/oracle/video_dose.py" "${1%.*}.rows" "${1%.*}.times" "$2" "$3" 48 0.15 0.15 5 >want
     quiet "$1 at $2 deg/s" vam-convert "$1" --geometry parallel --pixel 0.15 --like half.vdb --speed "$2" -o played.exr

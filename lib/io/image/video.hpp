@@ -69,8 +69,8 @@ class VideoReader {
 };
 
 /// When each frame of the first video stream is shown, in s since the first one, and when the last one ends, without
-/// decoding them; times that a container rounds are even ones where those are within its unit. Throws as VideoReader
-/// does.
+/// decoding them; even ones where a container rounds all of these to a unit much shorter than a frame. Throws as
+/// VideoReader does.
 [[nodiscard]] std::vector<double> video_frame_times(const std::string& path);
 
 }  // namespace vam::io

@@ -296,10 +296,11 @@ std::vector<double> video_frame_times(const std::string& path) {
   times_s.push_back(s.end_s);
   std::sort(times_s.begin(), times_s.end());
   const double first_s = times_s.front(), tick_s = av_q2d(s.container->streams[s.stream]->time_base);
-  for (int n = 0; n < count_of(times_s); ++n) {
-    const double even_s = s.format.fps > 0 ? n / s.format.fps : 0, time_s = times_s[n] - first_s;
-    times_s[n] = std::abs(time_s - even_s) < 1.5 * tick_s ? even_s : time_s;
-  }
+  for (double& time_s : times_s) time_s -= first_s;
+  const int count = count_of(times_s);
+  bool rounded = s.format.fps > 0 && 8 * tick_s * s.format.fps < 1;  // else frames that were left out look alike
+  for (int n = 0; n < count; ++n) rounded = rounded && std::abs(times_s[n] - n / s.format.fps) < 1.5 * tick_s;
+  for (int n = 0; n < count && rounded; ++n) times_s[n] = n / s.format.fps;
   return times_s;
 }
 
