@@ -56,12 +56,11 @@ struct Valley {
   Line line;
 };
 
-// Where the misfit between two values is lowest; to 1e-6 of what it varies by.
+// Where the misfit between two values is lowest; to 2e-6 of itself, and 5e-7.
 template <class Misfit>
 double lowest(const Misfit& misfit, double low, double high) {
   constexpr int bits = 20;
-  return low + boost::math::tools::brent_find_minima([&](double up) { return misfit(low + up); }, 0.0, high - low, bits)
-                   .first;
+  return boost::math::tools::brent_find_minima(misfit, low, high, bits).first;
 }
 
 Valley valley_between(const BlinkScan& scan, double rise_s, double low_s, double high_s) {
