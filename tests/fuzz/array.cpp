@@ -4,10 +4,8 @@
 #include <cstring>
 
 #include "fuzz/fuzz.hpp"
+#include "io/array/private/array_formats.hpp"
 #include "io/array/private/array_parser.hpp"
-#include "io/array/private/npy_head.hpp"
-#include "io/array/private/npz.hpp"
-#include "io/array/private/nrrd_head.hpp"
 #include "io/image/tiff_pages.hpp"
 
 namespace {

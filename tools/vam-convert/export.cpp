@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/log/progress.hpp"
-#include "io/array/array_writer.hpp"
+#include "io/array/array_file.hpp"
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
 #include "vam-convert/conversions.hpp"

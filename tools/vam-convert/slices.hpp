@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "io/array/array_reader.hpp"
+#include "io/array/array_file.hpp"
 #include "io/image/any_frames.hpp"
 #include "model/printer.hpp"
 #include "vam-convert/options.hpp"

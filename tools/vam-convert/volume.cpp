@@ -9,7 +9,7 @@
 #include "base/log/log.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
-#include "io/array/array_reader.hpp"
+#include "io/array/array_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"

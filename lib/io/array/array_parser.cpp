@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "io/array/private/values.hpp"
 #include "io/stream/finite.hpp"
 
 namespace vam::io::arrays {

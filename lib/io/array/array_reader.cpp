@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/array/array_reader.hpp"
-
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -15,11 +13,9 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/system_error.hpp"
+#include "io/array/array_file.hpp"
+#include "io/array/private/array_formats.hpp"
 #include "io/array/private/array_parser.hpp"
-#include "io/array/private/hdf5_array.hpp"
-#include "io/array/private/npy_head.hpp"
-#include "io/array/private/npz.hpp"
-#include "io/array/private/nrrd_head.hpp"
 #include "io/image/tiff_pages.hpp"
 #include "io/stream/sandboxed_reader.hpp"
 #include "io/stream/signature.hpp"
@@ -99,7 +95,6 @@ struct ArrayReader::State {
     const std::uint64_t length = held ? bytes.size() : file.size();
     const bool packed = held || mapped;
     const std::uint64_t unpacked = packed ? std::min(most_ratio * length, memory_left() / 2) : 0;
-    images_memory = memory_left() / 8;
     apart.emplace(Foreign{file.name(), length, file.descriptor(), unpacked},
                   [this, &options](Sender& out) { parse(options, out); });
     apart->take([this](Receiver& in) { take_size(in); });
@@ -133,17 +128,16 @@ struct ArrayReader::State {
       set_shape({pages.pages(), pages.rows(), pages.columns()}, head);
       return send({head, std::move(values), options.axes}, out);
     }
-    if (format == Format::hdf5) return parse_hdf5(options, out);
+    if (format == Format::hdf5) {
+      const std::string_view all = map == nullptr ? std::string_view(bytes) : std::string_view(map.get(), file.size());
+      arrays::Head head;
+      Bytes values = arrays::open_hdf5(all, options.name, file.name(), head);
+      return send({head, std::move(values), options.axes}, out);
+    }
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); });
     double stated_mm = 0;
     const arrays::Head head = format == Format::npy ? take_npy_head(front) : take_nrrd_head(front, stated_mm);
     send({head, std::move(front), options.axes}, out, stated_mm);
-  }
-
-  void parse_hdf5(const ArrayOptions& options, Sender& out) {
-    const std::string_view all = map == nullptr ? std::string_view(bytes) : std::string_view(map.get(), file.size());
-    arrays::Hdf5Images array = arrays::open_hdf5(all, options, images_memory, file.name());
-    send({array.head, arrays::Bytes(std::move(array.read)), {0, 1, 2}}, out);
   }
 
   // What a child sends is not believed.
@@ -162,7 +156,6 @@ struct ArrayReader::State {
   std::string bytes;
   std::shared_ptr<const char> map;
   std::optional<SandboxedReader> apart;
-  std::uint64_t images_memory = 0;  // for those that are held at a time
   ArraySize size;
   double voxel_mm = 0;
   int done = 0;

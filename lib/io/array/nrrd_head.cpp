@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/array/private/nrrd_head.hpp"
-
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -11,6 +9,7 @@
 #include "base/text/format_version.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "io/array/private/array_formats.hpp"
 
 namespace vam::io::arrays {
 

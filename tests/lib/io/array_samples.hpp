@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/array/array_reader.hpp"
+#include "io/array/array_file.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"
 

@@ -2,10 +2,9 @@
 // NumPy arrays, whose bytes are put together here by the format's description (numpy.lib.format).
 #include <limits>
 
-#include "io/array/array_reader.hpp"
-#include "io/array/array_writer.hpp"
+#include "io/array/array_file.hpp"
+#include "io/array/private/array_formats.hpp"
 #include "io/array/private/array_parser.hpp"
-#include "io/array/private/npy_head.hpp"
 #include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes of other programs, put together here by their formats' descriptions: NRRD (teem), TIFF 6.0.
-#include "io/array/array_reader.hpp"
+#include "io/array/array_file.hpp"
 #include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "io/array/private/array_bytes.hpp"
-#include "io/array/private/array_head.hpp"
+#include "io/array/private/array.hpp"
 
 namespace vam::io::arrays {
 

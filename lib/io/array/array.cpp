@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/array/private/values.hpp"
+#include "io/array/private/array.hpp"
 
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 namespace vam::io::arrays {
 
@@ -62,6 +62,30 @@ void real_to_floats(const Head& head, const char* bytes, std::size_t count, floa
 
 }  // namespace
 
+std::string shape_text(const std::vector<std::uint64_t>& shape) {
+  std::string text;
+  for (const std::uint64_t size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
+  return text.empty() ? "one number" : text;
+}
+
+void set_shape(const std::vector<std::uint64_t>& shape, Head& head) {
+  if (shape.size() != 2 && shape.size() != 3) {
+    throw std::runtime_error("has " + std::to_string(shape.size()) + " axes" +
+                             (shape.empty() ? "" : " (" + shape_text(shape) + ")") + "; arrays of 2 or 3 are read");
+  }
+  head.shape = {1, shape[shape.size() - 2], shape.back()};
+  if (shape.size() == 3) head.shape[0] = shape[0];
+  for (const std::uint64_t size : shape) {
+    if (size == 0) throw std::runtime_error("is an empty array (" + shape_text(shape) + ")");
+    if (size > most_side) {
+      throw std::runtime_error("has " + shape_text(shape) + " values; up to 65536 along an axis are read");
+    }
+  }
+  if (head.values() > most_values) {
+    throw std::runtime_error("has " + shape_text(shape) + " values; up to 2^40 are read");
+  }
+}
+
 void to_floats(const Head& head, const char* bytes, std::size_t count, float* to) {
   if (head.kind == 'f') return real_to_floats(head, bytes, count, to);
   if (head.kind == 'b')  // any byte but 0 is true, as in NumPy
@@ -70,6 +94,34 @@ void to_floats(const Head& head, const char* bytes, std::size_t count, float* to
   if (head.bytes == 2) return whole_to_floats<std::uint16_t, std::int16_t>(head, bytes, count, to);
   if (head.bytes == 4) return whole_to_floats<std::uint32_t, std::int32_t>(head, bytes, count, to);
   whole_to_floats<std::uint64_t, std::int64_t>(head, bytes, count, to);
+}
+
+void Bytes::take(void* to, std::size_t size) {
+  const std::size_t got = read_(to, size);
+  taken_ += got;
+  if (got == size) return;
+  throw std::runtime_error("is cut off after " + std::to_string(taken_) +
+                           " bytes; the program that wrote it did not finish");
+}
+
+std::string Bytes::line() {
+  constexpr std::size_t most_line = 1 << 16;
+  std::string text;
+  for (char next = 0;;) {
+    take(&next, 1);
+    if (next == '\n') break;
+    text += next;
+    if (text.size() > most_line) {
+      throw std::runtime_error("its header is damaged: a line has more than 65536 characters");
+    }
+  }
+  if (text.ends_with('\r')) text.pop_back();
+  return text;
+}
+
+bool Bytes::ended() {
+  char more = 0;
+  return read_(&more, 1) == 0;
 }
 
 }  // namespace vam::io::arrays

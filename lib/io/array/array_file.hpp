@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays of other programs as images one after the other: NumPy's .npy and .npz, HDF5, NRRD as vam-view writes it,
-// TIFF of several pages.
+// TIFF of several pages; and those that NumPy reads.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
 
 #include "base/image.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
@@ -25,7 +27,7 @@ struct ArrayOptions {
 
 /// Reads an array of 2 or 3 axes front to back, parsed in a child; what is not finite as float is refused. Where
 /// images, rows and columns are the array's own order, in constant memory (.npz, TIFF and HDF5 from a pipe: that of the
-/// file); else all of it is held (HDF5: what memory allows). "-" is stdin. Throws Error: no_input, io, data (none of
+/// file); else all of it is held. "-" is stdin. Throws Error: no_input, io, data (none of
 /// these, truncated, damaged, objects, another number of axes, too large, not finite), usage (no array of that name),
 /// absent (libhdf5).
 class ArrayReader {
@@ -41,6 +43,19 @@ class ArrayReader {
  private:
   struct State;
   std::unique_ptr<State> state_;
+};
+
+/// Writes images as .npy of little-endian floats, one after the other; size.images of them must follow. "-" is stdout.
+/// A file appears at commit(). Throws Error: no_output, io.
+class ArrayWriter {
+ public:
+  ArrayWriter(const std::string& path, const ArraySize& size);
+  /// `count` values, row by row.
+  void write(const float* values, std::size_t count);
+  void commit();
+
+ private:
+  OutputFile file_;
 };
 
 }  // namespace vam::io

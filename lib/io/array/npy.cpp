@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/array/private/npy_head.hpp"
-
+// NumPy's arrays, bare (.npy) and in zip archives (.npz).
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <stdexcept>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/text/printable.hpp"
+#include "base/text/text.hpp"
+#include "io/array/array_file.hpp"
+#include "io/array/private/array_formats.hpp"
 
-namespace vam::io::arrays {
+namespace vam::io {
+
+namespace arrays {
 
 namespace {
 
@@ -91,6 +97,24 @@ std::vector<std::uint64_t> taken_shape(Literals& text) {
   return shape;
 }
 
+constexpr std::string_view ending = ".npy";
+
+std::string chosen(const ZipArchive& archive, const std::string& name, const std::string& file) {
+  std::vector<std::string> names;
+  for (const std::string& all : archive.names()) {
+    if (all.ends_with(ending)) names.push_back(all.substr(0, all.size() - ending.size()));
+  }
+  if (names.empty()) throw Error{Fault::data, file + ": is a zip archive without an array (.npy)"};
+  if (name.empty() && names.size() == 1) return names.front();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  constexpr std::size_t most = 8;
+  std::vector<std::string> some;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) some.push_back(briefly(names[i]));
+  const std::string has = "holds " + std::to_string(names.size()) + " arrays (" + join(some, ", ") + ")";
+  throw Error{Fault::usage,
+              file + ": " + has + (name.empty() ? "; name one by --array" : ", but none is called " + printable(name))};
+}
+
 }  // namespace
 
 Head take_npy_head(Bytes& bytes) {
@@ -140,6 +164,19 @@ Head parse_npy_head(std::string_view text) {
   return head;
 }
 
+Bytes open_array(ZipArchive& archive, const std::string& name, const std::string& file, std::uint64_t& stated) {
+  stated = archive.open(chosen(archive, name, file) + std::string(ending));
+  return Bytes([&archive](void* to, std::size_t size) { return archive.read(to, size); });
+}
+
+void require_values(const Head& head, std::uint64_t stated) {
+  const std::uint64_t promised = head.values() * static_cast<std::uint64_t>(head.bytes);
+  if (promised <= stated) return;
+  throw std::runtime_error("is cut off: its header promises " + std::to_string(promised) +
+                           " bytes, but the archive has " + std::to_string(stated) +
+                           "; the program that wrote it did not finish");
+}
+
 std::string head_of_floats(const std::array<int, 3>& shape) {
   std::string text = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(shape[0]) + ", " +
                      std::to_string(shape[1]) + ", " + std::to_string(shape[2]) + "), }";
@@ -150,4 +187,17 @@ std::string head_of_floats(const std::array<int, 3>& shape) {
   return std::string(npy_magic) + '\1' + '\0' + static_cast<char>(size & 255) + static_cast<char>(size >> 8) + text;
 }
 
-}  // namespace vam::io::arrays
+}  // namespace arrays
+
+static_assert(std::endian::native == std::endian::little, "the header states little-endian");
+
+ArrayWriter::ArrayWriter(const std::string& path, const ArraySize& size) : file_(path) {
+  file_.require_space(1.0 * sizeof(float) * size.images * size.rows * size.columns);
+  file_.write(arrays::head_of_floats({size.images, size.rows, size.columns}));
+}
+
+void ArrayWriter::write(const float* values, std::size_t count) { file_.write(values, count * sizeof *values); }
+
+void ArrayWriter::commit() { file_.commit(); }
+
+}  // namespace vam::io

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to the array files: what every format comes down to, in the process that parses it: the type of the numbers,
+// how they lie, and their bytes front to back. Throws std::runtime_error, to stand behind the file's name.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vam::io::arrays {
+
+inline constexpr std::uint64_t most_side = 1 << 16;       // values along an axis
+inline constexpr std::uint64_t most_image = 1ULL << 28;   // values of a slice
+inline constexpr std::uint64_t most_values = 1ULL << 40;  // of all
+
+/// The type of its values and their order.
+struct Head {
+  char kind = 'f';  // b, i, u or f
+  int bytes = 4;    // of a value: 1, 2, 4 or 8
+  bool big_endian = false;
+  bool fortran = false;                  // the first axis is the fastest
+  std::array<std::uint64_t, 3> shape{};  // a plane is one slice
+  [[nodiscard]] std::uint64_t values() const { return shape[0] * shape[1] * shape[2]; }
+};
+
+/// "3 x 4"; "one number" where there are no axes.
+[[nodiscard]] std::string shape_text(const std::vector<std::uint64_t>& shape);
+
+/// Two axes or three, the slowest first. Throws for another number of axes, an empty axis, sizes beyond the limits.
+void set_shape(const std::vector<std::uint64_t>& shape, Head& head);
+
+/// `count` values of the head's type as floats; what is too large for a float becomes infinite.
+void to_floats(const Head& head, const char* bytes, std::size_t count, float* to);
+
+class Bytes {
+ public:
+  /// `read(to, size)` returns fewer only at the end.
+  using Read = std::function<std::size_t(void*, std::size_t)>;
+  explicit Bytes(Read read) : read_(std::move(read)) {}
+
+  /// Throws where fewer are left.
+  void take(void* to, std::size_t size);
+  /// Up to and without the next line feed, and without a carriage return before it. Throws as take() for a line of
+  /// more than 64 KiB.
+  [[nodiscard]] std::string line();
+  [[nodiscard]] bool ended();
+
+ private:
+  Read read_;
+  std::size_t taken_ = 0;
+};
+
+}  // namespace vam::io::arrays
