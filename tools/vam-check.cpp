@@ -15,7 +15,6 @@
 #include "io/settings/printer_file.hpp"
 #include "io/settings/resumption.hpp"
 #include "io/settings/sealed_text.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-convert: data of other programs, and from these tools to others; pieces of stacks.
 #include "io/stream/file_type.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "session/printer.hpp"
 #include "vam-convert/conversions.hpp"

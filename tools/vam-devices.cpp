@@ -14,7 +14,7 @@
 #include "device/open/off.hpp"
 #include "device/port/lines.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "manual_page.hpp"
 #include "model/device_schemes.hpp"
 #include "session/printer.hpp"

@@ -11,7 +11,6 @@
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/grid_size.hpp"

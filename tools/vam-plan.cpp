@@ -6,7 +6,7 @@
 
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/conditions.hpp"

@@ -7,7 +7,6 @@
 #include "io/exr/stack.hpp"
 #include "io/image/frame_sink.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"

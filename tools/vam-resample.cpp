@@ -13,7 +13,6 @@
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "optics/crossed_slices.hpp"

@@ -8,7 +8,6 @@
 #include "base/error.hpp"
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"

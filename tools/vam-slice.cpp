@@ -15,7 +15,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "light/grids/lit_grid.hpp"

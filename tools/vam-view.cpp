@@ -8,7 +8,7 @@
 #include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "manual_page.hpp"
 #include "model/metadata.hpp"

@@ -9,7 +9,7 @@
 #include "base/compute/memory.hpp"
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
-#include "io/vdb/covered.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 #include "model/light_width.hpp"

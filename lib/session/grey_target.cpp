@@ -5,7 +5,7 @@
 #include "base/log/log.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "model/dose/grey_share.hpp"
 #include "model/metadata.hpp"
 

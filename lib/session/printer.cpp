@@ -6,9 +6,9 @@
 #include "base/log/log.hpp"
 #include "base/printer_path.hpp"
 #include "base/text/text.hpp"
+#include "io/settings/csv_table.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
-#include "io/settings/response_file.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::session {

@@ -7,7 +7,7 @@
 #include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "solid/voxel/isosurface.hpp"
 

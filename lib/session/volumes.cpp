@@ -7,7 +7,7 @@
 #include "base/index.hpp"
 #include "base/log/log.hpp"
 #include "base/text/printable.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "model/grid_place.hpp"
 #include "model/metadata.hpp"
 

@@ -2,9 +2,9 @@
 // Records in JSON: calibrations, resins, and the logs of prints and captures.
 #include "fuzz/fuzz.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "io/settings/csv_table.hpp"
 #include "io/settings/flip_log.hpp"
-#include "io/settings/pose_file.hpp"
-#include "io/settings/resin_record.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "model/printer.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

@@ -2,8 +2,6 @@
 // Tables: a response, poses, and any columns.
 #include "fuzz/fuzz.hpp"
 #include "io/settings/csv_table.hpp"
-#include "io/settings/pose_file.hpp"
-#include "io/settings/response_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const fuzz::File file(fuzz::text_of(bytes, size));

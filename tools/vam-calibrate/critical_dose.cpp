@@ -8,7 +8,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "cli/common.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
 #include "metrology/compare/surface_dose.hpp"
 #include "model/metadata.hpp"

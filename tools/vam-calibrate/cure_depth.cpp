@@ -11,7 +11,7 @@
 #include "base/text/text.hpp"
 #include "cli/common.hpp"
 #include "io/settings/csv_table.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/plot.hpp"
 #include "plot/save.hpp"

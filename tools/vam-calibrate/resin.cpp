@@ -5,7 +5,7 @@
 
 #include "base/text/json.hpp"
 #include "io/image/view_source.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/cure/threshold.hpp"
 #include "vam-calibrate/figures.hpp"

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/stats/median.hpp"
 #include "base/text/json.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "metrology/cure/curing_curve.hpp"
 #include "model/metadata.hpp"
 #include "session/volumes.hpp"

@@ -17,7 +17,7 @@
 #include "device/os/interrupt.hpp"
 #include "device/port/lines.hpp"
 #include "io/image/image_file.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "session/printer.hpp"
 #include "vam-capture/recording.hpp"
 #include "vam-capture/sinks.hpp"

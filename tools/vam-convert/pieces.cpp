@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "cli/common.hpp"
 #include "io/exr/stack_pieces.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "session/slices.hpp"
 #include "vam-convert/conversions.hpp"
 

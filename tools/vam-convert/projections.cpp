@@ -14,7 +14,7 @@
 #include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
 #include "light/grids/lit_grid.hpp"

@@ -9,7 +9,7 @@
 #include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::convert_tool {
 

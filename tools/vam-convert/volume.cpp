@@ -10,7 +10,7 @@
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
 #include "io/array/array_file.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/dose/dose_metrics.hpp"

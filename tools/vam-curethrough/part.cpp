@@ -6,7 +6,7 @@
 
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "model/metadata.hpp"
 

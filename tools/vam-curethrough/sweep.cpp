@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "session/printer.hpp"
 #include "vam-curethrough/figures.hpp"

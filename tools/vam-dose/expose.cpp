@@ -16,7 +16,7 @@
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "light/blur/blur_stream.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/simulation/dose_stream.hpp"

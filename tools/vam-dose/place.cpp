@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "io/settings/pose_file.hpp"
+#include "io/settings/csv_table.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "light/grids/dose_grid.hpp"
 #include "light/grids/lit_grid.hpp"
 #include "light/grids/poses.hpp"

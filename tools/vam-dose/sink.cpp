@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "io/vdb/covered.hpp"
+#include "io/vdb/vdb.hpp"
 #include "light/operators/insert.hpp"
 
 namespace vam::dose_tool {

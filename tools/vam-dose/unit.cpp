@@ -10,7 +10,7 @@
 #include "base/log/log.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/absolute_dose.hpp"

@@ -13,7 +13,7 @@
 #include "io/exr/stack.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/recorded_tolerances.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"

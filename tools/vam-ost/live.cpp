@@ -11,7 +11,7 @@
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "device/os/event_log.hpp"
-#include "io/image/view_queue.hpp"
+#include "io/image/view_source.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/ost/sliding_turn.hpp"
 #include "model/conditions.hpp"

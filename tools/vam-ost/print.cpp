@@ -8,7 +8,7 @@
 #include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
-#include "io/settings/resin_record.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "metrology/cure/projection_sheet.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/save.hpp"

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
 #include "session/surface.hpp"

@@ -8,7 +8,7 @@
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/printer_match.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "model/light_width.hpp"
 
 namespace vam::project {

@@ -10,7 +10,7 @@
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
 #include "io/image/frame_sink.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "session/printer.hpp"
 
 namespace vam::project {

@@ -12,7 +12,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "io/image/any_frames.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "model/metadata.hpp"
 #include "optics/slice_place.hpp"
 #include "session/printer.hpp"

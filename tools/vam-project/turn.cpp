@@ -12,7 +12,7 @@
 #include "base/log/log.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "optics/flatland_movie.hpp"
 #include "vam-project/match.hpp"
 

@@ -13,7 +13,6 @@
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
-#include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::report_tool {

@@ -9,7 +9,7 @@
 #include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/view_source.hpp"
-#include "io/settings/report.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "metrology/compare/emboss.hpp"
 #include "model/conditions.hpp"
 #include "plot/contour.hpp"

@@ -11,7 +11,6 @@
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
-#include "io/settings/report.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/plot.hpp"

@@ -10,7 +10,7 @@
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "session/surface.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "solid/wrap/wrap.hpp"

@@ -17,8 +17,8 @@
 #include "io/array/private/array_formats.hpp"
 #include "io/array/private/array_parser.hpp"
 #include "io/image/tiff_pages.hpp"
+#include "io/stream/file_type.hpp"
 #include "io/stream/sandboxed_reader.hpp"
-#include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "base/text/printable.hpp"
-#include "io/exr/private/rows.hpp"
 
 namespace vam::io::exr {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/exr/private/rows.hpp"
-
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
 
@@ -10,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 #include <vector>
+
+#include "io/exr/private/format.hpp"
 
 namespace vam::io::exr {
 

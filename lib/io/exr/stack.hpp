@@ -78,4 +78,8 @@ class StackWriter {
 void require(const std::string& path, const model::StackInfo& info, model::Kind kind, model::Space space);
 void require(const std::string& path, const model::StackInfo& info, model::Kind kind);
 
+/// Row 0 at the top; values as they are. Parsed in a child. Throws Error: no_input, io, data (no EXR, damaged, several
+/// channels without Y, a pixel that is not a finite number).
+[[nodiscard]] Image read_exr_image(const std::string& path);
+
 }  // namespace vam::io

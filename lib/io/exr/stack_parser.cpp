@@ -14,8 +14,8 @@
 #include "base/index.hpp"
 #include "base/text/format_version.hpp"
 #include "io/exr/private/attributes.hpp"
-#include "io/exr/private/intensities.hpp"
-#include "io/stream/signature.hpp"
+#include "io/exr/private/layout.hpp"
+#include "io/stream/file_type.hpp"
 
 namespace vam::io::exr {
 

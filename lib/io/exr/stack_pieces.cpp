@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "base/log/progress.hpp"
 #include "io/exr/private/attributes.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/seal.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 

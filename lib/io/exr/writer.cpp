@@ -18,7 +18,7 @@
 #include "base/text/text.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/format.hpp"
-#include "io/exr/private/intensities.hpp"
+#include "io/exr/private/layout.hpp"
 #include "io/exr/private/seals.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/finite.hpp"

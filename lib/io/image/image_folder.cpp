@@ -1,21 +1,124 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folders of numbered images, in the order of their numbers.
+// Images are decoded in a child, folders of numbered ones in the order of their numbers, several by one child.
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <numeric>
 #include <span>
+#include <string>
+#include <system_error>
+#include <tuple>
+#include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/pixels.hpp"
 #include "base/system_error.hpp"
 #include "io/image/image_file.hpp"
-#include "io/image/private/image_batch.hpp"
+#include "io/image/private/decoders.hpp"
+#include "io/stream/sandboxed_reader.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
 namespace {
+
+// The largest image, as libtiff and GreyImage have it.
+constexpr std::uint64_t most_unpacked = max_pixels * (sizeof(std::uint32_t) + sizeof(std::uint16_t));
+
+struct File {
+  std::string name;
+  std::string bytes;
+};
+
+bool is_png(const std::string& bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+
+bool is_tiff(const std::string& bytes) {
+  using namespace std::string_literals;
+  return bytes.starts_with("II*\0"s) || bytes.starts_with("MM\0*"s);
+}
+
+File read_file(const std::string& path) {
+  File file{input_name(path), read_all(path, Content::binary, std::uint64_t{1} << 30)};
+  if (is_png(file.bytes) || is_tiff(file.bytes)) return file;
+  throw Error{Fault::data, file.name + ": neither PNG nor TIFF; convert it first"};
+}
+
+// Those after the first that cannot be read are left to a batch that begins with them.
+std::vector<File> read_files(std::span<const std::string> paths) {
+  constexpr std::size_t most_files = 128;
+  constexpr std::size_t most_bytes = std::size_t{1} << 26;
+  std::vector<File> files{read_file(paths.front())};
+  std::size_t bytes = files.front().bytes.size();
+  for (std::size_t i = 1; i < std::min(paths.size(), most_files); ++i) {
+    std::error_code unknown;
+    const std::uintmax_t more = std::filesystem::file_size(paths[i], unknown);
+    if (unknown || bytes + more > most_bytes) break;
+    try {
+      files.push_back(read_file(paths[i]));
+    } catch (const Error&) {
+      break;
+    }
+    bytes += files.back().bytes.size();
+  }
+  return files;
+}
+
+std::uint64_t size_of(const std::vector<File>& files) {
+  std::uint64_t bytes = 0;
+  for (const File& file : files) bytes += file.bytes.size();
+  return bytes;
+}
+
+auto members(GreyImage& image) { return std::tie(image.width, image.height, image.bits, image.values); }
+
+void send(GreyImage image, Sender& out) {
+  out.put(members(image));
+  out.flush();
+}
+
+// What a child sends is not believed.
+bool plausible(const GreyImage& image) {
+  return image.width > 0 && image.height > 0 && (image.bits == 8 || image.bits == 16) &&
+         product(image.width, image.height) == image.values.size();
+}
+
+/// Reads the files and starts a child that decodes one after the other, ahead of who takes them.
+class ImageBatch {
+ public:
+  /// Takes the first path and those after it that can be read, up to 128 files of together 64 MiB. Throws what
+  /// read_all() throws of the first, and what SandboxedReader does.
+  explicit ImageBatch(std::span<const std::string> paths) : ImageBatch(read_files(paths)) {}
+  [[nodiscard]] int count() const { return count_; }
+  /// The next one, `count` times. Errors of a batch of several name its first file, and the child's bounds are those of
+  /// them all: read_image() tells which of them is damaged, and how.
+  [[nodiscard]] GreyImage next() {
+    GreyImage image;
+    apart_.take([&](Receiver& in) { in.fill(members(image)); });
+    if (!plausible(image)) throw Error{Fault::data, name_ + ": is damaged (its parser failed)"};
+    if (++taken_ == count_) apart_.finish();
+    return image;
+  }
+
+ private:
+  // The child has the bytes, too, so that they end here.
+  explicit ImageBatch(const std::vector<File>& files)
+      : name_(files.front().name),
+        count_(count_of(files)),
+        apart_({name_, size_of(files), -1, most_unpacked}, [&](Sender& out) {
+          for (const File& file : files) {
+            send(is_png(file.bytes) ? decode_png(file.bytes, file.name) : decode_tiff(file.bytes, file.name), out);
+          }
+        }) {}
+
+  std::string name_;
+  int count_;
+  int taken_ = 0;
+  SandboxedReader apart_;
+};
 
 namespace fs = std::filesystem;
 
@@ -144,6 +247,26 @@ GreyImage ImageFolder::read(int index) {
                                  std::to_string(width_) + " x " + std::to_string(height_)};
   }
   return image;
+}
+
+Image fractions(const GreyImage& grey) {
+  Image image(grey.width, grey.height);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    image.values[i] = static_cast<float>(grey.values[i]) / static_cast<float>(grey.full());
+  }
+  return image;
+}
+
+GreyImage read_image(const std::string& path) { return ImageBatch(std::span(&path, 1)).next(); }
+
+void require_png(const std::string& bytes, const std::string& name) {
+  read_apart(
+      {name, bytes.size(), -1, most_unpacked},
+      [&](Sender& out) {
+        (void)decode_png(bytes, name);
+        out.put(true);
+      },
+      [](Receiver& in) { (void)in.get<bool>(); });
 }
 
 }  // namespace vam::io

@@ -11,7 +11,6 @@
 #include "base/text/format_version.hpp"
 #include "io/image/private/av_library.hpp"
 #include "io/image/private/matroska.hpp"
-#include "io/image/private/video_seal.hpp"
 #include "io/image/video.hpp"
 
 namespace vam::io {

@@ -15,7 +15,6 @@
 #include "io/image/private/av_library.hpp"
 #include "io/image/private/ffv1.hpp"
 #include "io/image/private/matroska.hpp"
-#include "io/image/private/video_seal.hpp"
 #include "io/image/video.hpp"
 #include "io/stream/stream.hpp"
 

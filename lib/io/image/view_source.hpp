@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Camera views from wherever they are kept: an EXR frame stack (also a live stream of them), a folder of vam-capture or
-// of numbered images, or a video. Frames that a camera delivered in part are left out, each with a warning.
+// of numbered images, or a video, also read ahead. Frames that a camera delivered in part are left out, each with a
+// warning.
 #pragma once
 
+#include <condition_variable>
+#include <deque>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/image.hpp"
@@ -41,5 +47,31 @@ class ViewSource {
 
 /// One image or the mean of all images of a stack, for dark and flat fields.
 [[nodiscard]] Image read_field(const std::string& path);
+
+/// A thread of its own reads frames into a queue of at most 512 MiB (and 8 frames at least); when it is full the writer
+/// waits, so no frame is lost or left out. Destroyed before the end of the source it waits for the frame in progress.
+class ViewQueue {
+ public:
+  explicit ViewQueue(ViewSource& source);
+  ~ViewQueue();
+  ViewQueue(const ViewQueue&) = delete;
+  ViewQueue& operator=(const ViewQueue&) = delete;
+
+  /// The next frame; false after the last. Throws what the source threw, in its turn.
+  bool next(CameraFrame& frame);
+  /// Frames that wait now.
+  [[nodiscard]] int waiting();
+
+ private:
+  void read(ViewSource& source);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<CameraFrame> frames_;
+  std::exception_ptr failure_;
+  bool ended_ = false;
+  bool stop_ = false;
+  std::thread thread_;
+};
 
 }  // namespace vam::io

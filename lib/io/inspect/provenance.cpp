@@ -21,10 +21,8 @@
 #include "io/settings/run_sums.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/seal.hpp"
-#include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 

@@ -14,9 +14,8 @@
 #include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "io/mesh/private/formats.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/file_type.hpp"
 #include "io/stream/sandboxed_reader.hpp"
-#include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/settings/private/printer_end.hpp"
 
 #include <algorithm>
 #include <vector>

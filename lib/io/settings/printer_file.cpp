@@ -21,10 +21,9 @@
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
 #include "io/settings/calibration_record.hpp"
-#include "io/settings/private/printer_end.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/sealed_text.hpp"
-#include "io/stream/signature.hpp"
+#include "io/stream/file_type.hpp"
 
 namespace vam::io {
 

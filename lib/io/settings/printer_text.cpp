@@ -10,7 +10,6 @@
 #include "base/text/format_version.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/private/printer_end.hpp"
 #include "io/settings/private/printer_fields.hpp"
 
 namespace vam::io {

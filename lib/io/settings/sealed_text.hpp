@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records and frozen printer files bear a seal, too: io/stream/seal.hpp. A text without one is taken as it is.
+// Reports, and records and frozen printer files, which bear a seal, too: io/stream/seal.hpp. A text without one is
+// taken as it is.
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 
+#include "base/text/format_version.hpp"
 #include "base/text/json_fwd.hpp"
 
 namespace vam::io {
@@ -20,5 +23,16 @@ bool require_seal(const Json& object, const std::string& name);
 [[nodiscard]] std::string sealed_text(std::string text);
 /// Throws Fault::data where the text ends in such a line and differs. True when it ends in one.
 bool require_text_seal(const std::string& text, const std::string& name);
+
+/// Writes {"schema": "<tool>/<version>", ...figures}; units are in the keys. Nothing when path is empty; "-" is stdout.
+/// Throws Error: no_output, io.
+void write_report(const std::string& path, FormatKind schema, const Json& figures);
+
+/// The gelation threshold I_p in the record that vam-calibrate resin or working-curve wrote. Throws Error: no_input,
+/// data (not such a record, or its isovalue is not above 0).
+[[nodiscard]] double gelation_isovalue(const std::string& path);
+
+/// A JSON file of one of these schemas, its seal held to. Throws Error: no_input, data.
+[[nodiscard]] Json sealed_record(const std::string& path, std::initializer_list<FormatKind> schemas);
 
 }  // namespace vam::io

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace vam::io {
 
@@ -29,5 +30,12 @@ void require_content(const std::string& path);
 
 /// Where a mesh may stand as well: is it a volume? Throws Fault::no_input.
 [[nodiscard]] bool is_volume(const std::string& path);
+
+/// "a NumPy array (.npy)", "compressed by gzip": fits behind "is". Empty for bytes without a known signature. 400 bytes
+/// suffice, but for XML whose root element comes later.
+[[nodiscard]] std::string foreign_format(std::string_view head);
+
+/// What makes such a file readable: "; unpack it", the end of a message. Empty where nothing does.
+[[nodiscard]] std::string foreign_remedy(std::string_view head);
 
 }  // namespace vam::io

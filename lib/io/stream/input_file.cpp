@@ -13,9 +13,7 @@
 #include "base/sha256.hpp"
 #include "base/system_error.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/input_name.hpp"
-#include "io/stream/private/endless.hpp"
-#include "io/stream/private/pipe.hpp"
+#include "io/stream/private/temporary.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

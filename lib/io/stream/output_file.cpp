@@ -12,7 +12,6 @@
 #include "base/compute/memory.hpp"
 #include "base/error.hpp"
 #include "base/system_error.hpp"
-#include "io/stream/private/pipe.hpp"
 #include "io/stream/private/temporary.hpp"
 #include "io/stream/stream.hpp"
 

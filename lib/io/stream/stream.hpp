@@ -114,4 +114,7 @@ class OutputFile {
 /// Writes a whole text; throws as OutputFile does.
 void write_text(const std::string& path, std::string_view text);
 
+/// The path, or "stdin" for "-".
+[[nodiscard]] inline std::string input_name(const std::string& path) { return path == "-" ? "stdin" : path; }
+
 }  // namespace vam::io

@@ -5,7 +5,6 @@
 
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/serialisation.hpp"
 #include "io/vdb/vdb.hpp"

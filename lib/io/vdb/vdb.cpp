@@ -17,7 +17,7 @@
 #include "base/index.hpp"
 #include "base/text/printable.hpp"
 #include "io/stream/finite.hpp"
-#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
 #include "io/vdb/private/grid.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"

@@ -9,7 +9,6 @@
 
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
-#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/grid.hpp"

@@ -8,7 +8,7 @@
 
 #include "base/text/json.hpp"
 #include "base/text/utc.hpp"
-#include "io/settings/pose_file.hpp"
+#include "io/settings/csv_table.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
 #include "lib/io/scratch.hpp"

@@ -10,7 +10,7 @@
 
 #include <utility>
 
-#include "io/exr/single_image.hpp"
+#include "io/exr/stack.hpp"
 #include "lib/io/exr_stacks.hpp"
 #include "testing.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "io/settings/csv_table.hpp"
 #include "io/settings/private/printer_fields.hpp"
-#include "io/settings/response_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"

@@ -6,7 +6,7 @@
 
 #include "base/text/json.hpp"
 #include "io/settings/calibration_record.hpp"
-#include "io/settings/pose_file.hpp"
+#include "io/settings/csv_table.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"
 

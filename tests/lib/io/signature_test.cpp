@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/stream/signature.hpp"
-
+#include "io/stream/file_type.hpp"
 #include "testing.hpp"
 
 using namespace vam;

@@ -80,4 +80,10 @@ void decode(const Imf::Header& layout, const Chunks& chunks, Image& image);
 /// stand behind the file's name: several channels without Y, sides beyond the limits; what OpenEXR throws.
 [[nodiscard]] Image decode_single(const std::string& bytes);
 
+/// Whether a chunk is a row of one channel of floats or halves that decode_rows() knows.
+[[nodiscard]] bool has_plain_rows(const Imf::Header& layout);
+
+/// decode() of such an image. Throws std::runtime_error for a row of another size.
+void decode_rows(const Imf::Header& layout, const Chunks& chunks, Image& image);
+
 }  // namespace vam::io::exr

@@ -4,13 +4,35 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "io/mesh/private/xml.hpp"
-
 namespace vam::io {
+
+/// An element that begins.
+struct XmlElement {
+  std::string_view space;  // its namespace
+  std::string_view name;   // without a prefix
+  const char** attributes;
+  /// By its name without a prefix, of whatever namespace.
+  [[nodiscard]] std::optional<std::string_view> attribute(std::string_view wanted) const;
+};
+
+struct XmlEvents {
+  std::function<void(const XmlElement&)> begin;
+  std::function<void()> end;                                                     // of the element that began last
+  std::function<void(std::string_view prefix, std::string_view space)> declare;  // xmlns:prefix, before its element
+};
+
+using ByteFeed = std::function<void(const std::function<void(std::string_view)>&)>;
+
+/// Throws MeshProblem: not well-formed, a document type declaration (entities), a tag or comment of more than 1 MiB;
+/// and what the events throw.
+void parse_xml(const ByteFeed& feed, const XmlEvents& events);
 
 inline constexpr std::uint64_t max_triangles = std::uint64_t{1} << 25;  // of a package, and of what it expands to
 

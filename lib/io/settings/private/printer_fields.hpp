@@ -52,4 +52,12 @@ void centre_axis(model::Printer& printer);
 /// that name both settings and their numbers; empty when there is none.
 [[nodiscard]] std::string contradiction(const model::Printer& printer);
 
+/// The first and the last line of a printer file that these tools write, and the last one of any that says it is whole.
+inline constexpr std::string_view printer_head =
+    "# Printer settings of the VAM tools, to the line \"# end of the settings\".";
+inline constexpr std::string_view printer_end = "# end of the settings";
+
+/// Throws Fault::data where a text has the first line, and not the last one.
+void require_own_end(std::string_view text, const std::string& subject);
+
 }  // namespace vam::io

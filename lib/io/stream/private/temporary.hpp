@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to output_file.cpp and output_folder.cpp: temporary names that vanish when the process is interrupted.
+// Private to what opens files: temporary names that vanish when the process is interrupted, pipes, endless devices.
 #pragma once
+
+#include <sys/stat.h>
 
 #include <string>
 
@@ -28,5 +30,11 @@ void synchronise_folder_of(const std::string& target);
 
 /// The name is no longer temporary.
 void forget_temporary(int slot);
+
+/// What a pipe is asked to hold, so that writer and reader seldom wait for each other.
+inline constexpr int pipe_bytes = 1 << 20;
+
+/// Throws Fault::no_input for /dev/zero, full, random and urandom. `name` begins the message.
+void require_end(const struct stat& about, const std::string& name);
 
 }  // namespace vam::io

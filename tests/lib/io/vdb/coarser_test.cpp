@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/vdb/coarser.hpp"
-
 #include <numeric>
 
+#include "io/vdb/vdb.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "testing.hpp"
 

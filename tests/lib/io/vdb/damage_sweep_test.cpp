@@ -5,9 +5,9 @@
 #include <sys/resource.h>
 
 #include "io/mesh/file.hpp"
+#include "io/settings/csv_table.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/resin_record.hpp"
-#include "io/settings/response_file.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "lib/io/box_mesh.hpp"
 #include "lib/io/cpu_time.hpp"
 #include "lib/io/vdb_volumes.hpp"

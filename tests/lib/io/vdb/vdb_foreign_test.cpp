@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "io/vdb/covered.hpp"
+#include "io/vdb/vdb.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "testing.hpp"
 
