@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "cli/app.hpp"
-#include "device/open/camera.hpp"
+#include "device/open/open.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
 #include "manual_page.hpp"
+#include "model/device_schemes.hpp"
 #include "session/printer.hpp"
 #include "vam-capture/session.hpp"
 
@@ -18,7 +19,8 @@ using capture_tool::Options;
 
 void add_camera(cli::App& app, Options& o, const std::string& heading) {
   app.group(heading);
-  app.option("--device", "DEVICE", o.device, "Camera: " + device::camera_devices() + ".").default_is("camera.device");
+  app.option("--device", "DEVICE", o.device, "Camera: " + model::forms_of(model::camera_schemes) + ".")
+      .default_is("camera.device");
   app.group(heading, {}, {"recordings"});
   app.option("--exposure", "US", o.camera.exposure_us, cli::positive, "Exposure time.")
       .default_is("camera.exposure_us");

@@ -11,7 +11,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "cli/app.hpp"
-#include "device/open/stage.hpp"
+#include "device/open/open.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"
@@ -20,6 +20,7 @@
 #include "device/stage/spin.hpp"
 #include "io/settings/printer_file.hpp"
 #include "manual_page.hpp"
+#include "model/device_schemes.hpp"
 #include "session/printer.hpp"
 
 namespace {
@@ -105,7 +106,7 @@ cli::App& add_command(cli::App& app, Options& options, const std::string& name, 
   });
   command
       .option("--device", "DEVICE", options.device,
-              "Rotation stage: " + device::stage_devices() + ", with options after a question mark.")
+              "Rotation stage: " + model::forms_of(model::stage_schemes) + ", with options after a question mark.")
       .default_is("stage.device");
   command.option("--log", "FILE", options.log,
                  "Append one JSON line per event, with UTC and monotonic time; - is standard error.");

@@ -12,7 +12,7 @@
 #include "base/log/progress.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "device/open/camera.hpp"
+#include "device/open/open.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/port/lines.hpp"

@@ -5,9 +5,7 @@
 #include <numeric>
 
 #include "base/text/json.hpp"
-#include "device/open/display.hpp"
-#include "device/open/light.hpp"
-#include "device/open/relay.hpp"
+#include "device/open/open.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"
 

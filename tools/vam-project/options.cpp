@@ -7,10 +7,10 @@
 #include <cstddef>
 
 #include "base/error.hpp"
-#include "device/open/display.hpp"
-#include "device/open/light.hpp"
+#include "device/open/open.hpp"
 #include "io/image/frame_sink.hpp"
 #include "io/stream/stream.hpp"
+#include "model/device_schemes.hpp"
 #include "session/printer.hpp"
 
 namespace vam::project {
@@ -97,7 +97,7 @@ void add_live(cli::App& app, Options& all) {
            "nothing; with --pattern only the query.")
       .excludes({"--report"});
   app.group(heading, {}, {"files"});
-  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
+  app.option("--light", "DEVICE", options.light, "Light engine: " + model::forms_of(model::light_schemes) + ".");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error. Every second it is brought to the disk.");
@@ -182,7 +182,7 @@ void refuse_unknown_display(const std::string& output) {
       output.ends_with('/') || output.ends_with(".mkv") || output.ends_with(".mp4") || output.ends_with(".exr");
   if (!scheme || file) return;
   throw Error{Fault::usage, output + ": '" + output.substr(0, colon) + "' is no kind of display; give -o " +
-                                device::display_devices() + ", or ./" + output + " for files"};
+                                model::forms_of(model::display_schemes) + ", or ./" + output + " for files"};
 }
 
 }  // namespace

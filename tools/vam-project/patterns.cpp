@@ -7,7 +7,7 @@
 
 #include "base/index.hpp"
 #include "base/text/json.hpp"
-#include "device/open/display.hpp"
+#include "device/open/open.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/image/frame_sink.hpp"
 #include "model/rows.hpp"

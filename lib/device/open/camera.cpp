@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/open/camera.hpp"
+#include "sim/cameras/camera.hpp"
 
 #include "device/camera/camera_backends.hpp"
+#include "device/open/open.hpp"
 #include "device/open/private/backends.hpp"
 #include "model/device_schemes.hpp"
-#include "sim/cameras/camera.hpp"
 
 namespace vam::device {
 
@@ -38,8 +38,6 @@ constexpr CameraBackend backends[] = {
 static_assert(model::has_schemes(backends, model::camera_schemes));
 
 }  // namespace
-
-std::string camera_devices() { return model::forms_of(model::camera_schemes); }
 
 std::unique_ptr<Camera> open_camera(const std::string& device, const CameraSettings& settings, const CameraBench& bench,
                                     Clock& clock) {

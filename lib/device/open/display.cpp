@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/open/display.hpp"
-
 #include <algorithm>
 #include <iterator>
 
+#include "device/open/open.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/projector/display_backends.hpp"
 #include "model/device_schemes.hpp"
@@ -22,8 +21,6 @@ constexpr DisplayBackend backends[] = {
 static_assert(model::has_schemes(backends, model::display_schemes));
 
 }  // namespace
-
-std::string display_devices() { return model::forms_of(model::display_schemes); }
 
 bool names_display(const std::string& output) {
   return std::any_of(std::begin(backends), std::end(backends), [&](const DisplayBackend& backend) {

@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "device/camera/camera_backends.hpp"
-#include "device/open/stage.hpp"
+#include "device/open/open.hpp"
 #include "device/os/clock.hpp"
 #include "device/port/find_ports.hpp"
 #include "device/projector/display_backends.hpp"

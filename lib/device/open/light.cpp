@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/open/light.hpp"
-
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "device/open/open.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/os/clock.hpp"
 #include "device/port/usb_kinds.hpp"
@@ -38,8 +37,6 @@ constexpr LightBackend backends[] = {{"dlpc350", open_dlp}, {"dlpc900", open_dlp
 static_assert(model::has_schemes(backends, model::light_schemes));
 
 }  // namespace
-
-std::string light_devices() { return model::forms_of(model::light_schemes); }
 
 std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent, Guardian* guardian) {
   const Address address = parse_device(device, model::light_schemes);

@@ -15,9 +15,7 @@
 #include <string>
 
 #include "base/system_error.hpp"
-#include "device/open/light.hpp"
-#include "device/open/relay.hpp"
-#include "device/open/stage.hpp"
+#include "device/open/open.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"
 #include "device/os/realtime.hpp"

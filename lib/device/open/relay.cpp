@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/open/relay.hpp"
-
+#include "device/open/open.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"

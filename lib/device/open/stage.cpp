@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/open/stage.hpp"
-
 #include "base/error.hpp"
+#include "device/open/open.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/os/lock.hpp"
 #include "device/port/serial_port.hpp"
@@ -93,8 +92,6 @@ constexpr StageBackend backends[] = {
 static_assert(model::has_schemes(backends, model::stage_schemes));
 
 }  // namespace
-
-std::string stage_devices() { return model::forms_of(model::stage_schemes); }
 
 std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian) {
   require_named(device, "stage", "gcs:/dev/ttyUSB0");

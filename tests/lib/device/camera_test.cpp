@@ -11,7 +11,7 @@
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
 #include "device/camera/private/read_clock.hpp"
-#include "device/open/camera.hpp"
+#include "device/open/open.hpp"
 #include "sim/cameras/camera.hpp"
 #include "testing.hpp"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/open/display.hpp"
-
+#include "device/open/open.hpp"
 #include "testing.hpp"
 
 using namespace vam;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which frame a screen shows: that of the stage's angle while it is on.
 #include "base/text/json.hpp"
-#include "device/open/display.hpp"
+#include "device/open/open.hpp"
 #include "device/projector/player.hpp"
 #include "device/stage/private/ripple_filter.hpp"
 #include "device/stage/spin.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A print in two parts gives the light of one in whole.
-#include "device/open/display.hpp"
+#include "device/open/open.hpp"
 #include "device/projector/player.hpp"
 #include "lib/device/steady_angle.hpp"
 #include "testing.hpp"

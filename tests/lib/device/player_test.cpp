@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/text/json.hpp"
-#include "device/open/display.hpp"
+#include "device/open/open.hpp"
 #include "device/projector/light_engine.hpp"
 #include "lib/device/steady_angle.hpp"
 #include "sim/controllers/dlp.hpp"
