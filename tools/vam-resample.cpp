@@ -15,7 +15,6 @@
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
-#include "optics/crossed_slices.hpp"
 #include "optics/ray_list.hpp"
 #include "optics/resample_stack.hpp"
 #include "session/exposure.hpp"

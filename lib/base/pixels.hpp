@@ -44,4 +44,12 @@ struct RgbImage {
   const Rgb& operator()(int x, int y) const { return values[index(x, y)]; }
 };
 
+/// Part of an image, from its left and uppermost pixel.
+struct PixelRect {
+  int left = 0;
+  int top = 0;
+  int width = 0;
+  int height = 0;
+};
+
 }  // namespace vam

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/pixel_rect.hpp"
+#include "base/pixels.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
 

@@ -5,6 +5,7 @@
 #include <iosfwd>
 
 #include "model/printer.hpp"
+#include "model/stack.hpp"
 #include "optics/resample.hpp"
 
 namespace vam::optics {
@@ -13,5 +14,10 @@ namespace vam::optics {
 /// last five are empty where a ray misses the resin. z_mm is the height in the resin at the point nearest to the axis,
 /// climb the height gained per length seen from above, as optics::SkewRay has them.
 void write_rays(std::ostream& out, const model::Printer& printer, const Detector& detector, int row);
+
+/// By how many slices the light of the outermost row that a sinogram uses departs from its own slice within the reach
+/// of its rays: max |z(u) - M_vp z_p| / (M_vp pitch) over |u| <= reach_mm, for the ray through the axis [physics §11].
+/// Rows beyond the projector's are not used. 0 where rays stay level. Throws Fault::data as projector_view does.
+[[nodiscard]] double crossed_slices(const model::Printer& printer, const model::StackInfo& info);
 
 }  // namespace vam::optics

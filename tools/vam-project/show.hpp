@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/image.hpp"
-#include "base/pixel_rect.hpp"
+#include "base/pixels.hpp"
 #include "base/text/json_fwd.hpp"
 #include "io/image/frame_sink.hpp"
 #include "model/printer.hpp"

@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "light/grids/face_blur.hpp"
+#include "light/grids/blurred_faces.hpp"
 
 namespace vam::slice_tool {
 

@@ -3,16 +3,31 @@
 #include <linux/videodev2.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <string>
 
 #include "device/camera/camera_backends.hpp"
-#include "device/camera/private/kept_sigpipe.hpp"
 #include "device/camera/v4l2_driver.hpp"
 
 namespace vam::device {
 
 namespace {
+
+// GLib's sockets, which find GigE cameras, make a process ignore SIGPIPE for good: a tool whose reader has gone (head)
+// would fail with "Broken pipe" instead of ending quietly.
+
+/// What SIGPIPE does is afterwards as it was before.
+class KeptSigpipe {
+ public:
+  KeptSigpipe() { sigaction(SIGPIPE, nullptr, &before_); }
+  ~KeptSigpipe() { sigaction(SIGPIPE, &before_, nullptr); }
+  KeptSigpipe(const KeptSigpipe&) = delete;
+  KeptSigpipe& operator=(const KeptSigpipe&) = delete;
+
+ private:
+  struct sigaction before_ {};
+};
 
 std::string text(const char* value) { return value != nullptr ? value : ""; }
 

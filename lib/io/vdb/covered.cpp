@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/compute/parallel.hpp"
-#include "io/vdb/private/grid.hpp"
+#include "io/vdb/private/leaf_store.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/coarser.hpp"
 

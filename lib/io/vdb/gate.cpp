@@ -10,7 +10,7 @@
 #include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/facts.hpp"
-#include "io/vdb/private/grid.hpp"
+#include "io/vdb/private/leaf_store.hpp"
 
 namespace vam::io {
 

@@ -18,7 +18,7 @@
 #include "base/text/printable.hpp"
 #include "io/stream/finite.hpp"
 #include "io/stream/stream.hpp"
-#include "io/vdb/private/grid.hpp"
+#include "io/vdb/private/leaf_store.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
 

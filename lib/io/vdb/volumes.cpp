@@ -11,7 +11,7 @@
 #include "base/text/printable.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/facts.hpp"
-#include "io/vdb/private/grid.hpp"
+#include "io/vdb/private/leaf_store.hpp"
 #include "io/vdb/private/serialisation.hpp"
 #include "io/vdb/vdb.hpp"
 

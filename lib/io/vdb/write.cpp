@@ -20,7 +20,7 @@
 #include "io/stream/stream.hpp"
 #include "io/stream/stream_buffers.hpp"
 #include "io/vdb/private/facts.hpp"
-#include "io/vdb/private/grid.hpp"
+#include "io/vdb/private/leaf_store.hpp"
 #include "io/vdb/private/seals.hpp"
 #include "io/vdb/vdb.hpp"
 

@@ -8,10 +8,25 @@
 #include <vector>
 
 #include "base/text/json_fwd.hpp"
-#include "metrology/cure/scatter_curve.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {
+
+/// S / (1 + e^{(D_0 - D) / w}) [physics §14.6].
+struct ScatterCurve {
+  double saturation = 0;            // S, view units per mm
+  double middle_mj_cm3 = 0;         // D_0, at half of it
+  double width_mj_cm3 = 0;          // w
+  double critical_dose_mj_cm3 = 0;  // of the isovalue: the resin is solid from here on
+  double critical_sigma_mj_cm3 = 0;
+  double delay_s = 0;  // of scattering after the light; 0 where the record has none
+
+  /// Over S.
+  [[nodiscard]] double density(double dose_mj_cm3) const;
+};
+
+/// Throws Fault::data, without a subject, where a number is missing or not above 0.
+[[nodiscard]] ScatterCurve scatter_curve(const Json& record);
 
 /// ln(dose that acts / planned dose): the polynomial of second degree in the place, relative to a box; and where the
 /// projector has the axis, beside the column that the plan has. Eleven numbers with a normal distribution. Places in

@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "base/compute/parallel.hpp"
+#include "base/image.hpp"
 #include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/stats/range.hpp"
 #include "metrology/ost/private/body_paths.hpp"
 #include "metrology/ost/private/hidden_rays.hpp"
-#include "metrology/ost/private/line_ends.hpp"
 #include "metrology/ost/private/one_density_body.hpp"
 #include "metrology/ost/private/ray_mask.hpp"
 #include "metrology/ost/private/specks.hpp"
@@ -19,6 +21,94 @@
 namespace vam::metrology {
 
 namespace {
+
+// Lines that look different from their two ends, and which of the ends is wrong.
+
+// Sinograms: one a height, all of the same columns and of an even number of angles, four at least; `rows` has one
+// number a height.
+
+enum class Side { bright = 1, dark = -1 };
+
+// Is the ray beyond everything near the other end of its line by `least`?
+bool beyond(const std::vector<Image>& sinograms, int t, int angle, int k, int rows, float least, Side side) {
+  constexpr int columns = 2;
+  const auto sign = static_cast<float>(side);
+  const int other = opposite(sinograms[k], angle);
+  const int mirror = sinograms[k].width - 1 - t;
+  const float limit = sign * sinograms[k](t, angle) - least;
+  for (int j = std::max(0, k - rows); j <= std::min(count_of(sinograms) - 1, k + rows); ++j) {
+    const float* row = sinograms[j].row(other);
+    const int last = std::min(sinograms.front().width - 1, mirror + columns);
+    for (int i = std::max(0, mirror - columns); i <= last; ++i) {
+      if (sign * row[i] >= limit) return false;
+    }
+  }
+  return true;
+}
+
+RayMask rays_beyond(const std::vector<Image>& sinograms, std::span<const int> rows, int angle, float least, Side side) {
+  const int width = sinograms.front().width;
+  const auto sign = static_cast<float>(side);
+  RayMask mask(sinograms.size() * width, 0);
+  bool any = false;
+  for (int k = 0; k < count_of(sinograms); ++k) {
+    const Image& s = sinograms[k];
+    const float* near = s.row(angle);
+    const float* far = s.row(opposite(s, angle)) + width - 1;
+    for (int t = 0; t < width; ++t) {
+      if (sign * (near[t] - far[-t]) <= least || !beyond(sinograms, t, angle, k, rows[k], least, side)) continue;
+      mask[product(k, width) + t] = 1;
+      any = true;
+    }
+  }
+  return any ? mask : RayMask{};
+}
+
+// Excess of a ray over the views before and after.
+float passing(const Image& s, int t, int angle) {
+  constexpr int views = 4;
+  const int n = s.height;
+  return s(t, angle) - 0.5F * (s(t, (angle + n - views) % n) + s(t, (angle + views) % n));
+}
+
+// Keeps the rays that dip where their other end does not change.
+void keep_dips(const std::vector<Image>& sinograms, int angle, float least, RayMask& mask) {
+  const int width = sinograms.front().width;
+  for (int k = 0; k < count_of(sinograms); ++k) {
+    const Image& s = sinograms[k];
+    for (int t = 0; t < width; ++t) {
+      char& marked = mask[product(k, width) + t];
+      if (marked == 0) continue;
+      const float here = passing(s, t, angle);
+      const float there = passing(s, width - 1 - t, opposite(s, angle));
+      if (here > -least || 2 * std::abs(there) > std::abs(here)) marked = 0;
+    }
+  }
+}
+
+/// Rays of an angle that are brighter by `least` than the other end of their line and all near there: within two
+/// columns and `rows[k]` heights. Empty: none.
+RayMask bright_rays(const std::vector<Image>& sinograms, std::span<const int> rows, int angle, float least) {
+  return rays_beyond(sinograms, rows, angle, least, Side::bright);
+}
+
+/// Gives rays that dirt hides for a few views, and those within 3 pixels of them, the brighter value of both ends of
+/// their line: rays darker by `least` than the other end and all near there, and than the mean of the fourth angles
+/// before and after, from which the other end does not differ by half as much. What passes the other end is a bubble
+/// there.
+void restore_dark_rays(std::vector<Image>& sinograms, std::span<const int> rows, float least) {
+  constexpr int around = 3;
+  const int width = sinograms.front().width;
+  const auto heights = count_of(sinograms);
+  std::vector<RayMask> marked(sinograms.front().height);
+  parallel_for(count_of(marked), [&](int a) {
+    marked[a] = rays_beyond(sinograms, rows, a, least, Side::dark);
+    if (marked[a].empty()) return;
+    keep_dips(sinograms, a, least, marked[a]);
+    marked[a] = grown(marked[a], width, heights, around);
+  });
+  choose_ends(sinograms, marked, [](float own, float other) { return std::max(own, other); });
+}
 
 // Standard deviation of the differences between the ends of lines, of a part of all.
 double typical_difference(const std::vector<Image>& sinograms) {

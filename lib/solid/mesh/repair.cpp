@@ -3,20 +3,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/text/text.hpp"
+#include "base/vector3.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/orient.hpp"
-#include "solid/mesh/private/overlap.hpp"
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/weld.hpp"
 
 namespace vam::solid {
 
 namespace {
+
+/// A box around all that two of the boxes share; empty when they only touch.
+Bounds overlap(std::vector<Bounds> boxes) {
+  // Sweep along x: only boxes that begin before another ends can share something with it.
+  std::sort(boxes.begin(), boxes.end(), [](const Bounds& a, const Bounds& b) { return a.low < b.low; });
+  Bounds all;
+  for (auto a = boxes.begin(); a != boxes.end(); ++a) {
+    if (all.contains(*a)) continue;
+    for (auto b = a + 1; b != boxes.end() && b->low[0] < a->high[0]; ++b) {
+      Bounds both;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        both.low[axis] = std::max(a->low[axis], b->low[axis]);
+        both.high[axis] = std::min(a->high[axis], b->high[axis]);
+      }
+      const Point size = both.size();
+      if (size[0] > 0 && size[1] > 0 && size[2] > 0) all.join(both);
+    }
+  }
+  return all;
+}
 
 void drop(model::TriangleSoup& mesh, Repair& done) {
   done.degenerate_dropped += drop_degenerate(mesh);
@@ -106,6 +129,49 @@ long duplicate_triangles(model::TriangleSoup mesh) {
   weld_equal_points(mesh);
   drop_degenerate(mesh);
   return drop_duplicates(mesh);
+}
+
+namespace {
+
+struct Lid {
+  Vector3 sum{};  // of the middles of its border's edges
+  double edges = 0;
+  double reach_mm = 0;
+  int middle = 0;  // index of a point
+};
+
+}  // namespace
+
+long close_holes(model::TriangleSoup& mesh, double widest_mm) {
+  weld_equal_points(mesh);
+  drop_degenerate(mesh);
+  std::vector<std::array<int, 2>> open;
+  DisjointSets<int> borders(mesh.points.size());
+  EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int low, std::span<const HalfEdge> edge) {
+    if (edge.size() % 2 == 0) return;
+    const int high = edge.front().high;
+    open.push_back(edge.front().rising ? std::array{high, low} : std::array{low, high});
+    borders.join(borders.of(low), borders.of(high));
+  });
+  std::map<int, Lid> lids;
+  for (const auto& [from, to] : open) {
+    Lid& lid = lids[borders.of(from)];
+    lid.sum = lid.sum + 0.5 * (mesh.points[from] + mesh.points[to]);
+    ++lid.edges;
+  }
+  for (auto& [border, lid] : lids) {
+    lid.middle = count_of(mesh.points);
+    mesh.points.push_back((1 / lid.edges) * lid.sum);
+  }
+  for (const auto& [from, to] : open) {
+    Lid& lid = lids[borders.of(from)];
+    lid.reach_mm = std::max(lid.reach_mm, length(mesh.points[from] - mesh.points[lid.middle]));
+  }
+  for (const auto& [from, to] : open) {
+    const Lid& lid = lids[borders.of(from)];
+    if (2 * lid.reach_mm <= widest_mm) mesh.triangles.push_back({from, to, lid.middle});
+  }
+  return static_cast<long>(open.size());
 }
 
 }  // namespace vam::solid

@@ -2,6 +2,7 @@
 // From a triangle soup to a surface whose inside is on the left: weld, drop, orient; and a record of what was done.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "model/mesh.hpp"
@@ -45,5 +46,10 @@ Repair repair(model::TriangleSoup& mesh, const std::string& subject);
 
 /// How many triangles repair() would drop as duplicates, near points left aside: those of a body that is there twice.
 [[nodiscard]] long duplicate_triangles(model::TriangleSoup mesh);
+
+/// Closes holes no wider than that by triangles from each edge of a border to the mean of that border's edges: an even
+/// hole gets a flat lid. Equal points are welded first. Every edge of these has an even number of triangles then, which
+/// may cross others, and whose orientation means nothing. Returns how many edges were open in all.
+long close_holes(model::TriangleSoup& mesh, double widest_mm = std::numeric_limits<double>::infinity());
 
 }  // namespace vam::solid

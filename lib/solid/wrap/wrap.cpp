@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "base/text/text.hpp"
 #include "base/vector3.hpp"
-#include "solid/mesh/holes.hpp"
+#include "solid/mesh/repair.hpp"
 
 namespace vam::solid {
 

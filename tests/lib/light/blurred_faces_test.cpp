@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/grids/blurred_faces.hpp"
 
-#include "light/grids/face_blur.hpp"
 #include "testing.hpp"
 
 using namespace vam;

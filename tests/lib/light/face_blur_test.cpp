@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "light/grids/face_blur.hpp"
-
+#include "light/grids/blurred_faces.hpp"
 #include "model/magnification.hpp"
 #include "optics/skew_ray.hpp"
 #include "testing.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How many slices the light of one row crosses.
-#include "optics/crossed_slices.hpp"
-
+#include "optics/ray_list.hpp"
 #include "testing.hpp"
 
 using namespace vam;

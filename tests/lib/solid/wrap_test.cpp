@@ -4,7 +4,6 @@
 
 #include "lib/meshes.hpp"
 #include "oracle/meshes.hpp"
-#include "solid/mesh/holes.hpp"
 #include "solid/mesh/repair.hpp"
 #include "testing.hpp"
 

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "base/pixel_rect.hpp"
 #include "base/pixels.hpp"
 
 namespace vam::io {

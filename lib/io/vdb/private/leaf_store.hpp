@@ -7,9 +7,11 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/scratch_file.hpp"
+#include "io/vdb/vdb.hpp"
 
 namespace vam::io {
 
@@ -57,6 +59,14 @@ class LeafStore {
   openvdb::Index32 places_ = 0;  // of the file
   std::vector<openvdb::Index32> free_;
   std::unique_ptr<ScratchFile> file_;
+};
+
+struct SparseVolume::State {
+  std::string name;
+  model::Grid grid;
+  openvdb::FloatGrid::Ptr sparse;
+  std::shared_ptr<LeafStore> leaves = std::make_shared<LeafStore>();  // of the tree, which grids may share
+  openvdb::Coord first;  // index of voxel (0, 0, 0) in `sparse`; not 0 in files of other programs
 };
 
 }  // namespace vam::io
