@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-resample: sinograms between the ideal parallel beam and a real projector or camera.
 #include <sstream>
-#include <string>
 #include <vector>
 
 #include "base/constants.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-score: scores a dose against its target.
-#include <functional>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // vam-sinogram: the projections of a part, plain, filtered or exponential.
 #include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/error.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-view: figures of volumes, stacks, videos, folders, meshes and traces.
 #include <string>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/private/values.hpp"
 
-#include <cmath>
 #include <limits>
-#include <optional>
 
-#include "base/error.hpp"
 #include "base/text/text.hpp"
 
 namespace vam::cli {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/circle.hpp"
 
-#include <algorithm>
-
 #include "base/error.hpp"
 
 namespace vam::model {

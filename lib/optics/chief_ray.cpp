@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/chief_ray.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"

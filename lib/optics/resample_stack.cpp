@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optics/resample_stack.hpp"
 
-#include <cmath>
 #include <ostream>
 
 #include "base/constants.hpp"

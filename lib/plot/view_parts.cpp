@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plot/private/view_parts.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 

@@ -2,7 +2,6 @@
 #include "resin/dither.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/index.hpp"
 

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "model/dose/dose_metrics.hpp"
 
 namespace vam::score {
 

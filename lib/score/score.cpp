@@ -12,8 +12,6 @@
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "model/dose/dose_metrics.hpp"
-#include "score/exposure.hpp"
 
 namespace vam::score {
 

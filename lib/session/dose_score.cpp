@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "base/compute/memory.hpp"
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
-#include "io/vdb/vdb.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 #include "model/light_width.hpp"
-#include "model/metadata.hpp"
 #include "optics/writable_radius.hpp"
 #include "session/volumes.hpp"
 #include "verdict/print_pieces.hpp"

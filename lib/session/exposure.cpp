@@ -2,8 +2,6 @@
 #include "session/exposure.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"

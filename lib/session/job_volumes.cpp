@@ -5,7 +5,6 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "io/vdb/vdb.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
 #include "optimize/target/void_rule.hpp"

@@ -6,7 +6,6 @@
 
 #include "base/compute/memory.hpp"
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/log/log.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/csv_table.hpp"

@@ -4,7 +4,6 @@
 #include <fftw3.h>
 
 #include <mutex>
-#include <new>
 
 #include "base/compute/aligned_memory.hpp"
 #include "base/compute/slab.hpp"

@@ -2,7 +2,6 @@
 #include "tomo/private/radon_plan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>

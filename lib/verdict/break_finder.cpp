@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdint>
-#include <utility>
 
 #include "base/index.hpp"
 #include "verdict/private/bit_slice.hpp"

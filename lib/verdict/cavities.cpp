@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verdict/cavities.hpp"
 
-#include <array>
 #include <utility>
 #include <vector>
 

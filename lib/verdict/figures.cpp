@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of a verdict: each stands once, for tables, conditions and reports.
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verdict/print_pieces.hpp"
 
-#include <algorithm>
 #include <array>
-#include <functional>
 #include <utility>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"

@@ -2,7 +2,6 @@
 #include "verdict/private/smooth_print.hpp"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verdict/unresolved.hpp"
 
-#include <algorithm>
-
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"

@@ -2,8 +2,6 @@
 #include "verdict/verdict.hpp"
 
 #include <cstdint>
-#include <string>
-#include <utility>
 
 #include "base/text/text.hpp"
 

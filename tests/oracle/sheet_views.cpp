@@ -5,9 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "oracle/ray_tracer.hpp"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <filesystem>
-#include <utility>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-calibrate/scan.hpp"
 
-#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/utc.hpp"
 #include "io/image/capture_folder.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <utility>
-#include <vector>
 
 #include "base/index.hpp"
 #include "base/text/json.hpp"

@@ -3,10 +3,8 @@
 #include "resin/curethrough/sweep.hpp"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"

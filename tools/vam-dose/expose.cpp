@@ -2,8 +2,6 @@
 #include "vam-dose/expose.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-dose/place.hpp"
 
-#include <vector>
-
 #include "base/error.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/printer_file.hpp"

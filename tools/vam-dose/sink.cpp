@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "io/vdb/vdb.hpp"
 #include "light/operators/insert.hpp"
 
 namespace vam::dose_tool {

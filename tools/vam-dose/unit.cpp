@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
@@ -14,7 +12,6 @@
 #include "model/metadata.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/absolute_dose.hpp"
-#include "score/exposure.hpp"
 #include "session/exposure.hpp"
 #include "vam-dose/sink.hpp"
 

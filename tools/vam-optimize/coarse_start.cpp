@@ -9,7 +9,6 @@
 #include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "model/coarser.hpp"
-#include "optimize/run/volume.hpp"
 #include "vam-optimize/task.hpp"
 
 namespace vam::optimize_tool {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
-#include <utility>
 
 #include "base/text/text.hpp"
 #include "io/stream/stream.hpp"

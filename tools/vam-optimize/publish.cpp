@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,6 @@
 #include "base/text/text.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
-#include "io/vdb/vdb.hpp"
 #include "light/grids/blurred_faces.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/light_width.hpp"
@@ -23,13 +21,10 @@
 #include "model/metadata.hpp"
 #include "model/rows.hpp"
 #include "optimize/run/limited_by.hpp"
-#include "optimize/run/volume.hpp"
 #include "session/dose_score.hpp"
 #include "session/exposure.hpp"
-#include "session/scene.hpp"
 #include "session/volumes.hpp"
 #include "vam-optimize/front.hpp"
-#include "vam-optimize/options.hpp"
 #include "verdict/verdict.hpp"
 
 namespace vam::optimize_tool {

@@ -7,7 +7,6 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/log/log.hpp"
-#include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/settings/printer_file.hpp"

@@ -2,7 +2,6 @@
 // The verdict on a print of few iterations, on voxels that are larger for large parts.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <utility>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-plan/plan.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,7 +11,6 @@
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
 #include "session/surface.hpp"
-#include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
 
 namespace vam::plan_tool {

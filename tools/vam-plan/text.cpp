@@ -3,8 +3,6 @@
 #include "base/text/text.hpp"
 
 #include <algorithm>
-#include <string>
-#include <vector>
 
 #include "base/text/json.hpp"
 #include "solid/voxel/placement.hpp"

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <numeric>
 
-#include "base/text/json.hpp"
 #include "device/open/open.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"

@@ -8,7 +8,6 @@
 
 #include "base/error.hpp"
 #include "device/open/open.hpp"
-#include "io/image/frame_sink.hpp"
 #include "io/stream/stream.hpp"
 #include "model/device_schemes.hpp"
 #include "session/printer.hpp"

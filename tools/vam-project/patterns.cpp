@@ -2,7 +2,6 @@
 #include "vam-project/patterns.hpp"
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "base/index.hpp"

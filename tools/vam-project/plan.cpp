@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-project/plan.hpp"
 
-#include <cmath>
 #include <string>
 
 #include "base/error.hpp"
@@ -10,7 +9,6 @@
 #include "device/open/open.hpp"
 #include "device/os/clock.hpp"
 #include "device/port/lines.hpp"
-#include "io/exr/stack.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/print.hpp"
 #include "vam-project/turn.hpp"

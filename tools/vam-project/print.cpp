@@ -20,7 +20,6 @@
 #include "vam-project/match.hpp"
 #include "vam-project/renewal.hpp"
 #include "vam-project/slices.hpp"
-#include "vam-project/turn.hpp"
 
 namespace vam::project {
 

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text/json.hpp"
 
 namespace vam::project {

@@ -2,11 +2,9 @@
 #include "vam-project/slices.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"

@@ -12,7 +12,6 @@
 #include "io/stream/stream.hpp"
 #include "plot/page.hpp"
 #include "session/dose_score.hpp"
-#include "session/grey_target.hpp"
 #include "session/printer.hpp"
 #include "vam-report/body.hpp"
 #include "vam-report/inspection.hpp"

@@ -2,7 +2,6 @@
 #include "vam-report/light.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <vector>

@@ -2,7 +2,6 @@
 #include "vam-report/page_parts.hpp"
 
 #include "base/text/json.hpp"
-#include "base/text/printable.hpp"
 #include "plot/page.hpp"
 
 namespace vam::report_tool {

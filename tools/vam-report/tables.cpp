@@ -2,7 +2,6 @@
 #include "vam-report/tables.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "base/text/figure_text.hpp"

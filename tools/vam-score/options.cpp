@@ -2,7 +2,6 @@
 #include "vam-score/options.hpp"
 
 #include "io/mesh/file.hpp"
-#include "session/grey_target.hpp"
 
 namespace vam::score_tool {
 

@@ -5,9 +5,7 @@
 #include "base/stats/median.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
-#include "io/vdb/vdb.hpp"
 #include "metrology/ost/surface_uncertainty.hpp"
-#include "model/metadata.hpp"
 #include "vam-sdf/steps.hpp"
 
 namespace vam::sdf_tool {

@@ -2,7 +2,6 @@
 #include "vam-status/page.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <filesystem>

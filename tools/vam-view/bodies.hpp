@@ -2,7 +2,6 @@
 // Meshes, parts and prints as bodies.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "io/vdb/vdb.hpp"

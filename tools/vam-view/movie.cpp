@@ -2,7 +2,6 @@
 #include "vam-view/movie.hpp"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "base/compute/parallel.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-view/sight.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "base/text/text.hpp"

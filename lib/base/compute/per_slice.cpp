@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/compute/per_slice.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 
 namespace vam {
 

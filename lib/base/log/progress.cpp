@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <optional>
 #include <utility>
 
 #include "base/log/log.hpp"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/text/format_version.hpp"
 #include "base/text/json.hpp"
 #include "base/text/printable.hpp"
 

@@ -2,7 +2,6 @@
 #include "device/open/find.hpp"
 
 #include <iterator>
-#include <memory>
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"

@@ -8,11 +8,9 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
-#include <string>
 
 #include "base/system_error.hpp"
 #include "device/open/open.hpp"

@@ -15,7 +15,6 @@
 #include <fstream>
 #include <optional>
 
-#include "base/error.hpp"
 #include "base/system_error.hpp"
 #include "device/os/process_name.hpp"
 

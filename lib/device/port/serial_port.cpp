@@ -6,7 +6,6 @@
 #include <sys/ioctl.h>
 
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "base/text/json_fwd.hpp"
 #include "device/port/port.hpp"

@@ -2,7 +2,6 @@
 // USB devices by libusb: vendor control transfers and 64-byte reports, each with a time-out.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>

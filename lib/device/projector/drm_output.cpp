@@ -15,7 +15,6 @@
 #include <memory>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "base/text/json_fwd.hpp"
 #include "device/os/clock.hpp"

@@ -7,8 +7,6 @@
 #include <unistd.h>
 #include <xf86drmMode.h>
 
-#include <string>
-
 #include "base/text/json.hpp"
 #include "device/port/usb_link.hpp"
 

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "base/text/json_fwd.hpp"
 #include "device/os/address.hpp"

@@ -14,7 +14,6 @@
 #include "base/index.hpp"
 #include "base/text/format_version.hpp"
 #include "io/exr/private/attributes.hpp"
-#include "io/exr/private/layout.hpp"
 #include "io/stream/file_type.hpp"
 
 namespace vam::io::exr {

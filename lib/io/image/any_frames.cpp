@@ -7,14 +7,12 @@
 #include <filesystem>
 #include <map>
 #include <utility>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/exr/stack.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/frame_sink.hpp"
 #include "io/image/image_file.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image/private/av_library.hpp"
 
-#include <string>
-
 #include "base/shared_library.hpp"
 
 namespace vam::io::av {

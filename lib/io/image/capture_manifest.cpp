@@ -9,7 +9,6 @@
 #include "base/text/json_text.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/image/capture_folder.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 

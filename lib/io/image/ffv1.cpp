@@ -2,7 +2,6 @@
 #include "io/image/private/ffv1.hpp"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "base/index.hpp"
 

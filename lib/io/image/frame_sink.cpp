@@ -12,7 +12,6 @@
 #include "base/index.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/exr/stack.hpp"
 #include "io/image/video.hpp"
 
 namespace vam::io {

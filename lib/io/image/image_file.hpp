@@ -2,7 +2,6 @@
 // Image files: grey PNG and TIFF in, PNG of any depth out, folders of numbered images.
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>

@@ -6,7 +6,6 @@
 #include <exception>
 #include <functional>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "base/compute/parallel.hpp"

@@ -2,7 +2,6 @@
 #include "io/inspect/provenance.hpp"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 #include "base/error.hpp"

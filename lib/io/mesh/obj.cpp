@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OBJ: of its lines those of vertices and faces are read, of a face the vertices.
-#include <utility>
 
 #include "base/text/printable.hpp"
 #include "io/mesh/private/formats.hpp"

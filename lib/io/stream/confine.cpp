@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "base/compute/memory.hpp"

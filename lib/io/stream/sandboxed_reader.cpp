@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -15,7 +14,6 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
-#include <utility>
 
 #include "base/compute/memory.hpp"
 #include "base/error.hpp"

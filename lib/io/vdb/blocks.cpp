@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Voxels in passing, out of the records of the child that reads archives.
 #include <array>
-#include <utility>
 
 #include "base/error.hpp"
 #include "base/text/printable.hpp"

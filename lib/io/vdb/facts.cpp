@@ -12,7 +12,6 @@
 
 #include "base/index.hpp"
 #include "base/text/format_version.hpp"
-#include "base/text/printable.hpp"
 #include "io/stream/seal.hpp"
 #include "model/metadata.hpp"
 

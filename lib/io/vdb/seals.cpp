@@ -2,7 +2,6 @@
 #include "io/vdb/private/seals.hpp"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes out of the records of the child that reads archives: leaves and tiles are inserted into trees.
 #include <array>
-#include <cstddef>
 #include <map>
 #include <memory>
 #include <set>

@@ -5,7 +5,6 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <vector>
 
 #include "base/image.hpp"
 

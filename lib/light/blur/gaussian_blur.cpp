@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "base/compute/parallel.hpp"
-#include "base/index.hpp"
 
 namespace vam::light {
 

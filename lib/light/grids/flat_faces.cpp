@@ -2,7 +2,6 @@
 #include "light/grids/flat_faces.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/index.hpp"

@@ -2,7 +2,6 @@
 #include "light/operators/blurred_operator.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/compute/per_slice.hpp"
 #include "base/index.hpp"

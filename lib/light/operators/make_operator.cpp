@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/compute/per_slice.hpp"
 #include "base/constants.hpp"

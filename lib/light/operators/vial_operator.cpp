@@ -8,7 +8,6 @@
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "light/operators/private/tile_light.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::light {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include "base/compute/parallel.hpp"
 #include "base/constants.hpp"

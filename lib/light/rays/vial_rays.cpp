@@ -11,7 +11,6 @@
 #include "base/compute/slab_lanes.hpp"
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "model/absorption.hpp"
 #include "model/circle.hpp"

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/calibrate/vial_place.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>

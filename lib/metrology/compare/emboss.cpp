@@ -2,7 +2,6 @@
 #include "metrology/compare/emboss.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrology/compare/inspection.hpp"
 
-#include <optional>
-
 #include "base/text/json.hpp"
 
 namespace vam::metrology {

@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "solid/mesh/signed_distance.hpp"
-#include "solid/mesh/surface_samples.hpp"
 
 namespace vam::metrology {
 

@@ -2,7 +2,6 @@
 #include "metrology/compare/surface_errors.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "base/stats/median.hpp"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "base/disjoint_sets.hpp"

@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"

@@ -2,7 +2,6 @@
 #include "metrology/cure/threshold.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>

@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
-#include "base/image.hpp"
 #include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/stats/range.hpp"
 #include "metrology/ost/private/body_paths.hpp"
 #include "metrology/ost/private/hidden_rays.hpp"
 #include "metrology/ost/private/one_density_body.hpp"
-#include "metrology/ost/private/ray_mask.hpp"
 #include "metrology/ost/private/specks.hpp"
 
 namespace vam::metrology {

@@ -8,7 +8,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/compute/parallel.hpp"
-#include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "metrology/ost/private/specks.hpp"
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "metrology/ost/axis.hpp"
 #include "metrology/ost/cleaning_report.hpp"

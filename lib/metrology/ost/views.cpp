@@ -2,10 +2,8 @@
 #include "metrology/ost/views.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include "base/compute/parallel.hpp"

@@ -3,7 +3,6 @@
 // measured axis [OST22 sections 2.2 and 2.4].
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

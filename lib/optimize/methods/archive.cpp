@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/methods/archive.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>

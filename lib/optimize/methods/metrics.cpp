@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "base/index.hpp"
-#include "model/dose/dose_metrics.hpp"
 
 namespace vam::optimize {
 

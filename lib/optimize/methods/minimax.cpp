@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The widest process window itself, instead of a sum of losses: no voxel is nearer to the threshold than need be.
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 

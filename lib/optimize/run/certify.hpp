@@ -2,7 +2,6 @@
 // Lower bound on the ratio of void to part dose of any light: a proof by weights on the voxels.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "light/operators/operator.hpp"

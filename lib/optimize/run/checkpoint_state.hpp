@@ -2,7 +2,6 @@
 // The saved state of a run: the projections of finished passes, one record each, then the open pass.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

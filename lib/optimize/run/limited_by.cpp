@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimize/run/limited_by.hpp"
 
-#include <algorithm>
-#include <string>
 #include <vector>
 
 #include "base/index.hpp"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <vector>
 
 #include "light/grids/lit_grid.hpp"
 #include "light/operators/make_operator.hpp"

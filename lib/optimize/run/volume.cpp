@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -14,7 +13,6 @@
 #include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/pass_run.hpp"
 #include "optimize/run/private/shown_pass.hpp"
-#include "optimize/target/slice_reader.hpp"
 #include "verdict/print_pieces.hpp"
 
 namespace vam::optimize {

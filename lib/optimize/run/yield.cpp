@@ -2,8 +2,6 @@
 #include "optimize/run/yield.hpp"
 
 #include <algorithm>
-#include <string>
-#include <utility>
 
 #include "base/index.hpp"
 #include "base/log/progress.hpp"

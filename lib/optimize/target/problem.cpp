@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"
-#include "model/dose/dose_metrics.hpp"
 
 namespace vam::optimize {
 

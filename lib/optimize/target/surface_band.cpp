@@ -2,8 +2,6 @@
 #include "optimize/target/surface_band.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/compute/parallel.hpp"

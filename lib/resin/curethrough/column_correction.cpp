@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/index.hpp"
-#include "resin/curethrough/target_dose.hpp"
 
 namespace vam::resin {
 

@@ -11,7 +11,6 @@
 // omega_max = 1 it is the least dose of all feasible columns, at every node at once.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "resin/curethrough/column_dose.hpp"

@@ -6,7 +6,6 @@
 
 #include "base/index.hpp"
 #include "sim/bench/private/beams.hpp"
-#include "sim/bench/private/ray.hpp"
 
 namespace vam::sim {
 

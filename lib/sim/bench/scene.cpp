@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <optional>
 
 #include "base/constants.hpp"
 #include "base/image.hpp"

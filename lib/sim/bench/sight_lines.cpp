@@ -7,7 +7,6 @@
 
 #include "base/constants.hpp"
 #include "base/index.hpp"
-#include "sim/bench/private/ray.hpp"
 
 namespace vam::sim {
 

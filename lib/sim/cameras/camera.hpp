@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "device/camera/camera.hpp"
 #include "sim/bench/print.hpp"

@@ -2,8 +2,6 @@
 // Signed distances to a surface on a grid, where they matter.
 #pragma once
 
-#include <vector>
-
 #include "model/grid.hpp"
 #include "solid/mesh/signed_distance.hpp"
 

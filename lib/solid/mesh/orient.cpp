@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/winding.hpp"
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "solid/mesh/surface_samples.hpp"
 

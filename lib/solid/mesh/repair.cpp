@@ -2,7 +2,6 @@
 #include "solid/mesh/repair.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <vector>
 
@@ -12,7 +11,6 @@
 #include "base/stats/median.hpp"
 #include "base/text/text.hpp"
 #include "base/vector3.hpp"
-#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/orient.hpp"
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/weld.hpp"

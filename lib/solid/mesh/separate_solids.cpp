@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <utility>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "base/disjoint_sets.hpp"

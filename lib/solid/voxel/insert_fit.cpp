@@ -2,12 +2,10 @@
 #include "solid/voxel/insert_fit.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "model/dose/dose_metrics.hpp"

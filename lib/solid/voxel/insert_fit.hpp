@@ -2,7 +2,6 @@
 // A part and the insert it is printed around: what is taken out of the part, and how the two meet.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <vector>

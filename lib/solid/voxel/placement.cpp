@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <numbers>
-#include <string>
 
 #include "base/error.hpp"
 #include "base/text/text.hpp"

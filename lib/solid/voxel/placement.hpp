@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "model/grid.hpp"
 #include "model/mesh.hpp"

@@ -2,7 +2,6 @@
 #include "solid/voxel/voxelize.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 #include <vector>
 

@@ -2,7 +2,6 @@
 #include "solid/voxel/wall.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>

@@ -4,7 +4,6 @@
 // edge), as one of 5 points does at 1.6 and one of 4 at 2.4, with more memory and longer transforms.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "tomo/private/fourier_kernel.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/curethrough/column_correction.hpp"
 
+#include <limits>
+
 #include "oracle/simplex.hpp"
 #include "testing.hpp"
 

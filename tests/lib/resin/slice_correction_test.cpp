@@ -2,6 +2,7 @@
 #include "resin/curethrough/slice_correction.hpp"
 
 #include <cstdlib>
+#include <limits>
 
 #include "base/compute/parallel.hpp"
 #include "resin/curethrough/column_correction.hpp"

@@ -2,7 +2,6 @@
 // Exposures of a screen that blinks, and the latencies that they cannot tell apart [physics §10].
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "metrology/calibrate/latency.hpp"

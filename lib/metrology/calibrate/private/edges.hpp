@@ -2,7 +2,6 @@
 // The edges of the vial at one height of a sweep.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "base/stats/measured.hpp"

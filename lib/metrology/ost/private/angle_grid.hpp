@@ -2,7 +2,6 @@
 // Even angles made of uneven ones, whatever the camera delivered [OST22 section 2.4].
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 

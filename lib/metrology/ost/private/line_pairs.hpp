@@ -4,7 +4,6 @@
 
 #include <array>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "base/image.hpp"
