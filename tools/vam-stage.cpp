@@ -13,7 +13,7 @@
 #include "device/open/open.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
-#include "device/os/realtime.hpp"
+#include "device/os/process.hpp"
 #include "device/port/lines.hpp"
 #include "device/port/serial_port.hpp"
 #include "device/stage/spin.hpp"

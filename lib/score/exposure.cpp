@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/json.hpp"

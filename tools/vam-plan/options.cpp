@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-plan/options.hpp"
 
-#include "base/text/text.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "vam-plan/plan.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "device/open/open.hpp"
 #include "device/os/interrupt.hpp"
-#include "device/os/realtime.hpp"
+#include "device/os/process.hpp"
 
 namespace vam::project {
 

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <map>
 
-#include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/geometry.hpp"

@@ -11,7 +11,7 @@
 #include "cli/app.hpp"
 #include "cli/companion.hpp"
 #include "device/os/interrupt.hpp"
-#include "device/os/realtime.hpp"
+#include "device/os/process.hpp"
 #include "device/port/lines.hpp"
 #include "sim/controllers/controllers.hpp"
 #include "sim/controllers/pty_host.hpp"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "base/text/json_fwd.hpp"
 #include "io/settings/flip_log.hpp"
 #include "model/printer.hpp"
 

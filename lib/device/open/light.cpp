@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "base/error.hpp"
 #include "device/open/open.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/os/clock.hpp"

@@ -16,7 +16,7 @@
 #include "device/open/open.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"
-#include "device/os/realtime.hpp"
+#include "device/os/process.hpp"
 #include "device/port/find_ports.hpp"
 #include "device/projector/display_backends.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "device/os/realtime.hpp"
+#include "device/os/process.hpp"
 
 namespace vam::device {
 

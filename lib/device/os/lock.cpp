@@ -16,7 +16,7 @@
 #include <optional>
 
 #include "base/system_error.hpp"
-#include "device/os/process_name.hpp"
+#include "device/os/process.hpp"
 
 namespace vam::device {
 

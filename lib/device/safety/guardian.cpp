@@ -22,8 +22,7 @@
 #include "base/system_error.hpp"
 #include "base/text/json.hpp"
 #include "device/os/clock.hpp"
-#include "device/os/process_name.hpp"
-#include "device/os/realtime.hpp"
+#include "device/os/process.hpp"
 #include "device/safety/guardian_actions.hpp"
 
 namespace vam::device {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/compute/parallel.hpp"
-#include "base/error.hpp"
 #include "base/index.hpp"
 #include "optics/skew_ray.hpp"
 

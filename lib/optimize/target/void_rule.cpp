@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/index.hpp"
 #include "model/dose/dose_metrics.hpp"
 
 namespace vam::optimize {

@@ -5,7 +5,6 @@
 #include <array>
 #include <vector>
 
-#include "base/compute/simd.hpp"
 #include "base/compute/slab.hpp"
 #include "tomo/private/fft.hpp"
 #include "tomo/private/fourier_kernel.hpp"

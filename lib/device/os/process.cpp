@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "device/os/process_name.hpp"
+#include "device/os/process.hpp"
 
+#include <sched.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 
 #include <cerrno>  // program_invocation_name
 #include <cstring>
@@ -9,6 +11,11 @@
 #include <iterator>
 
 namespace vam::device {
+
+void hurry(Urgency urgency) {
+  const sched_param priority{static_cast<int>(urgency)};
+  if (sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &priority) != 0) setpriority(PRIO_PROCESS, 0, -10);
+}
 
 // The kernel reads the command line where it put it: from the program's name on, so many bytes [proc(5), cmdline].
 void name_process(const std::string& name) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real-time priority for threads that control a device.
+// A process that controls a device: the priority of its threads, the name under which ps and pkill know it.
 #pragma once
+
+#include <string>
 
 namespace vam::device {
 
@@ -11,5 +13,11 @@ enum class Urgency { driver = 1, guardian = 2 };
 /// time (SCHED_RR) where the system permits it (root, or RLIMIT_RTPRIO of 2), else as far as its nice limit goes, which
 /// for a plain user is no further. What it starts goes as usual.
 void hurry(Urgency urgency);
+
+inline constexpr const char* guardian_name = "vam-guardian";  // pkill spares it, with whatever its tool is killed by
+
+/// Of this process, which forgets its command line: `name` is what pkill finds, by name and (-f) by command line. At
+/// most 15 bytes. For a child that was forked and has no threads.
+void name_process(const std::string& name);
 
 }  // namespace vam::device
