@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An array, bare or the only one of an archive, image by image to its end, as the child reads it.
+#include "io/array/private/array.hpp"
+
 #include <algorithm>
 #include <cstring>
 
 #include "fuzz/fuzz.hpp"
 #include "io/array/private/array_formats.hpp"
-#include "io/array/private/array_parser.hpp"
 #include "io/image/tiff_pages.hpp"
 
 namespace {

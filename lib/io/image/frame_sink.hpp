@@ -10,8 +10,8 @@
 #include "base/pixels.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/image_file.hpp"
-#include "io/stream/output_folder.hpp"
 #include "io/stream/seal.hpp"
+#include "io/stream/stream.hpp"
 #include "model/stack.hpp"
 
 namespace vam::io {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Printer settings as text: the whole file, and what differs from the defaults.
+// Printer settings as text: the whole file, what differs from the defaults, and whether a file is cut off.
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <sstream>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/text/format_version.hpp"
@@ -83,6 +85,101 @@ std::string printer_settings(const model::Printer& given) {
     if (value != std::visit(FieldText{}, field.slot(standard))) settings.push_back(dotted_name(field) + "=" + value);
   }
   return settings.empty() ? "default" : join(settings, " ");
+}
+
+namespace {
+
+// A file of fewer is taken for the few settings that somebody wanted to change.
+constexpr std::size_t most_sections_of_a_note = 2;
+constexpr int most_keys_of_a_note = 9;
+
+bool has_line(std::string_view text, std::string_view line) {
+  return text.starts_with(line) || text.find("\n" + std::string(line)) != std::string_view::npos;
+}
+
+// Its headings, in the order of the file, and its settings.
+struct Outline {
+  bool version = false;  // of the format is stated
+  std::vector<std::string> headings;
+  int keys = 0;
+  int keys_of_last = 0;
+};
+
+Outline outline_of(std::string_view text) {
+  Outline outline;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line = trimmed(text.substr(at, end - at));
+    at = end + 1;
+    if (line.starts_with('[')) {
+      outline.headings.push_back(trimmed(std::string_view(line).substr(1, line.find(']') - 1)));
+      outline.keys_of_last = 0;
+    } else if (outline.headings.empty() && line.starts_with("version")) {
+      outline.version = true;
+    } else if (!line.starts_with('#') && line.find('=') != std::string_view::npos) {
+      ++outline.keys;
+      ++outline.keys_of_last;
+    }
+  }
+  return outline;
+}
+
+std::string bracketed(const std::string& section) { return "[" + section + "]"; }
+
+std::vector<std::string> absent(const Outline& outline) {
+  std::vector<std::string> sections;
+  for (const std::string& section : section_names()) {
+    const bool there = std::find(outline.headings.begin(), outline.headings.end(), section) != outline.headings.end();
+    if (!there) sections.push_back(bracketed(section));
+  }
+  return sections;
+}
+
+// What a cut leaves of a file whose sections are in the order in which they are printed and explained.
+bool ends_before_the_last_section(const Outline& outline) {
+  const auto all = section_names();
+  const auto place = [&](const std::string& section) { return std::find(all.begin(), all.end(), section); };
+  const auto& headings = outline.headings;
+  const bool note = headings.size() <= most_sections_of_a_note && outline.keys <= most_keys_of_a_note;
+  return !note && !headings.empty() && headings.back() != all.back() &&
+         std::is_sorted(headings.begin(), headings.end(),
+                        [&](const std::string& a, const std::string& b) { return place(a) < place(b); });
+}
+
+}  // namespace
+
+// A file that ends within its first line has lost the rest of it, too.
+void require_own_end(std::string_view text, const std::string& subject) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  const bool ours = has_line(text, printer_head) || (!text.empty() && printer_head.starts_with(text));
+  if (!ours || has_line(text, printer_end)) return;
+  throw Error{Fault::data, subject + ": is cut off after " + std::to_string(text.size()) + " bytes, it has no line '" +
+                               std::string(printer_end) + "'; write it again"};
+}
+
+std::string sign_of_cut(std::string_view text) {
+  if (text.empty() || has_line(text, printer_end)) return "";
+  const Outline outline = outline_of(text);
+  std::string sign;
+  std::string remedy;
+  if (text.back() != '\n') {
+    sign = "ends within a line";
+    remedy = "complete its last line";
+  } else if (outline.version && outline.headings.empty() && outline.keys == 0) {
+    sign = "ends after its version";
+    remedy = "add what is missing, or delete the version";
+  } else if (!outline.headings.empty() && outline.keys_of_last == 0) {
+    sign = "ends with the heading " + bracketed(outline.headings.back());
+    remedy = "add what is missing, or delete the heading";
+  } else if (ends_before_the_last_section(outline)) {
+    sign = "ends after " + bracketed(outline.headings.back());
+    remedy = "add what is missing, or the last line '" + std::string(printer_end) + "' if nothing is";
+  } else {
+    return "";
+  }
+  const auto missing = absent(outline);
+  return sign + ", as if it was cut off" + (missing.empty() ? "" : ", without " + join(missing, ", ")) + "; " + remedy;
 }
 
 }  // namespace vam::io

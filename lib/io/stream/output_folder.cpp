@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/stream/output_folder.hpp"
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -12,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/system_error.hpp"
 #include "io/stream/private/temporary.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // NumPy arrays, whose bytes are put together here by the format's description (numpy.lib.format).
+#include "io/array/private/array.hpp"
+
 #include <limits>
 
 #include "io/array/array_file.hpp"
 #include "io/array/private/array_formats.hpp"
-#include "io/array/private/array_parser.hpp"
 #include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"

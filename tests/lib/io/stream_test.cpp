@@ -7,7 +7,6 @@
 #include <csignal>
 #include <thread>
 
-#include "io/stream/output_folder.hpp"
 #include "io/stream/private/temporary.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"

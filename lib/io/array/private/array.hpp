@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the array files: what every format comes down to, in the process that parses it: the type of the numbers,
-// how they lie, and their bytes front to back. Throws std::runtime_error, to stand behind the file's name.
+// how they lie, their bytes front to back, and the images that they are. Throws std::runtime_error, to stand behind the
+// file's name.
 #pragma once
 
 #include <array>
@@ -9,6 +10,8 @@
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "base/image.hpp"
 
 namespace vam::io::arrays {
 
@@ -51,6 +54,35 @@ class Bytes {
  private:
   Read read_;
   std::size_t taken_ = 0;
+};
+
+/// The values front to back.
+class Parser {
+ public:
+  /// Which axis of the array counts images, rows and columns. Throws std::runtime_error.
+  Parser(const Head& head, Bytes values, std::array<int, 3> axes);
+  /// Images, rows, columns.
+  [[nodiscard]] const std::array<std::size_t, 3>& size() const { return size_; }
+  /// Image `k`, in ascending order. Throws std::runtime_error: cut off, more bytes than values, a value that is not
+  /// finite.
+  void next(Image& image);
+
+ private:
+  void take_floats(float* to, std::size_t count);
+  void hold_all();
+  void gather();
+  void check(const Image& image) const;
+  void require_end();
+
+  Head head_;
+  Bytes bytes_;
+  std::array<std::size_t, 3> size_{};
+  std::array<std::size_t, 3> stride_{};  // in values, from image to image, row to row, column to column
+  bool streams_ = false;                 // the images are as they come
+  std::vector<char> raw_;
+  std::vector<float> all_;  // where they are not
+  std::vector<Image> some_;
+  std::size_t done_ = 0;  // images
 };
 
 }  // namespace vam::io::arrays
