@@ -185,7 +185,7 @@ void Parser::check(const Image& image) const {
   const auto at = bad - image.values.begin();
   throw std::runtime_error("column " + std::to_string(at % image.width) + ", row " + std::to_string(at / image.width) +
                            " of image " + std::to_string(done_) +
-                           " is not a finite number; numpy.nan_to_num() replaces such values");
+                           " is not a finite number; replace such values, and save the array again");
 }
 
 void Parser::require_end() {

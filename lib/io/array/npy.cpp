@@ -18,9 +18,7 @@ namespace arrays {
 
 namespace {
 
-[[noreturn]] void damaged() {
-  throw std::runtime_error("its NumPy header is damaged; save the array again with numpy.save()");
-}
+[[noreturn]] void damaged() { throw std::runtime_error("its NumPy header is damaged; save the array again"); }
 
 /// The literals of a Python dictionary, front to back.
 class Literals {
@@ -61,14 +59,9 @@ class Literals {
 };
 
 [[noreturn]] void refuse_type(const std::string& type, char kind) {
-  if (kind == 'O') {
-    throw std::runtime_error(
-        "holds Python objects (a pickle), which are never read, as they can run any code; save "
-        "numbers: array.astype('f4')");
-  }
+  if (kind == 'O') throw std::runtime_error("holds Python objects (a pickle), which can run any code; save numbers");
   throw std::runtime_error("has values of type " + excerpt(type) +
-                           "; whole numbers of 1, 2, 4 or 8 bytes, floats of 2, 4 or "
-                           "8 and truth are read: array.astype('f4')");
+                           "; save whole numbers of 1, 2, 4 or 8 bytes, floats of 2, 4 or 8, or truth");
 }
 
 void set_type(const std::string& type, Head& head) {
