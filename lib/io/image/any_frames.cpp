@@ -87,8 +87,7 @@ class VideoSource : public ImageSource {
 };
 
 // frames.csv of vam-project beside the images: file,time_s,angle_deg, a line an image. Empty when there is none.
-std::vector<model::ImageInfo> read_frame_index(const std::string& folder, const ImageFolder& images) {
-  const std::string path = folder + "/frames.csv";
+std::vector<model::ImageInfo> read_frame_index(const std::string& path, const ImageFolder& images) {
   if (!has_regular_file(path)) return {};
   std::vector<std::string> lines = split(read_all(path, Content::text, std::uint64_t{64} << 20), '\n');
   if (!lines.empty() && lines.back().empty()) lines.pop_back();
@@ -142,7 +141,8 @@ class FolderSource : public ImageSource {
       : grey_(of == FolderOf::grey),
         folder_(path, false, of),
         facts_(path + "/facts.txt"),
-        index_(read_frame_index(path, folder_)) {
+        index_path_(path + "/frames.csv"),
+        index_(read_frame_index(index_path_, folder_)) {
     if (grey_) captured_ = captured_images(path);
     first_ = read(0);
     info_ = frames_of(first_.width, first_.height, folder_.count());
@@ -163,19 +163,22 @@ class FolderSource : public ImageSource {
   }
 
  private:
-  /// Where they end in a seal, the frames are held to it, too.
+  /// Where they end in a seal, the frames and their index are held to it, too.
   void take_facts(const std::string& text) {
     const std::size_t end = std::min(text.rfind(std::string(values_seal_key) + " "), text.size());
     const std::string facts = text.substr(0, end);
     take_frame_facts(facts, info_, facts_);
     sealed_ = end < text.size();
     if (!sealed_) return;
-    std::vector<Digest> frames(static_cast<std::size_t>(folder_.count()));
-    parallel_for(folder_.count(), [&](int i) {
-      const std::string bytes = read_all(folder_.path(i), Content::binary);
-      frames[static_cast<std::size_t>(i)] = digest_of(bytes.data(), bytes.size());
+    std::vector<std::string> paths;
+    for (int i = 0; i < folder_.count(); ++i) paths.push_back(folder_.path(i));
+    if (!index_.empty()) paths.push_back(index_path_);
+    std::vector<Digest> files(paths.size());
+    parallel_for(count_of(paths), [&](int i) {
+      const std::string bytes = read_all(paths[i], Content::binary);
+      files[i] = digest_of(bytes.data(), bytes.size());
     });
-    if (text.substr(end) == frame_seal(facts, frames)) return;
+    if (text.substr(end) == frame_seal(facts, files)) return;
     throw Error{Fault::data, facts_ + ": the facts or the " + std::to_string(folder_.count()) +
                                  " frames beside it are not those that were written; write them again, or remove its "
                                  "last line if the change was intentional"};
@@ -197,7 +200,7 @@ class FolderSource : public ImageSource {
 
   bool grey_;
   ImageFolder folder_;
-  std::string facts_;
+  std::string facts_, index_path_;
   std::vector<model::ImageInfo> index_;
   std::map<std::string, CaptureRecord> captured_;
   model::StackInfo info_;

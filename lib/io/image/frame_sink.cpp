@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
-#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
@@ -63,10 +62,10 @@ void take_frame_facts(const std::string& text, model::StackInfo& info, const std
   info.angle_step_deg = *step;
 }
 
-std::string frame_seal(const std::string& facts, std::span<const Digest> frames) {
+std::string frame_seal(const std::string& facts, std::span<const Digest> files) {
   Sealer sealer;
   sealer.add(facts);
-  for (const Digest& frame : frames) sealer.add(frame);
+  for (const Digest& file : files) sealer.add(file);
   return std::string(values_seal_key) + " " + seal_text(sealer.digest()) + "\n";
 }
 
@@ -78,14 +77,16 @@ Digest FrameFolder::write(int number, const GreyImage& frame, const ImageText& t
   return digest_of(png.data(), png.size());
 }
 
-void FrameFolder::commit(std::span<const model::ImageInfo> frames, const std::string& facts) {
+void FrameFolder::commit(std::span<const model::ImageInfo> frames, const std::string& facts,
+                         std::vector<Digest> digests) {
   std::string index = "file,time_s,angle_deg\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     index += number_name(static_cast<int>(i)) + "," + format_number(frames[i].time_s, 9) + "," +
              format_number(frames[i].angle_deg, 9) + "\n";
   }
   folder_.write(index_name, index);
-  if (!facts.empty()) folder_.write(facts_name, facts);
+  digests.push_back(digest_of(index.data(), index.size()));
+  if (!facts.empty()) folder_.write(facts_name, facts + frame_seal(facts, digests));
   folder_.commit();
 }
 
@@ -115,7 +116,7 @@ class FolderSink : public FrameSink {
                  [&](int i) { digests_[first + i] = folder_.write(first + i, frames[i].levels, text(frames[i])); });
     for (const auto& frame : frames) shown_.push_back(about(frame));
   }
-  void commit() override { folder_.commit(shown_, facts_ + frame_seal(facts_, digests_)); }
+  void commit() override { folder_.commit(shown_, facts_, digests_); }
 
  private:
   [[nodiscard]] ImageText text(const ProjectorFrame& frame) const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/image.hpp"
 #include "base/pixels.hpp"
@@ -62,8 +63,8 @@ struct FrameSinkOptions {
 /// or not the last, as of a text that was cut off.
 void take_frame_facts(const std::string& text, model::StackInfo& info, const std::string& name);
 
-/// The last line of facts.txt: the seal of the lines before it and of the bytes of every frame.
-[[nodiscard]] std::string frame_seal(const std::string& facts, std::span<const Digest> frames);
+/// The last line of facts.txt: the seal of the lines before it and of the bytes of every frame and of frames.csv.
+[[nodiscard]] std::string frame_seal(const std::string& facts, std::span<const Digest> files);
 
 /// 00000.png, 00001.png, ..., frames.csv (file,time_s,angle_deg) and facts.txt (frame_facts() and its seal). An older
 /// folder is replaced when it is empty or holds nothing but such frames. Throws as OutputFolder does.
@@ -72,8 +73,9 @@ class FrameFolder {
   explicit FrameFolder(const std::string& path);
   /// Frame `number` from 0, in any order, from any thread; the hash of its bytes.
   Digest write(int number, const GreyImage& frame, const ImageText& text) const;
-  /// After all: when and at which angle frame i is shown, and what facts.txt holds.
-  void commit(std::span<const model::ImageInfo> frames, const std::string& facts = "");
+  /// After all: when and at which angle frame i is shown; the facts, none or with the hash of each frame.
+  void commit(std::span<const model::ImageInfo> frames, const std::string& facts = "",
+              std::vector<Digest> digests = {});
 
  private:
   OutputFolder folder_;
