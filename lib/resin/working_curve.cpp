@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/stats/distributions.hpp"
 #include "base/stats/line.hpp"
-#include "base/stats/student.hpp"
 #include "base/text/text.hpp"
 
 namespace vam::resin {

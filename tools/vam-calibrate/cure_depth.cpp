@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/stats/student.hpp"
+#include "base/stats/distributions.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "cli/common.hpp"

@@ -6,8 +6,8 @@
 
 #include "base/constants.hpp"
 #include "base/index.hpp"
+#include "base/stats/distributions.hpp"
 #include "base/stats/line.hpp"
-#include "base/stats/student.hpp"
 
 namespace vam::stats {
 

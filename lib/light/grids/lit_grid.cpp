@@ -10,7 +10,7 @@
 #include "model/circle.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
-#include "optics/bundle.hpp"
+#include "optics/chief_ray.hpp"
 #include "optics/skew_ray.hpp"
 #include "optics/writable_radius.hpp"
 

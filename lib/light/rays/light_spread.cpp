@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optics/bundle.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::light {
 

@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"
-#include "light/rays/private/skew_ray_dose.hpp"
+#include "light/rays/private/chief_ray_dose.hpp"
 
 namespace vam::light {
 

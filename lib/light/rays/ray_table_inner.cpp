@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "light/rays/private/chief_ray_dose.hpp"
 #include "light/rays/private/ray_table.hpp"
-#include "light/rays/private/skew_ray_dose.hpp"
 
 namespace vam::light {
 

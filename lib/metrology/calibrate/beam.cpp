@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
-#include "base/stats/normal.hpp"
+#include "base/stats/distributions.hpp"
 #include "base/text/text.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
 #include "model/magnification.hpp"

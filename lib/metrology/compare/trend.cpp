@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "base/stats/distributions.hpp"
 #include "base/stats/line.hpp"
-#include "base/stats/student.hpp"
 #include "base/text/json.hpp"
 
 namespace vam::metrology {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/index.hpp"
-#include "base/stats/normal.hpp"
+#include "base/stats/distributions.hpp"
 #include "model/circle.hpp"
 
 namespace vam::sim {

@@ -7,7 +7,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/stats/normal.hpp"
+#include "base/stats/distributions.hpp"
 #include "sim/bench/private/deposit.hpp"
 
 namespace vam::sim {

@@ -10,7 +10,7 @@
 #include "base/image.hpp"
 #include "base/index.hpp"
 #include "base/random.hpp"
-#include "base/stats/normal.hpp"
+#include "base/stats/distributions.hpp"
 #include "sim/bench/print.hpp"
 #include "sim/bench/private/beams.hpp"
 #include "sim/bench/private/sight_lines.hpp"

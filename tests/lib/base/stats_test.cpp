@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/stats/curve_fit.hpp"
+#include "base/stats/distributions.hpp"
 #include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
-#include "base/stats/normal.hpp"
-#include "base/stats/student.hpp"
 #include "testing.hpp"
 
 using namespace vam;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "optics/bundle.hpp"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
 
+#include "optics/chief_ray.hpp"
 #include "oracle/lens_dose.hpp"
 
 using namespace vam::optics;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/working_curve.hpp"
 
-#include "base/stats/student.hpp"
+#include "base/stats/distributions.hpp"
 #include "testing.hpp"
 
 using namespace vam;

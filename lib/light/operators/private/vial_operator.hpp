@@ -12,7 +12,7 @@
 namespace vam::light {
 
 /// A sinogram has the columns of the projector that light the circle, and all stage angles: opposite rays run through
-/// the vial on different lines. A* is the sum of chief_ray_dose.hpp and skew_ray_dose.hpp [physics §4, §11]; A, its
+/// the vial on different lines. A* is the sum of what chief_ray_dose.hpp has [physics §4, §11]; A, its
 /// transpose, takes the same weights. A projector whose rays climb lights slices with the rows of others: slices and
 /// rows of a pass are then the whole grid's, and rows beyond setup.rows, slices beyond grid.nz are dark. A projector
 /// whose rays stay level lights each slice with its own row, and any slices may share a pass.

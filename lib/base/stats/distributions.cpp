@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/stats/student.hpp"
+#include "base/stats/distributions.hpp"
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
-#include <cmath>
 
 namespace vam::stats {
 
