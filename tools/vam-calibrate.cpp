@@ -79,7 +79,8 @@ void add_beam(cli::App& app, ScanOptions& o) {
       .form()
       .excludes({"--first", "--spacing"});
   add_dark(scan, o);
-  scan.option("--first", "MM", o.first_mm, cli::any, "Distance of the first plane from the rotation axis.")
+  scan.option("--first", "MM", o.first_mm, cli::any,
+              "Distance of the first plane behind the rotation axis, along the light.")
       .required_without("--side");
   scan.option("--spacing", "MM", o.step_mm, cli::not_zero, "Distance between planes.").required_without("--side");
   scan.option("--pixel", "MM", o.pixel_mm, cli::positive,

@@ -61,6 +61,9 @@ holds 'axis: standard deviation' "$(sigma axis tilt) < 0.06"
 near 'beam: the waist' "$(value beam waist)" 0.5046 0.01
 near 'beam: the position of the waist' "$(value beam focus)" 1.5 "0.05 + 3 * $(sigma beam focus)"
 near 'beam: the divergence' "$(value beam divergence)" 1.5 "0.03 + 3 * $(sigma beam divergence)"
+# Air has a flat wall's light: 1.5 * 1.53 / sqrt 3, and the focus so far before the wall, over 1.53.
+near 'beam: its half angle in air' "$(value beam half_angle)" 1.325 "0.027 + 3 * $(sigma beam half_angle)"
+near 'beam: in force' "$(vam-dose --print-printer | sed -n 's/^focus_mm = \([-0-9.]*\).*/\1/p')" "$(value beam focus_in_air)" 1e-6
 holds 'beam: standard deviation' "$(sigma beam divergence) < 0.1 && $(sigma beam focus) < 0.2"
 # The figures of the proof: 0.1 px, 0.05 %.
 near 'edges: the middle' "$(value edges axis_column)" 106.7 0.1

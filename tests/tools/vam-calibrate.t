@@ -41,6 +41,7 @@ is 'a record has the identities and the levels of the camera' "$(json levels.jso
 vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 >beam.json
 is 'beam: status 0' $? 0
 near 'beam: the divergence' "$(value beam.json divergence)" 0.6417 "2 * $(sigma beam.json divergence) + 0.002"
+near 'beam: a round aperture, whose chords have sqrt 3 of its half angle' "$(value beam.json half_angle)" 0.3705 "2 * $(sigma beam.json half_angle) + 0.0012"
 is 'beam: eleven planes' "$(python3 -c 'import json; print(len(json.load(open("beam.json"))["planes"]))')" 11
 
 # Black that is the camera's own dark: the contrast is a limit, in words.

@@ -15,7 +15,8 @@ namespace vam::calibrate_tool {
 namespace {
 
 constexpr int side_planes = 9;
-constexpr double wanted_width_sigma_percent = 10;  // of the width at the axis
+constexpr double wanted_width_sigma_percent = 10;                // of the width at the axis
+constexpr double divergence_of_half_angle = 1.7320508075688772;  // sqrt 3: of the chords of a round aperture
 
 // What shines without the projector: a print, the room.
 class Dark {
@@ -64,6 +65,22 @@ metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Pri
   return metrology::side_widths(mean, view, printer, side_planes);
 }
 
+// What light in air has instead: a flat wall before the resin, as seen from the side, has the light of a pixel meet
+// further behind it and at smaller angles, by the ratio of the indices.
+struct InAir {
+  stats::Measured half_angle_deg;
+  stats::Measured focus_mm;
+};
+
+InAir in_air(const metrology::MeasuredBeam& beam, double index, double wall_mm) {
+  InAir air{beam.divergence_deg, beam.focus_mm};
+  air.half_angle_deg.value *= index / divergence_of_half_angle;
+  air.half_angle_deg.sigma *= index / divergence_of_half_angle;
+  air.focus_mm.value = (beam.focus_mm.value + wall_mm) / index - wall_mm;
+  air.focus_mm.sigma /= index;
+  return air;
+}
+
 }  // namespace
 
 Finding scan_beam(const ScanOptions& options, const model::Printer& printer) {
@@ -74,6 +91,9 @@ Finding scan_beam(const ScanOptions& options, const model::Printer& printer) {
   finding.value("focus", found.focus_mm, "mm", "fit over planes");
   finding.value("axis_fwhm", found.axis_fwhm_mm, "mm", "fit over planes");
   finding.value("divergence", found.divergence_deg, "deg", "atan of width over distance");
+  const InAir air = in_air(found, options.side ? printer.resin.index / printer.bath.index : 1, printer.vial.radius_mm);
+  finding.value("half_angle", air.half_angle_deg, "deg", "divergence in air / sqrt 3: a round aperture");
+  finding.value("focus_in_air", air.focus_mm, "mm", "behind the axis, without vial and bath");
   Json planes = Json::array();
   for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
     planes.push_back(measured_json(widths.fwhm_mm[i], "mm", "full width at half maximum"));

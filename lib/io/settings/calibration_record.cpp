@@ -139,7 +139,11 @@ constexpr ScanKind scans[] = {
      }},
     {"flat", false,
      [](model::Printer& printer, const CalibrationRecord& record) { printer.camera.flat = beside(record, "flat"); }},
-    {"beam", false, [](model::Printer&, const CalibrationRecord&) {}},  // for people
+    {"beam", false,
+     [](model::Printer& printer, const CalibrationRecord& record) {
+       printer.projector.half_angle_deg = in_unit(record, "half_angle", "deg");
+       printer.projector.focus_mm = in_unit(record, "focus_in_air", "mm");
+     }},
     {"axis", true,
      [](model::Printer& printer, const CalibrationRecord& record) {
        printer.camera.axis_column = in_unit(record, "axis_column", "px");

@@ -54,9 +54,9 @@ struct CalibrationRecord {
 void apply_record(model::Printer& printer, const CalibrationRecord& record);
 
 /// Takes over what the current records say: projector.axis_column and vial.radius_mm (edges), projector.response
-/// (response), projector.latency_ms (latency), camera.axis_column and tilt_deg (axis), camera.flat (flat),
-/// camera.lag_ms (lag), camera.azimuth_deg, axis_row and pixel_mm (registration). The beam is for people. Nothing
-/// without calibration.folder. Throws Fault::data with the first objection.
+/// (response), projector.latency_ms (latency), projector.half_angle_deg and focus_mm (beam), camera.axis_column and
+/// tilt_deg (axis), camera.flat (flat), camera.lag_ms (lag), camera.azimuth_deg, axis_row and pixel_mm (registration).
+/// Nothing without calibration.folder. Throws Fault::data with the first objection.
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s);
 
 }  // namespace vam::io
