@@ -129,8 +129,11 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
 void add_implicit_values(const Declaration& tool, std::vector<std::string>& words) {
   const Declaration form = form_of(tool, words);
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
-    const Option* option = find_own(form, words[i]);
-    if (option == nullptr || option->value_name.empty()) continue;
+    const Option* option = find_own(form, flag_of(words[i]));
+    const bool joined = flag_of(words[i]) != words[i];
+    if (option != nullptr && option->value_name.empty() && joined)
+      throw Error{Fault::usage, long_flag(*option) + ": takes no value"};
+    if (option == nullptr || option->value_name.empty() || joined) continue;
     if (option->implicit.empty()) {
       ++i;  // its value may look like an option
     } else if (i + 1 == words.size() || !parse_number(words[i + 1])) {

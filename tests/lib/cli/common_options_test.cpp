@@ -48,6 +48,7 @@ TEST_CASE("what is wrong with them is a usage error") {
   CHECK(refused({"--memory", "much"}).starts_with("vam-demo: --memory: 'much' is not a number"));
   CHECK(refused({"--memory", "0"}).starts_with("vam-demo: --memory: 0 is out of range"));
   CHECK(refused({"--quiet=yes"}) == "vam-demo: --quiet: takes no value\n");
+  CHECK(refused({"--half=1"}) == "vam-demo: --half: takes no value\n");
   CHECK(refused({"-q", "--quiet"}) == "vam-demo: --quiet: given twice\n");
   CHECK(refused({"-q", "-v"}) == "vam-demo: --quiet: contradicts --verbose\n");
   CHECK(refused({"--help=most"}) == "vam-demo: --help: 'most' is not one of all\n");
