@@ -24,10 +24,14 @@ std::string companion(const std::string& name) {
   throw Error{Fault::no_input, name + ": not found beside this program; reinstall the tools"};
 }
 
-void become_companion(const std::string& name, std::vector<std::string> arguments) {
+void find_tools_beside() {
   const char* path = std::getenv("PATH");
   const std::string tools = own_folder().string() + (path == nullptr ? "" : ":" + std::string(path));
   setenv("PATH", tools.c_str(), 1);
+}
+
+void become_companion(const std::string& name, std::vector<std::string> arguments) {
+  find_tools_beside();
   arguments.insert(arguments.begin(), companion(name));
   std::vector<char*> words;
   for (std::string& argument : arguments) words.push_back(argument.data());

@@ -10,6 +10,9 @@ namespace vam::cli {
 /// The path of the file of that name. Throws Fault::no_input where it is not there.
 [[nodiscard]] std::string companion(const std::string& name);
 
+/// From here on what this process starts finds the tools beside this one before others.
+void find_tools_beside();
+
 /// Goes on as that script, in this process. It finds the tools beside this one before others. Throws Fault::no_input.
 [[noreturn]] void become_companion(const std::string& name, std::vector<std::string> arguments);
 

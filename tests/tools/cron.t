@@ -6,7 +6,7 @@
 page=$VAM_SOURCE/man/vam-calibrate-all.1
 tools=$(dirname "$(command -v vam-stage)")
 mkdir -p prefix/bin
-cp "$VAM_SOURCE/scripts/vam-calibrate-all" "$VAM_SOURCE/scripts/vam-print" prefix/bin
+cp "$VAM_SOURCE/scripts/vam-calibrate-all" prefix/bin
 for tool in "$tools"/vam-*; do ln -s "$tool" prefix/bin; done
 cat >printer.toml <<TOML
 [stage]

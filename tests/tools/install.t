@@ -12,7 +12,7 @@ sort parts >sorted
 listed all >whole
 same 'each file is in one component' whole sorted
 
-for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch vam-print vam-calibrate-all; do
+for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch vam-calibrate-all; do
   missing=
   for file in "bin/$tool" "share/man/man1/$tool.1" "share/bash-completion/completions/$tool" \
     "share/zsh/site-functions/_$tool" "share/fish/vendor_completions.d/$tool.fish"; do

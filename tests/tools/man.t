@@ -32,7 +32,7 @@ fi
 undue=$(awk '/^\./ { body = "" } /^Default: none/ && body !~ /One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { body = body " " $0 }' "$VAM_SOURCE"/man/*.1)
 is 'no page says "Default: none" of an option without a value none' "$undue" ""
 
-for script in vam-batch vam-print vam-calibrate-all; do
+for script in vam-batch vam-calibrate-all; do
   options='display light set home' value=display:DEVICE switch=home repeatable=1
   [ $script != vam-batch ] || options='folder jobs slurm plan forecast' value=folder:DIR switch=plan repeatable=0
   page=$VAM_SOURCE/man/$script.1
@@ -72,7 +72,7 @@ for page in "$VAM_SOURCE"/man/*.1; do
   holds "$name: words beside its options" "$(words "$page") <= ${most:-900}"
   [ -z "$most" ] || holds "$name: is longer than others may be, else it is not named" "$(words "$page") > 900"
 done
-for script in vam-batch vam-print vam-calibrate-all; do
+for script in vam-batch vam-calibrate-all; do
   is "$script: only options are marked as such" "$(sed -n '/^\.\\" <options>/,/^\.\\" <\/options>/p' "$VAM_SOURCE/man/$script.1" | grep '^\.It' | grep -v '^\.It Fl')" ''
 done
 

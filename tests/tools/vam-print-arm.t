@@ -7,7 +7,12 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration=9000&max_speed=360&min_angle=-1e7&max_angle=1e7"\nspeed_deg_s = 90\n' >>printer.toml
-dry() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 "$@"; }
+dry() {  # dry OPTIONS...: with these where no others are given
+  for usual in '--display null:' '--light sim:' '--max-missed 0.9' '--run-up 0.05'; do
+    case " $* " in *" ${usual%% *} "*) ;; *) set -- "$@" $usual ;; esac
+  done
+  vam-print frames.exr "$@"
+}
 print() { dry --uncalibrated "$@"; }
 quick='--set stage.speed_deg_s=360 --run-up 0.2'  # a turn in a second, where its light is not compared
 
@@ -99,20 +104,22 @@ print --turns 2 --view-step 10 --until 'iou>=0.99' --target part.vdb --isovalue 
   --set camera.axis_column=63.5 --set camera.tilt_deg=0 --set camera.pixel_mm=0.26 --set camera.device="sim:?follow=$PWD/truth&lit=0.01&columns=128&rows=96" >unmet.out 2>unmet.err & unmet=$!
 await test -s unmet/angles.jsonl
 # The options of live metrology are checked before any motion, by the plan, too.
-live() { print --turns 2 --view-step 10 --isovalue 1 --target part.vdb --until "$@"; }
+till() { print --isovalue 1 --target part.vdb --until "$@"; }
+live() { till "$@" --turns 2 --view-step 10; }
 fails 64 "unknown figure 'foo'" live 'foo>=1' --run none
 fails 66 'nowhere.vdb: cannot open' print --turns 2 --view-step 10 --isovalue 1 --target nowhere.vdb --until 'iou>=1' --run none
 fails 64 'vam-ost: --target: requires --isovalue, --resin or --projections; ' print --turns 2 --view-step 10 --target part.vdb --until 'iou>=1' --run none
-fails 64 '.--view-step: is 15; --until requires views at most 12 degrees apart' live 'iou>=1' --view-step 15 --run none
-fails 64 '.--until: requires at least 2 turns' live 'iou>=1' --turns 1 --run none
-is 'by its plan, too' "$(live 'iou>=1' --turns 1 --plan 2>&1 >/dev/null | grep -c 'until: requires at least 2 turns')" 1
-fails 64 ".--view-step: 'ten' is not an angle above 0" print --view-step ten --run none
+fails 64 '.--view-step: is 15; --until requires views at most 12 degrees apart' till 'iou>=1' --turns 2 --view-step 15 --run none
+fails 64 '.--until: requires at least 2 turns' till 'iou>=1' --turns 1 --view-step 10 --run none
+is 'by its plan, too' "$(till 'iou>=1' --turns 1 --view-step 10 --plan 2>&1 >/dev/null | grep -c 'until: requires at least 2 turns')" 1
+fails 64 ".--view-step: 'ten' is not a number" print --view-step ten --run none
 is 'by its plan' "$(live 'foo>=1' --plan 2>&1 >/dev/null | grep -c "unknown figure 'foo'")" 1
 is 'which does not mention valid options' "$(live 'iou>=1' --plan 2>&1 | grep -c '^metrology\|empty')" 0
 # A tool that fails later, when the light is on, is the cause, and not those that are ended because of it.
 mkdir fake
 printf '#!/bin/sh\n[ -p /dev/stdin ] || { echo "vam-ost: stdin: is empty" >&2; exit 65; }\nuntil grep -qs "\"frame\":[0-9]" died/flips.jsonl; do sleep 0.02; done\necho "vam-ost: died" >&2; exit 71\n' >fake/vam-ost
 chmod +x fake/vam-ost
+cp "$(command -v vam-print)" fake  # which looks for tools beside itself first
 PATH=$PWD/fake:$PATH live 'iou>=1' --set camera.device=sim: --run died 2>errors
 is 'the cause is the tool that failed first' "$? $(cat errors) $(json died/summary.json outcome)" '71 vam-ost: died ost failed'
 
@@ -365,7 +372,7 @@ is 'how long its image stayed on is said' "$(grep -Ec 'warning: the last image s
 on=$(tail -n 2 hang/flips.jsonl | grep -o '"t_monotonic_s":[0-9.]*' | cut -d: -f2 | awk 'NR == 1 { on = $1 } NR == 2 { printf "%.3f", $1 - on }')
 holds 'and logged' "$on > 0.3 && $on < 3"
 is 'as black' "$(tail -n 1 hang/flips.jsonl | grep -o '"frame":-1.*"by":"vam-print"' | wc -l)" 1
-fails 74 'standard output: cannot be written' sh -c 'vam-print frames.exr --display null: --uncalibrated --plan >/dev/full'
+fails 74 'standard output: write failed' sh -c 'vam-print frames.exr --display null: --uncalibrated --plan >/dev/full'
 
 if [ -n "$full" ]; then
   wait $full

@@ -13,7 +13,9 @@ vam-slice --shape gyroid:cell=6,sheet=1.2,diameter=7,height=5 --voxel 0.2 -o par
 vam-optimize --angles 60 part.vdb -o whole.exr
 vam-project whole.exr --fps 10 --turns 1 --accept-dose -o whole.mkv
 echo '{"schema":"vam-working-curve/1","isovalue":0.04,"saturation":0.08,"critical_dose_mj_cm3":60,"rate_per_mj_cm3":0.07,"delay_s":1}' >curve.json
-print() { vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --view-step 6 --target part.vdb \
+print() {
+  case " $* " in *' --view-step '*) ;; *) set -- "$@" --view-step 6 ;; esac
+  vam-print whole.exr --display null: --uncalibrated --run-up 0.5 --max-missed 0.9 --max-missed-lit 0.9 --target part.vdb \
     --set stage.device="sim:?acceleration=1000&max_speed=120&log=$PWD/truth.$run" "$@"; }
 run=none
 fails 64 'correct: requires --resin' print --correct --until 'missing<=1' --isovalue 0.04 --run none
@@ -41,8 +43,8 @@ beside() {  # beside RUN OPTIONS...: the same before a camera of vam-capture's o
 }
 lit_for() { grep '"event":"flip"' "$1/flips.jsonl" 2>/dev/null | tail -n 1 | sed -nE 's/.*"angle_deg":([0-9.]+).*/\1/p' | awk -v least="$2" '{ last = $1 } END { exit !(last >= least) }'; }
 fails 64 'dark-turns: requires --view-step' vam-print whole.exr --display null: --uncalibrated --dark-turns 1 --run none
-fails 64 'dark-turns: .08. is not a whole number' print --dark-turns 08 --run none
-fails 64 'dark-turns: .two. is not a whole number' print --dark-turns two --run none
+fails 64 'dark-turns: .0.8. is not a whole number' print --dark-turns 0.8 --run none
+fails 64 'dark-turns: .two. is not a number' print --dark-turns two --run none
 fails 64 'turns' print --turns two --dark-turns 1 --run none
 fails 64 'dark-turns: conflicts with --until' print --until 'missing<=1' --isovalue 0.04 --dark-turns 1 --run none
 sed 's/"critical_dose_mj_cm3":60/"critical_dose_mj_cm3":20/; s/"delay_s":1/"delay_s":100/' curve.json >other.json

@@ -37,9 +37,9 @@ mkdir cal
 # Without devices: what is refused before any motion.
 ok 'help' vam-print --help
 ok 'help' vam-calibrate-all --help
+is 'its version is that of the tools' "$(vam-calibrate-all --version)" "$(vam-project --version | sed 's/^vam-project/vam-calibrate-all/')"
+is 'its manual page' "$(vam-calibrate-all --man)" "$(cat "$VAM_SOURCE/man/vam-calibrate-all.1")"
 for script in vam-print vam-calibrate-all; do
-  is "$script: its version is that of the tools" "$($script --version)" "$(vam-project --version | sed "s/^vam-project/$script/")"
-  is "$script: its manual page" "$($script --man)" "$(cat "$VAM_SOURCE/man/$script.1")"
   fails 64 '^[^ ]*: --home: takes no value' $script --home=1
   fails 64 '^[^ ]*: --display: needs a value' $script --display
 done

@@ -9,7 +9,6 @@
 
 #include "base/error.hpp"
 #include "base/system_error.hpp"
-#include "base/text/format_version.hpp"
 #include "base/text/json.hpp"
 #include "base/text/utc.hpp"
 #include "device/os/clock.hpp"
@@ -18,7 +17,7 @@
 
 namespace vam::device {
 
-EventLog::EventLog(const std::string& path) : path_(path) {
+EventLog::EventLog(const std::string& path, FormatKind schema) : path_(path), schema_(schema) {
   if (path.empty()) return;
   const auto opened = [&](int more) {
     return open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | more, 0644);
@@ -52,7 +51,7 @@ void EventLog::at(double t_s, const std::string& event, const Json& facts) {
 void EventLog::line(const Json& facts) {
   if (fd_ < 0) return;
   Json whole = facts;
-  if (!versioned_.test_and_set()) whole["schema"] = FormatKind("vam-log").schema();
+  if (!versioned_.test_and_set()) whole["schema"] = schema_.schema();
   // Bytes that a device made up need not be UTF-8.
   const std::string text = whole.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   if (writer_) return writer_->put(text);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "base/text/format_version.hpp"
 #include "base/text/json_fwd.hpp"
 
 namespace vam::device {
@@ -18,7 +19,7 @@ class LineWriter;
 /// nothing. Throws Fault::no_output, Fault::io.
 class EventLog {
  public:
-  explicit EventLog(const std::string& path);
+  explicit EventLog(const std::string& path, FormatKind schema = "vam-log");
   ~EventLog();
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
@@ -38,6 +39,7 @@ class EventLog {
 
  private:
   std::string path_;
+  FormatKind schema_;
   int fd_ = -1;
   bool made_ = false;
   std::atomic_flag versioned_;  // the schema is stated

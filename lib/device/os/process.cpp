@@ -17,6 +17,11 @@ void hurry(Urgency urgency) {
   if (sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &priority) != 0) setpriority(PRIO_PROCESS, 0, -10);
 }
 
+void take_time() {
+  const sched_param usual{};
+  (void)sched_setscheduler(0, SCHED_OTHER, &usual);
+}
+
 // The kernel reads the command line where it put it: from the program's name on, so many bytes [proc(5), cmdline].
 void name_process(const std::string& name) {
   prctl(PR_SET_NAME, name.c_str());

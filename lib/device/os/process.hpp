@@ -14,6 +14,9 @@ enum class Urgency { driver = 1, guardian = 2 };
 /// for a plain user is no further. What it starts goes as usual.
 void hurry(Urgency urgency);
 
+/// The calling thread, which was in a hurry, has nothing left to control.
+void take_time();
+
 inline constexpr const char* guardian_name = "vam-guardian";  // pkill spares it, with whatever its tool is killed by
 
 /// Of this process, which forgets its command line: `name` is what pkill finds, by name and (-f) by command line. At

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vam-print/child.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "base/error.hpp"
+#include "device/os/interrupt.hpp"
+
+namespace vam::print_tool {
+
+namespace {
+
+constexpr std::array ended_by{SIGINT, SIGTERM, SIGHUP};
+constexpr int niceness = 10;
+
+[[noreturn]] void fail_in_child(const char* what) {
+  dprintf(STDERR_FILENO, "vam-print: %s: %s\n", what, std::strerror(errno));
+  _exit(127);
+}
+
+void connect(int descriptor, const char* path, int flags) {
+  const int opened = open(path, flags, 0644);
+  if (opened < 0) fail_in_child(path);
+  if (opened == descriptor) return;
+  dup2(opened, descriptor);
+  close(opened);
+}
+
+// Between fork and exec: no memory is taken, as other threads may hold its locks.
+[[noreturn]] void become(char* const* words, const Command& command, const char* said, const Manner& manner,
+                         pid_t parent, const sigset_t& mask) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);  // also while a pipe waits for its other end
+  if (getppid() != parent) _exit(128 + SIGTERM);
+  for (const int signal : ended_by) (void)std::signal(signal, manner.undisturbed ? SIG_IGN : SIG_DFL);
+  for (const int signal : {SIGINT, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
+  (void)std::signal(SIGXFSZ, SIG_DFL);
+  sigprocmask(SIG_SETMASK, &mask, nullptr);
+  if (!manner.on_terminal) connect(STDERR_FILENO, said, O_WRONLY | O_CREAT | O_APPEND);
+  connect(STDIN_FILENO, "/dev/null", O_RDONLY);
+  if (!manner.on_terminal) connect(STDOUT_FILENO, "/dev/null", O_WRONLY);
+  for (const Redirection& file : command.files) connect(file.descriptor, file.path.c_str(), file.flags);
+  if (manner.on_terminal) dup2(STDERR_FILENO, STDOUT_FILENO);
+  if (manner.shared >= 0) fcntl(manner.shared, F_SETFD, 0);
+  if (manner.nice) setpriority(PRIO_PROCESS, 0, niceness);
+  if (!manner.with_parent) prctl(PR_SET_PDEATHSIG, 0);
+  execvp(words[0], words);
+  fail_in_child(words[0]);
+}
+
+}  // namespace
+
+Child::Child(const Command& command, const std::string& said, const Manner& manner) : name_(command.name) {
+  std::vector<char*> words;
+  for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  sigprocmask(SIG_BLOCK, &all, &before);  // a handler of this process has nothing to say in the other
+  const pid_t parent = getpid();
+  pid_ = fork();
+  if (pid_ == 0) become(words.data(), command, said.c_str(), manner, parent, before);
+  const int problem = errno;
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  if (pid_ < 0) {
+    throw Error{Fault::memory, command.words.front() + ": cannot be started (" + std::strerror(problem) +
+                                   "); raise the limit of processes or memory"};
+  }
+  handle_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));  // closed on exec
+  if (handle_ >= 0) return;
+  const std::string reason = std::strerror(errno);
+  ::kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+  throw Error{Fault::memory, command.words.front() + ": cannot be watched (" + reason + "); raise the limit of files"};
+}
+
+Child::Child(Child&& other) noexcept
+    : name_(std::move(other.name_)), pid_(std::exchange(other.pid_, -1)), handle_(std::exchange(other.handle_, -1)) {}
+
+Child& Child::operator=(Child&& other) noexcept {
+  std::swap(name_, other.name_);
+  std::swap(pid_, other.pid_);
+  std::swap(handle_, other.handle_);
+  return *this;
+}
+
+Child::~Child() {
+  if (handle_ >= 0) close(handle_);
+}
+
+bool Child::ends_within(int limit_ms) const {
+  pollfd ended{handle_, POLLIN, 0};
+  return poll(&ended, 1, limit_ms) > 0;
+}
+
+int Child::status() {
+  int how = 0;
+  pid_t ended = 0;
+  while ((ended = waitpid(pid_, &how, 0)) < 0 && errno == EINTR) continue;
+  if (ended != pid_) return static_cast<int>(Fault::bug);
+  return WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how);
+}
+
+int run_to_end(const Command& command, const std::string& said) {
+  Child child(command, said, {.with_parent = true});
+  std::array<pollfd, 2> events{pollfd{child.handle(), POLLIN, 0}, pollfd{device::interrupt_fd(), POLLIN, 0}};
+  while (events[0].revents == 0 && !device::interrupted()) poll(events.data(), events.size(), -1);
+  if (events[0].revents == 0) child.order(SIGTERM);
+  const int status = child.status();
+  device::check_interrupted();
+  return status;
+}
+
+}  // namespace vam::print_tool

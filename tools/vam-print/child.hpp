@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tools as processes: their command lines, what they are connected to, how they end.
+#pragma once
+
+#include <sys/types.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+namespace vam::print_tool {
+
+/// Opened by the new process itself, so that a named pipe waits for its other end there.
+struct Redirection {
+  int descriptor;
+  std::string path;
+  int flags;
+};
+
+/// What runs by hand as well.
+struct Command {
+  std::string name;  // in records and messages: project, stage, ...
+  std::vector<std::string> words;
+  std::vector<Redirection> files = {};  // in this order; what is not redirected is /dev/null
+};
+
+/// Who is told by the kernel, and what a process has of vam-print.
+struct Manner {
+  bool with_parent = false;  // ends (SIGTERM) with this process; the tools know how to do so themselves
+  bool nice = false;
+  bool undisturbed = false;  // by INT, TERM and HUP
+  int shared = -1;           // a descriptor that it keeps open
+  bool on_terminal = false;  // standard error is this process's
+};
+
+/// A child of this process, which hears no INT of the terminal: this process orders its end.
+class Child {
+ public:
+  /// standard error is appended to the file `said`. Throws Fault::memory where no process can be made.
+  Child(const Command& command, const std::string& said, const Manner& manner);
+  Child(Child&& other) noexcept;
+  Child& operator=(Child&& other) noexcept;
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child();
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  /// Readable once it has ended, also for who is not its parent.
+  [[nodiscard]] int handle() const { return handle_; }
+  /// True when it has ended within that time, in ms; -1: for ever.
+  [[nodiscard]] bool ends_within(int limit_ms) const;
+  void order(int signal) const { ::kill(pid_, signal); }
+  /// Waits; the status as a shell has it: 128 and the signal.
+  int status();
+
+ private:
+  std::string name_;
+  pid_t pid_ = -1;
+  int handle_ = -1;
+};
+
+/// Runs a command to its end and returns its status; throws device::Interrupted when a signal came meanwhile, which is
+/// passed on.
+int run_to_end(const Command& command, const std::string& said);
+
+}  // namespace vam::print_tool

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vam-print/resume.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "base/error.hpp"
+#include "base/log/log.hpp"
+#include "base/text/figure_text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
+#include "base/text/utc.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/settings/resumption.hpp"
+#include "io/stream/log_lines.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::print_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double turn_deg = 360;
+
+Json armed_event(const std::string& folder) {
+  io::LogLines events(folder + "/events.jsonl");
+  for (Json event; events.next(event);) {
+    if (text_at(event, "event") == "armed") return event;
+  }
+  return Json::object();
+}
+
+/// The last images of a print.
+struct LastImages {
+  double turns = 0;  // that vam-project was to show; 0: not stated
+  int count = 0;     // with light
+  double before_deg = 0, last_deg = 0;
+  [[nodiscard]] double step_deg() const { return count > 1 ? last_deg - before_deg : 0; }
+};
+
+LastImages last_images(const std::string& folder, const std::string& sinogram) {
+  LastImages images;
+  io::LogLines flips(folder + "/flips.jsonl");
+  for (Json event; flips.next(event);) {
+    const std::string name = text_at(event, "event");
+    if (name == "frames") {
+      throw Error{Fault::data, folder + ": showed new projections, so that the rest is not that of " + sinogram +
+                                   "; compute it (vam-dose --shown, vam-optimize --delivered) and print that"};
+    }
+    if (name == "sinogram" && images.turns == 0) images.turns = number_at(event, "turns");
+    if (name != "flip" || number_at(event, "frame", -1) < 0) continue;
+    images.before_deg = images.last_deg;
+    images.last_deg = number_at(event, "angle_deg");
+    ++images.count;
+  }
+  return images;
+}
+
+// Whoever prints keeps a lock on its events until the last tool has ended.
+void require_over(const std::string& folder) {
+  const int events = open((folder + "/events.jsonl").c_str(), O_RDONLY | O_CLOEXEC);
+  constexpr int tries = 20;
+  constexpr useconds_t pause_us = 50000;
+  bool locked = false;
+  for (int i = 0; i < tries && !locked; ++i) {
+    locked = events < 0 || flock(events, LOCK_EX | LOCK_NB) == 0;
+    if (!locked) usleep(pause_us);
+  }
+  if (events >= 0) close(events);
+  if (!locked) throw Error{Fault::busy, folder + ": is still being printed; stop that print, or wait for its end"};
+}
+
+void require_not_resumed(const std::string& folder) {
+  if (!fs::exists(fs::symlink_status(folder + "/resumed.json"))) return;
+  const std::string by = io::resumed_by(folder);
+  throw Error{Fault::data,
+              folder + ": already resumed, by " + (by.empty() ? "another print" : by) + "; resume that one instead"};
+}
+
+// As vam-status judges it; one that has ended is held to its hashes.
+void require_intact(const Run& run) {
+  const std::string& folder = run.options.resume;
+  if (const int status = run_to_end({"status", {"vam-status", folder}}, run.talk.path("status")); status != 0) {
+    std::string reason = last_line(run.talk.text("status"));
+    constexpr std::string_view name = "vam-status: ";
+    if (reason.starts_with(name)) reason.erase(0, name.size());
+    throw Error{static_cast<Fault>(status), reason};
+  }
+  run.talk.forget("status");
+  const std::string summary = folder + "/summary.json";
+  if (io::has_regular_file(summary) && text_at(parse_json(text_of(summary)), "outcome") == "complete, in open loop") {
+    throw Error{Fault::data, folder + ": is complete; it ended in open loop, with the turns of its plan"};
+  }
+}
+
+/// Settings that decide the dose or its place, as their file has them, in its order.
+std::vector<std::pair<std::string, std::string>> dose_settings(const model::Printer& printer) {
+  std::vector<std::pair<std::string, std::string>> settings;
+  std::string section;
+  for (const std::string& line : split(io::printer_toml(printer), '\n')) {
+    if (line.starts_with('[')) section = line.substr(1, line.find(']') - 1) + ".";
+    const auto equals = line.find(" = ");
+    if (line.starts_with('#') || equals == std::string::npos) continue;
+    const std::string key = section + trimmed(line.substr(0, equals));
+    const bool counts = key.starts_with("projector.") || key.starts_with("vial.") || key.starts_with("bath.") ||
+                        key.starts_with("resin.") || key == "stage.speed_deg_s" || key == "stage.direction";
+    if (!counts || key == "projector.relay" || key == "resin.name") continue;
+    std::string value = line.substr(equals + 3);
+    if (const auto comment = value.rfind("  # "); comment != std::string::npos) value.erase(comment);
+    settings.emplace_back(key, trimmed(value));
+  }
+  return settings;
+}
+
+std::vector<std::string> differences(const model::Printer& then, const model::Printer& now) {
+  const auto before = dose_settings(then);
+  const auto after = dose_settings(now);
+  const std::map<std::string, std::string> old(before.begin(), before.end());
+  std::map<std::string, std::string> fresh(after.begin(), after.end());
+  std::vector<std::string> names;
+  for (const auto& [name, value] : before) names.push_back(name);
+  for (const auto& [name, value] : after) {
+    if (old.count(name) == 0) names.push_back(name);
+  }
+  const auto text = [](const auto& all, const std::string& name) {
+    const auto at = all.find(name);
+    return at == all.end() ? "not set" : at->second;
+  };
+  std::vector<std::string> different;
+  for (const std::string& name : names) {
+    if (text(old, name) != text(fresh, name))
+      different.push_back(name + " " + text(old, name) + ", now " + text(fresh, name));
+  }
+  return different;
+}
+
+// In the events of the print that is resumed, whose last line a kill may have cut; one that ended has their hash.
+void tell(const std::string& folder, const std::string& event, const Json& facts) {
+  if (fs::exists(folder + "/SHA256SUMS")) return;
+  const std::string log = folder + "/events.jsonl";
+  const std::string text = text_of(log);
+  if (!text.empty() && text.back() != '\n') fs::resize_file(log, text.rfind('\n') + 1);
+  device::EventLog(log, "vam-print")(event, facts);
+}
+
+}  // namespace
+
+std::string armed_utc(const std::string& folder) { return text_at(armed_event(folder), "utc"); }
+
+void take_over(Run& run) {
+  const std::string folder = run.options.resume;
+  require_intact(run);
+  const Json armed = armed_event(folder);
+  const double whole = number_at(armed, "turns");
+  if (whole < 1 || whole != std::floor(whole)) {
+    throw Error{Fault::no_input, folder + ": not the run folder of a print that was armed; see its events.jsonl"};
+  }
+  const LastImages images = last_images(folder, run.options.sinogram);
+  if (images.turns != 0 && images.turns != whole) {
+    throw Error{Fault::data, folder + "/events.jsonl: states " + format_number(whole) + " turns, but flips.jsonl " +
+                                 format_number(images.turns) + "; it was changed; restore it"};
+  }
+  require_over(folder);
+  if (text_at(armed, "sinogram_sha256") != run.sinogram_sha256)
+    throw Error{Fault::data, run.options.sinogram + ": not the sinogram of " + folder};
+  require_not_resumed(folder);
+  // The middle of the last image, and half of what the stage turned from one image to the next.
+  const double next_deg = images.count > 0 ? images.last_deg + images.step_deg() : 0;
+  if (next_deg >= turn_deg * whole) {
+    throw Error{Fault::data, folder + ": complete, all " + format_number(whole) + " turns; nothing is left to print"};
+  }
+  const double from_deg = images.count > 0 ? images.last_deg + images.step_deg() / 2 : number_at(armed, "from_deg");
+  const double given = std::floor(from_deg / turn_deg);
+  constexpr double digits = 1e4;
+  run.turns = static_cast<int>(whole - given);
+  run.from_deg = std::round((from_deg - turn_deg * given) * digits) / digits;
+  if (!run.options.printer.file.empty()) return;
+  // The settings that it was armed with, calibration included; records of today have no part in them.
+  run.printer_words.insert(run.printer_words.begin(), {"--printer", folder + "/printer.toml"});
+  run.frozen = folder;
+  run.scans.clear();
+}
+
+void require_same_settings(const Run& run) {
+  const std::string& folder = run.options.resume;
+  if (folder.empty()) return;
+  const std::string& device = run.printer.stage.device;
+  if (device.starts_with("grbl:") &&
+      (device.find("?home=here") != std::string::npos || device.find("&home=here") != std::string::npos)) {
+    throw Error{Fault::data,
+                "--resume: the stage has home=here, whose zero ended with the print; only a stage that finds its zero "
+                "can resume"};
+  }
+  const auto then = io::frozen(io::load_printer(folder + "/printer.toml", {"calibration.folder="}));
+  const auto different = differences(then, run.printer);
+  if (different.empty()) return;
+  const std::string text = folder + ": printed with other settings: " + join(different, "; ");
+  if (!run.options.accept_printer)
+    throw Error{Fault::data, text + "; omit --printer and --set, or give --accept-printer"};
+  say(text + "; accepted");
+}
+
+void require_same_device(const Run& run, const std::string& name) {
+  const std::string then = text_of(run.frozen + "/" + name + ".json");
+  if (then == text_of(run.file(name + ".json"))) return;
+  say(run.frozen + ": printed with another " + name + " (" + name + ".json differs); connect that one");
+  throw Ended{static_cast<int>(Fault::data)};
+}
+
+void Claim::take(const Run& run) {
+  const std::string& folder = run.options.resume;
+  if (folder.empty()) return;
+  const std::string mark = folder + "/resumed.json";
+  const std::string by = fs::canonical(run.folder).string();
+  const int made = open(mark.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (made < 0 && errno == EEXIST) require_not_resumed(folder);
+  const std::string text = Json{{"utc", utc_text(utc_seconds())}, {"resumed_by", by}}.dump() + "\n";
+  const bool written = made >= 0 && write(made, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  if (made >= 0) close(made);
+  const auto give_up = [&](const std::string& file) {
+    unlink(mark.c_str());
+    throw Error{Fault::no_output, file + ": cannot be written; it is required so that the rest is not printed twice"};
+  };
+  if (!written) give_up(mark);
+  mark_ = mark;  // from here on every way out takes it back
+  bring_to_disk({run.file("events.jsonl"), run.folder});
+  try {
+    tell(folder, "resumed", {{"by", by}});
+  } catch (const std::exception&) {
+    mark_.clear();
+    give_up(folder + "/events.jsonl");
+  }
+  bring_to_disk({mark, folder + "/events.jsonl", folder});
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {  // what one that was killed could not remove
+    if (entry.is_fifo(ignored) || entry.path().filename() == ".reserve") fs::remove(entry.path(), ignored);
+  }
+}
+
+void Claim::release(const Run& run, bool lit) {
+  if (mark_.empty() || lit) return;
+  std::error_code ignored;
+  fs::remove(run.file(".reserve"), ignored);
+  try {
+    tell(run.options.resume, "released", Json::object());
+    fs::remove(mark_, ignored);
+  } catch (const std::exception&) {
+    say(run.options.resume +
+        "/events.jsonl: cannot be written; the print counts as resumed; free space on the disk, and remove " + mark_ +
+        " and the last line with \"resumed\"");
+  }
+}
+
+}  // namespace vam::print_tool

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vam-print/run.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "base/error.hpp"
+#include "base/log/log.hpp"
+#include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "base/text/utc.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::print_tool {
+
+Run::Run(const Options& given)
+    : options(given),
+      begun(utc_text(utc_seconds())),
+      scans(needed_scans(given)),
+      sinogram_sha256(io::sha256_of(given.sinogram)) {
+  if (options.sinogram.starts_with('-')) options.sinogram = "./" + options.sinogram;  // a name, for all tools
+  if (!options.printer.file.empty()) printer_words = {"--printer", options.printer.file};
+  for (const std::string& setting : options.printer.sets) printer_words.insert(printer_words.end(), {"--set", setting});
+  // The rest of a print, or one that ends by what the camera sees, has turns that are no plan.
+  if (!options.resume.empty() || !options.until.empty()) options.accept_dose = true;
+}
+
+void Run::note(const std::string& event) { note(event, Json::object()); }
+
+void Run::note(const std::string& event, const Json& facts) {
+  try {
+    if (!events_) events_ = std::make_unique<device::EventLog>(file("events.jsonl"), FormatKind("vam-print"));
+    (*events_)(event, facts);
+  } catch (const Error&) {
+    // The disk is full, or gone: that is what ends the print, and what is reported.
+  }
+}
+
+std::string Run::require(const Command& command, const std::string& output) {
+  const std::string printed = output.empty() ? talk.folder() + "/printed" : output;
+  Command whole = command;
+  whole.files.push_back({STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC});
+  if (const int status = run_to_end(whole, talk.path(command.name)); status != 0) fail(command.name, status);
+  return output.empty() ? text_of(printed) : "";
+}
+
+void Run::fail(const std::string& tool, int status) const {
+  std::string said = trimmed(talk.text(tool), "\n");
+  if (said.empty()) said = "vam-print: " + tool + " ended with status " + std::to_string(status);
+  for (std::string line : split(said, '\n')) {
+    if (line.starts_with("tee:")) {
+      line = "vam-print: " + file("angles.jsonl") + ": cannot be written: " + line.substr(line.rfind(": ") + 2);
+    }
+    pass_on(line);
+  }
+  throw Ended{status};
+}
+
+void bring_to_disk(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    const int opened = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (opened < 0) continue;
+    (void)fdatasync(opened);
+    close(opened);
+  }
+}
+
+}  // namespace vam::print_tool
