@@ -80,6 +80,9 @@ plan --set 'stage.device=sim:?min_angle=-360&max_angle=360' >plan.txt 2>errors
 is 'travel beyond the limits' "$? $(grep -c 'require travel from .* but the controller allows -360 to 360' errors)" '65 1'
 is 'free space' "$(plan --run runs/new 2>&1 | grep -c 'runs: no such folder; create it for --run\|^disk  *failed')" 2
 is 'no plan leaves anything' "$(ls -d print-* 2>/dev/null)" ''
+plan --commands $quick --turns 1 --run 'by hand' | sed -n '/^mkdir/,$p' >by.hand
+ok 'its command lines run by hand' sh -e by.hand
+holds 'and show the light' "$(grep -c '"frame":[0-9]' 'by hand/flips.jsonl') >= 40 && $(grep -c '"event":"end"' 'by hand/stage.jsonl') == 1"
 
 # A folder of records that was copied with its links followed.
 vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 --speed 90 --view-step 9 \
