@@ -102,6 +102,7 @@ class Print {
       say(run_.file("summary.json") + ": cannot be written completely; free space on the disk");
       if (status == 0) status = static_cast<int>(Fault::io);
     }
+    drive_->finish();
     return status;
   }
 
@@ -117,6 +118,7 @@ int run(const print_tool::Options& options) {
   require_sound(options);
   cli::find_tools_beside();
   (void)std::signal(SIGCHLD, SIG_DFL);  // ignored, it would hide how the tools end
+  (void)std::signal(SIGPIPE, SIG_IGN);  // who no longer reads its messages does not end a print
   std::array<bool, ending.size()> ignored{};
   for (std::size_t i = 0; i < ending.size(); ++i) {
     struct sigaction before = {};

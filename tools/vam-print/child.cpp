@@ -38,6 +38,15 @@ void connect(int descriptor, const char* path, int flags) {
   close(opened);
 }
 
+// What the print does not depend on: others go first, and where memory ends, the kernel ends this one.
+void give_way() {
+  setpriority(PRIO_PROCESS, 0, niceness);
+  const int score = open("/proc/self/oom_score_adj", O_WRONLY);
+  if (score < 0) return;
+  if (write(score, "1000", 4) < 0) errno = 0;  // it is as it was
+  close(score);
+}
+
 // Between fork and exec: no memory is taken, as other threads may hold its locks.
 [[noreturn]] void become(char* const* words, const Command& command, const char* said, const Manner& manner,
                          pid_t parent, const sigset_t& mask) {
@@ -45,7 +54,7 @@ void connect(int descriptor, const char* path, int flags) {
   if (getppid() != parent) _exit(128 + SIGTERM);
   for (const int signal : ended_by) (void)std::signal(signal, manner.undisturbed ? SIG_IGN : SIG_DFL);
   for (const int signal : {SIGINT, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
-  (void)std::signal(SIGXFSZ, SIG_DFL);
+  for (const int signal : {SIGPIPE, SIGXFSZ}) (void)std::signal(signal, SIG_DFL);
   sigprocmask(SIG_SETMASK, &mask, nullptr);
   if (!manner.on_terminal) connect(STDERR_FILENO, said, O_WRONLY | O_CREAT | O_APPEND);
   connect(STDIN_FILENO, "/dev/null", O_RDONLY);
@@ -53,7 +62,7 @@ void connect(int descriptor, const char* path, int flags) {
   for (const Redirection& file : command.files) connect(file.descriptor, file.path.c_str(), file.flags);
   if (manner.on_terminal) dup2(STDERR_FILENO, STDOUT_FILENO);
   if (manner.shared >= 0) fcntl(manner.shared, F_SETFD, 0);
-  if (manner.nice) setpriority(PRIO_PROCESS, 0, niceness);
+  if (manner.nice) give_way();
   if (!manner.with_parent) prctl(PR_SET_PDEATHSIG, 0);
   execvp(words[0], words);
   fail_in_child(words[0]);

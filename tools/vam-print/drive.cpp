@@ -107,7 +107,8 @@ std::optional<int> Drive::take_end(Child tool) {
   if (fails) order_end();                            // before anything that takes time
   record(tool, status);
   run_.note("ended", {{"tool", name}, {"status", run_.statuses[name]}});
-  if (fails && name == "ost" && has_stop()) {
+  const bool lost_reader = name == "capture" && status == 128 + SIGPIPE;  // vam-ost has ended, and is not seen yet
+  if ((name == "ost" || lost_reader) && has_stop()) {
     run_.outcome = "stopped by vam-ost";
     return 0;
   }
@@ -115,10 +116,6 @@ std::optional<int> Drive::take_end(Child tool) {
   if (status != 0) {
     if (is_of_views(name) && life_.state() == State::lit && !printed()) hold(name);
     return {};
-  }
-  if (name == "ost" && has_stop()) {
-    run_.outcome = "stopped by vam-ost";
-    return 0;
   }
   if (name != "project") return {};
   life_.reach(State::dark);

@@ -27,7 +27,8 @@ class Drive {
   void end_all();
   /// Until vam-status has read the end.
   void end_watching();
-  [[nodiscard]] const ShownLight& light() const { return light_; }
+  /// The records are complete.
+  void finish() { life_.reach(State::done); }
 
  private:
   void look();
