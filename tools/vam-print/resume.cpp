@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
@@ -102,45 +101,17 @@ void require_intact(const Run& run) {
   }
 }
 
-/// Settings that decide the dose or its place, as their file has them, in its order.
-std::vector<std::pair<std::string, std::string>> dose_settings(const model::Printer& printer) {
-  std::vector<std::pair<std::string, std::string>> settings;
-  std::string section;
-  for (const std::string& line : split(io::printer_toml(printer), '\n')) {
-    if (line.starts_with('[')) section = line.substr(1, line.find(']') - 1) + ".";
-    const auto equals = line.find(" = ");
-    if (line.starts_with('#') || equals == std::string::npos) continue;
-    const std::string key = section + trimmed(line.substr(0, equals));
-    const bool counts = key.starts_with("projector.") || key.starts_with("vial.") || key.starts_with("bath.") ||
-                        key.starts_with("resin.") || key == "stage.speed_deg_s" || key == "stage.direction";
-    if (!counts || key == "projector.relay" || key == "resin.name") continue;
-    std::string value = line.substr(equals + 3);
-    if (const auto comment = value.rfind("  # "); comment != std::string::npos) value.erase(comment);
-    settings.emplace_back(key, trimmed(value));
-  }
-  return settings;
-}
-
+/// Where settings that decide the dose or its place are not the same.
 std::vector<std::string> differences(const model::Printer& then, const model::Printer& now) {
-  const auto before = dose_settings(then);
-  const auto after = dose_settings(now);
-  const std::map<std::string, std::string> old(before.begin(), before.end());
-  std::map<std::string, std::string> fresh(after.begin(), after.end());
-  std::vector<std::string> names;
-  for (const auto& [name, value] : before) names.push_back(name);
-  for (const auto& [name, value] : after) {
-    if (old.count(name) == 0) names.push_back(name);
-  }
-  const auto text = [](const auto& all, const std::string& name) {
-    const auto at = all.find(name);
-    return at == all.end() ? "not set" : at->second;
-  };
-  std::vector<std::string> different;
-  for (const std::string& name : names) {
-    if (text(old, name) != text(fresh, name))
-      different.push_back(name + " " + text(old, name) + ", now " + text(fresh, name));
-  }
-  return different;
+  std::vector<std::string> changed = io::changed_settings(then, now);
+  std::erase_if(changed, [](const std::string& text) {
+    const std::string key = text.substr(0, text.find(' '));
+    const auto of = [&](const char* section) { return key.starts_with(section); };
+    const bool counts = of("projector.") || of("vial.") || of("bath.") || of("resin.") || key == "stage.speed_deg_s" ||
+                        key == "stage.direction";
+    return !counts || key == "projector.relay" || key == "resin.name";
+  });
+  return changed;
 }
 
 // In the events of the print that is resumed, whose last line a kill may have cut; one that ended has their hash.

@@ -50,4 +50,7 @@ enum class Records { apply, ignore };
 /// vial.radius_mm=12"; "default" where nothing does. For the metadata vam:printer.
 [[nodiscard]] std::string printer_settings(const model::Printer& printer);
 
+/// Every setting that is not the same, in the order of the file: "vial.radius_mm 12.7, now 12.72".
+[[nodiscard]] std::vector<std::string> changed_settings(model::Printer then, model::Printer now);
+
 }  // namespace vam::io

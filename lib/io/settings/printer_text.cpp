@@ -182,4 +182,17 @@ std::string sign_of_cut(std::string_view text) {
   return sign + ", as if it was cut off" + (missing.empty() ? "" : ", without " + join(missing, ", ")) + "; " + remedy;
 }
 
+std::vector<std::string> changed_settings(model::Printer then, model::Printer now) {
+  std::vector<std::string> changed;
+  for (const auto& field : printer_fields()) {
+    const auto text = [&](model::Printer& printer) {
+      const std::string value = std::visit(FieldText{}, field.slot(printer));
+      return value.empty() ? "not set" : value;
+    };
+    if (const std::string before = text(then), after = text(now); before != after)
+      changed.push_back(dotted_name(field) + " " + before + ", now " + after);
+  }
+  return changed;
+}
+
 }  // namespace vam::io
