@@ -21,7 +21,6 @@
 #include "session/printer.hpp"
 #include "vam-print/arm.hpp"
 #include "vam-print/drive.hpp"
-#include "vam-print/plan.hpp"
 #include "vam-print/resume.hpp"
 #include "vam-print/summary.hpp"
 

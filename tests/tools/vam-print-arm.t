@@ -220,7 +220,7 @@ is 'its records are copied' "$(cat rest2/calibration.json)" '{"edges": 1}'
 rm known/resumed.json; sed -i '/"event":"resumed"/d' known/events.jsonl
 is 'by its plan' "$(dry --resume known --plan | grep ^records)" 'records    as in known/printer.toml'
 sed -i 's/"serial": "/&9/' known/stage.json
-fails 65 'known: printed with another stage .stage.json differs.' dry --resume known --run rest3
+for way in --plan '--run rest3'; do fails 65 'known: printed with another stage .stage.json differs.' dry --resume known $way; done
 is 'a refused print leaves no mark' "$(ls known/resumed.json 2>/dev/null)" ''
 printf '{"event":"flip","t_monotonic_s":9,"frame":1,"angle_deg":7' >>cut/flips.jsonl
 is 'a truncated last line of the log is ignored' "$(print --resume cut --plan 2>&1 | grep ^exposure)" "$(print --resume again --plan 2>&1 | grep ^exposure)"

@@ -2,16 +2,21 @@
 #include "vam-print/arm.hpp"
 
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
+#include "base/text/utc.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
@@ -24,9 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int data_status = static_cast<int>(Fault::data);
-constexpr int usage_status = static_cast<int>(Fault::usage);
-
 std::string stamp() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
@@ -35,98 +37,234 @@ std::string stamp() {
   return {text, std::strftime(text, sizeof text, "print-%Y%m%dT%H%M%SZ", &utc)};
 }
 
-void require_records(Run& run) {
-  if (run.scans.empty()) {
-    run.printer_words.insert(run.printer_words.end(), {"--set", "calibration.folder="});
-    return;
+std::string name_of(const Json& identity) {
+  std::string name;
+  for (const char* key : {"maker", "model", "serial"}) {
+    if (const std::string text = text_at(identity, key); !text.empty()) name += text + " ";
   }
-  std::vector<std::string> needs;
-  for (const std::string& scan : run.scans) needs.insert(needs.end(), {"--need", scan});
-  run.require(check_records(run, needs), run.file("calibration.json"));
+  return name;
 }
 
-// From here on the settings are frozen, the calibration in force included.
-void freeze_settings(Run& run) {
-  const std::string file = run.file("printer.toml");
-  if (const int status = freeze_settings(run, file, run.options.accept_printer); status != 0) throw Ended{status};
-  run.talk.forget("printer");
-  run.require({"printer", {"vam-check", "--seal", file}});
-  run.printer = io::load_printer(file, {});
-  require_same_settings(run);
-  if (run.turns == 0) run.turns = run.options.turns.value_or(run.printer.stage.turns);
-  if (!run.printer.stage.device.empty()) return;
-  throw Error{Fault::usage,
-              "stage.device: no device is set; give it in the printer file, or --set stage.device=DEVICE (sim: is a "
-              "simulated stage)"};
-}
+/// The steps of arming. The first that fails ends it; a plan tells of each in a row, and goes on.
+class Steps {
+ public:
+  explicit Steps(Run& run) : run_(run), plan_(run.options.plan), printer_(run.file("printer.toml")) {}
 
-// The turns for which the sinogram was planned, of a print that is corrected.
-void plan_turns(Run& run) {
-  const Options& o = run.options;
-  run.require({"plan",
-               {"vam-dose", o.sinogram, "--like", o.target, "--printer", run.file("printer.toml"), "--report",
-                run.file("plan.json"), "-o", "-"}},
-              "/dev/null");
-  run.planned_turns = number_at(parse_json(text_of(run.file("plan.json"))), "turns");
-  if (run.planned_turns <= 0) {
-    throw Error{Fault::data, o.sinogram +
-                                 ": has no planned exposure; compute it by vam-optimize for a printer with "
-                                 "resin.critical_dose_mj_cm3"};
+  void take() {
+    row("sinogram", run_.options.sinogram);
+    if (run_.options.correct && !plan_) require_curve();
+    records();
+    settings();
+    metrology();  // wrong options, before a device is asked
+    if (run_.options.correct && !plan_) plan_turns();
+    light();
+    motion();
+    if (run_.options.has_views()) identify_device("camera", "vam-capture", run_.printer.camera.device);
+    devices();
   }
-  if (run.turns >= run.planned_turns) return;
-  throw Error{Fault::usage, "--turns: is " + std::to_string(run.turns) + ", but the sinogram is planned for " +
-                                format_number(run.planned_turns) +
-                                "; give more, as a print that is corrected may take longer"};
+  void disk();
+  [[nodiscard]] int worst() const { return worst_; }
+
+ private:
+  void row(std::string name, const std::string& text) const;
+  bool attempt(const std::string& name, const std::function<void()>& body);
+  std::string ask(const Command& command, const std::string& output = "");
+  void require_curve() const;
+  void records();
+  void settings();
+  void freeze_settings();
+  void plan_turns();
+  void light();
+  void motion();
+  bool identify_device(const std::string& name, const std::string& tool, const std::string& address);
+  void devices();
+  void metrology();
+
+  Run& run_;
+  bool plan_;
+  std::string printer_;
+  Json devices_ = Json::object();
+  int worst_ = 0;
+};
+
+void Steps::row(std::string name, const std::string& text) const {
+  if (!plan_) return;
+  constexpr std::size_t column = 11;
+  name.append(name.size() < column ? column - name.size() : 1, ' ');
+  std::printf("%s%s\n", name.c_str(), text.c_str());
 }
 
-void require_curve(const Run& run) {
-  const std::string& record = run.options.resin;
+// False, with a row that says so, where the body has said why it fails.
+bool Steps::attempt(const std::string& name, const std::function<void()>& body) {
+  int status = 0;
+  try {
+    body();
+    return true;
+  } catch (const Error& error) {
+    if (!plan_) throw;
+    say(error.what());
+    status = static_cast<int>(error.fault);
+  } catch (const Ended& ended) {
+    if (!plan_) throw;
+    status = ended.status;
+  }
+  row(name, "failed");
+  if (worst_ == 0) worst_ = status;
+  return false;
+}
+
+// What a command prints; in a plan, what it says is shown, but what is accepted was said with the settings.
+std::string Steps::ask(const Command& command, const std::string& output) {
+  run_.talk.forget(command.name);
+  std::string printed = run_.require(command, output);
+  if (plan_) run_.talk.show(command.name, [](const std::string& line) { return !line.ends_with("; accepted"); });
+  return printed;
+}
+
+void Steps::require_curve() const {
+  const std::string& record = run_.options.resin;
   if (text_of(record).find("vam-working-curve/") == std::string::npos)
     throw Error{Fault::data, record + ": not a record of vam-calibrate working-curve, as --correct requires"};
   (void)io::require_seal(parse_distinct(io::read_all(record), record), record);
 }
 
-void ask(Run& run, const std::string& name, const std::string& tool) {
-  run.require(identify(name, tool, run.file("printer.toml")), run.file(name + ".json"));
-}
-
-// The records belong to these devices.
-void require_devices_of_records(Run& run) {
-  ask(run, "stage", "vam-stage");
-  Json devices{{"stage", parse_json(text_of(run.file("stage.json")))}};
-  if (run.options.has_views()) {
-    ask(run, "camera", "vam-capture");
-    devices["camera"] = parse_json(text_of(run.file("camera.json")));
+void Steps::records() {
+  std::vector<std::string> needs;
+  for (const std::string& scan : run_.scans) needs.insert(needs.end(), {"--need", scan});
+  std::string printed;
+  if (needs.empty()) row("records", run_.frozen.empty() ? "none used" : "as in " + run_.frozen + "/printer.toml");
+  if (needs.empty() ||
+      !attempt("records", [&] { printed = ask(check_records(run_, needs), run_.file("calibration.json")); })) {
+    run_.scans.clear();
+    run_.printer_words.insert(run_.printer_words.end(), {"--set", "calibration.folder="});
+    return;
   }
-  io::write_text(run.file("devices.json"), devices.dump() + "\n");
-  run.require(check_records(run, {"--devices", run.file("devices.json")}), run.file("calibration.json"));
-}
-
-void require_devices_of_resumed(Run& run) {
-  const auto has = [&](const char* file) { return fs::is_regular_file(run.frozen + "/" + file); };
-  if (has("calibration.json")) fs::copy_file(run.frozen + "/calibration.json", run.file("calibration.json"));
-  if (has("stage.json")) {
-    ask(run, "stage", "vam-stage");
-    require_same_device(run, "stage");
-  }
-  if (run.options.has_views() && has("camera.json")) {
-    ask(run, "camera", "vam-capture");
-    require_same_device(run, "camera");
+  const Json found = parse_json(printed);
+  for (const auto& [scan, record] : found.items()) {
+    if (!record.is_object()) continue;
+    constexpr double hour_s = 3600;
+    const double age_h = (utc_seconds() - parse_utc(text_at(record, "utc"), scan)) / hour_s;
+    row("record", scan + ": " + text_at(record, "status") + ", " + fixed_number(age_h, 1) + " h old, valid until " +
+                      text_at(record, "valid_until"));
   }
 }
 
-// Every device answers and its limits allow the print.
-void require_answers(Run& run) {
-  const std::string printer = run.file("printer.toml");
-  run.require(plan_light(run, printer, run.options.accept_printer));
-  run.require(plan_motion(run, printer));
-  if (run.options.has_views()) run.require(identify("capture", "vam-capture", printer));
-  if (run.options.resume.empty() && run.options.until.empty()) {
-    for (const std::string& line : split(run.talk.text("project"), '\n')) {
-      if (line.find(" of the planned dose, ") != std::string::npos) pass_on(line);
+// From here on the settings are frozen, the calibration in force included.
+void Steps::settings() {
+  if (!attempt("settings", [&] { freeze_settings(); }) &&
+      run_to_end(freeze(run_, printer_, true), run_.talk.path("again")) != 0) {
+    throw Ended{worst_};
+  }
+  ask({"seal", {"vam-check", "--seal", printer_}});
+  run_.printer = io::load_printer(printer_, {});
+  attempt("resumption", [&] { require_same_settings(run_); });
+  if (run_.turns == 0) run_.turns = run_.options.turns.value_or(run_.printer.stage.turns);
+}
+
+// Those of a file that may have been cut off are refused; what is accepted is said.
+void Steps::freeze_settings() {
+  const int status = run_to_end(freeze(run_, printer_, run_.options.accept_printer), run_.talk.path("printer"));
+  for (const std::string& line : split(run_.talk.text("printer"), '\n')) {
+    constexpr std::string_view warning = "vam-project: warning: ";
+    if (line.starts_with(warning) && line.find(", as if it was cut off") != std::string::npos)
+      throw Error{Fault::data, line.substr(warning.size())};
+  }
+  run_.talk.show("printer");
+  if (status != 0) throw Ended{status};
+}
+
+// vam-ost refuses wrong options before it misses the views, of which it gets none here.
+void Steps::metrology() {
+  if (run_.options.until.empty()) return;
+  attempt("metrology", [&] {
+    if (run_.turns < 2) {
+      throw Error{Fault::usage,
+                  "--until: requires at least 2 turns, as it judges by a full turn of views of a visible print; there "
+                  "is " +
+                      std::to_string(run_.turns)};
     }
+    const int status = run_to_end(try_metrology(run_, printer_), run_.talk.path("metrology"));
+    if (run_.talk.text("metrology").find("stdin: is empty") != std::string::npos) return;
+    run_.talk.show("metrology");
+    if (status != 0) throw Ended{status};
+  });
+}
+
+// The turns for which the sinogram was planned, of a print that is corrected.
+void Steps::plan_turns() {
+  const Options& o = run_.options;
+  ask({"plan",
+       {"vam-dose", o.sinogram, "--like", o.target, "--printer", printer_, "--report", run_.file("plan.json"), "-o",
+        "-"}},
+      "/dev/null");
+  run_.planned_turns = number_at(parse_json(text_of(run_.file("plan.json"))), "turns");
+  if (run_.planned_turns <= 0) {
+    throw Error{Fault::data, o.sinogram +
+                                 ": has no planned exposure; compute it by vam-optimize for a printer with "
+                                 "resin.critical_dose_mj_cm3"};
   }
-  for (const char* name : {"project", "stage", "capture"}) run.talk.forget(name);
+  if (run_.turns < run_.planned_turns) {
+    throw Error{Fault::usage, "--turns: is " + std::to_string(run_.turns) + ", but the sinogram is planned for " +
+                                  format_number(run_.planned_turns) +
+                                  "; give more, as a print that is corrected may take longer"};
+  }
+  fs::create_directory(run_.file("renewed"));
+}
+
+void Steps::light() {
+  attempt("projector", [&] {
+    const std::string printed = ask(plan_light(run_, printer_));
+    if (plan_) return (void)std::fputs(printed.c_str(), stdout);
+    if (!run_.options.resume.empty() || !run_.options.until.empty()) return;
+    run_.talk.show("project",
+                   [](const std::string& line) { return line.find(" of the planned dose, ") != std::string::npos; });
+  });
+}
+
+void Steps::motion() {
+  if (!identify_device("stage", "vam-stage", run_.printer.stage.device)) return;
+  attempt("motion", [&] { row("motion", trimmed(ask(plan_motion(run_, printer_)), "\n")); });
+}
+
+// Records belong to their devices, and the rest of a print to those of its beginning.
+bool Steps::identify_device(const std::string& name, const std::string& tool, const std::string& address) {
+  return attempt(name, [&] {
+    if (name == "stage" && address.empty()) {
+      throw Error{Fault::usage,
+                  "stage.device: no device is set; give it in the printer file, or --set stage.device=DEVICE (sim: is "
+                  "a simulated stage)"};
+    }
+    const std::string printed = ask(identify(name, tool, printer_));
+    const Json identity = parse_json(printed);
+    devices_[name] = identity;
+    row(name, address + " " + name_of(identity));
+    const bool resumed = !run_.frozen.empty() && fs::is_regular_file(run_.frozen + "/" + name + ".json");
+    if (resumed || !run_.scans.empty()) io::write_text(run_.file(name + ".json"), printed);
+    if (resumed) require_same_device(run_, name);
+  });
+}
+
+void Steps::devices() {
+  const std::string records = run_.file("calibration.json");
+  if (!run_.frozen.empty() && fs::is_regular_file(run_.frozen + "/calibration.json"))
+    fs::copy_file(run_.frozen + "/calibration.json", records);
+  if (run_.scans.empty() || !devices_.contains("stage")) return;
+  const std::string file = run_.file("devices.json");
+  io::write_text(file, devices_.dump() + "\n");
+  attempt("devices", [&] { ask(check_records(run_, {"--devices", file}), records); });
+}
+
+void Steps::disk() {
+  const std::string parent = fs::path(run_.options.run).parent_path().string();
+  const std::string folder = parent.empty() ? "." : parent;
+  attempt("disk", [&] {
+    struct statvfs about = {};
+    if (statvfs(folder.c_str(), &about) != 0)
+      throw Error{Fault::no_output, folder + ": no such folder; create it for --run"};
+    constexpr double gb = 1e9;
+    const double free_gb = static_cast<double>(about.f_bavail) * static_cast<double>(about.f_frsize) / gb;
+    row("disk", fixed_number(free_gb, 1) + " GB free in " + fs::canonical(folder).string() + " for the run folder");
+  });
 }
 
 // What the tools need in the folder.
@@ -138,7 +276,7 @@ void furnish(const Run& run) {
     throw Error{Fault::io,
                 run.folder + ": has no room for 64 kB, which the summary of a print needs; free space on the disk"};
   }
-  for (const char* name : {".stage", ".project", ".capture", ".views"}) {
+  for (const char* name : pipes) {
     if (mkfifo(run.file(name).c_str(), 0644) != 0)
       throw Error{Fault::no_output, run.file(name) + ": cannot be made; give a --run where pipes can be"};
   }
@@ -165,48 +303,9 @@ void make_folder(Run& run) {
   }
 }
 
-int freeze_settings(Run& run, const std::string& file, bool accept_printer) {
-  const int status = run_to_end(freeze(run, file, accept_printer), run.talk.path("printer"));
-  bool cut = false;
-  for (const std::string& line : split(run.talk.text("printer"), '\n')) {
-    constexpr std::string_view warning = "vam-project: warning: ";
-    if (!line.starts_with(warning) || line.find(", as if it was cut off") == std::string::npos) continue;
-    say(line.substr(warning.size()));
-    cut = true;
-  }
-  if (cut) return data_status;
-  run.talk.show("printer");  // what is accepted, too
-  return status;
-}
-
-int check_metrology(const Run& run, const std::string& printer) {
-  if (run.turns < 2) {
-    say("--until: requires at least 2 turns, as it judges by a full turn of views of a visible print; there is " +
-        std::to_string(run.turns));
-    return usage_status;
-  }
-  const int status = run_to_end(try_metrology(run, printer), run.talk.path("metrology"));
-  if (run.talk.text("metrology").find("stdin: is empty") != std::string::npos) return 0;
-  run.talk.show("metrology");
-  return status;
-}
-
 void arm(Run& run) {
-  if (run.options.correct) require_curve(run);
-  require_records(run);
-  freeze_settings(run);
-  if (!run.options.until.empty()) {
-    const int status = check_metrology(run, run.file("printer.toml"));
-    run.talk.forget("metrology");
-    if (status != 0) throw Ended{status};
-  }
-  if (run.options.correct) {
-    plan_turns(run);
-    fs::create_directory(run.file("renewed"));
-  }
-  if (!run.scans.empty()) require_devices_of_records(run);
-  if (!run.frozen.empty()) require_devices_of_resumed(run);
-  require_answers(run);
+  Steps(run).take();
+  run.talk.forget();
   furnish(run);
   Json facts{{"turns", run.turns}, {"from_deg", run.from_deg}, {"sinogram_sha256", run.sinogram_sha256}};
   if (!run.options.resume.empty()) {
@@ -214,6 +313,17 @@ void arm(Run& run) {
     facts["resumes_utc"] = armed_utc(run.options.resume);
   }
   run.note("armed", facts);
+}
+
+int print_plan(Run& run) {
+  run.folder = run.talk.folder();
+  Steps steps(run);
+  steps.take();
+  steps.disk();
+  if (!run.options.commands) return steps.worst();
+  run.folder = run.options.run.empty() ? "run" : run.options.run;
+  for (const std::string& line : lines_by_hand(run)) std::printf("%s\n", line.c_str());
+  return steps.worst();
 }
 
 }  // namespace vam::print_tool

@@ -133,9 +133,9 @@ std::vector<std::string> lines_by_hand(const Run& run) {
   if (run.options.correct) lines.push_back("mkdir " + cli::quoted(run.file("renewed")));
   lines.push_back(line_of(freeze(run, settings, run.options.accept_printer)));
   lines.push_back("vam-check --seal " + cli::quoted(settings));
-  std::string pipes = "mkfifo";
-  for (const char* name : {".stage", ".project", ".capture", ".views"}) pipes += " " + cli::quoted(run.file(name));
-  lines.push_back(pipes);
+  std::string make = "mkfifo";
+  for (const char* name : pipes) make += " " + cli::quoted(run.file(name));
+  lines.push_back(make);
   for (const Command& tool : tools_of(run)) lines.push_back(line_of(tool) + " &");
   if (run.options.correct) lines.push_back(line_of(renew(run)) + " &");
   lines.emplace_back("wait");
@@ -162,9 +162,9 @@ Command identify(const std::string& name, const std::string& tool, const std::st
   return {name, {tool, "identify", "--printer", printer}};
 }
 
-Command plan_light(const Run& run, const std::string& printer, bool accept_printer) {
+Command plan_light(const Run& run, const std::string& printer) {
   Words words{"vam-project"};
-  add_exposure(words, run, printer, accept_printer);
+  add_exposure(words, run, printer, true);  // the settings were judged
   add(words, {"--plan"});
   return {"project", words};
 }

@@ -2,6 +2,7 @@
 // The command lines of a print: what vam-print runs, and what runs by hand.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace vam::print_tool {
 [[nodiscard]] Command check_records(const Run& run, const std::vector<std::string>& more);
 [[nodiscard]] Command freeze(const Run& run, const std::string& file, bool accept_printer);
 [[nodiscard]] Command identify(const std::string& name, const std::string& tool, const std::string& printer);
-[[nodiscard]] Command plan_light(const Run& run, const std::string& printer, bool accept_printer);
+[[nodiscard]] Command plan_light(const Run& run, const std::string& printer);
 [[nodiscard]] Command plan_motion(const Run& run, const std::string& printer);
 [[nodiscard]] Command try_metrology(const Run& run, const std::string& printer);
 
@@ -23,6 +24,9 @@ namespace vam::print_tool {
 /// Beside it: new projections, the line on a terminal and the page.
 [[nodiscard]] Command renew(const Run& run);
 [[nodiscard]] Command watch(const Run& run);
+
+/// Between the tools, in the folder of the run.
+inline constexpr std::array pipes{".stage", ".project", ".capture", ".views"};
 
 /// All of them as a shell takes them, from an empty folder of the run to its end.
 [[nodiscard]] std::vector<std::string> lines_by_hand(const Run& run);

@@ -41,13 +41,14 @@ std::string Run::require(const Command& command, const std::string& output) {
   Command whole = command;
   whole.files.push_back({STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC});
   if (const int status = run_to_end(whole, talk.path(command.name)); status != 0) fail(command.name, status);
-  return output.empty() ? text_of(printed) : "";
+  return text_of(printed);
 }
 
 void Run::fail(const std::string& tool, int status) const {
-  std::string said = trimmed(talk.text(tool), "\n");
-  if (said.empty()) said = "vam-print: " + tool + " ended with status " + std::to_string(status);
-  for (std::string line : split(said, '\n')) {
+  std::vector<std::string> lines = split(trimmed(talk.text(tool), "\n"), '\n');
+  std::erase_if(lines, [](const std::string& line) { return line.empty() || line.ends_with("; accepted"); });
+  if (lines.empty()) lines.push_back("vam-print: " + tool + " ended with status " + std::to_string(status));
+  for (std::string& line : lines) {
     if (line.starts_with("tee:")) {
       line = "vam-print: " + file("angles.jsonl") + ": cannot be written: " + line.substr(line.rfind(": ") + 2);
     }

@@ -47,7 +47,7 @@ struct Run {
   /// An event, if the disk has room for it.
   void note(const std::string& event, const Json& facts);
   void note(const std::string& event);
-  /// Runs a command, which says why it fails: what it printed. Throws Ended.
+  /// Runs a command, which says why it fails: what it printed, into `output` if that is given. Throws Ended.
   std::string require(const Command& command, const std::string& output = "");
   /// Shows what a tool said, and throws Ended.
   [[noreturn]] void fail(const std::string& tool, int status) const;

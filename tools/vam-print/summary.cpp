@@ -13,6 +13,7 @@
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
 #include "io/stream/stream.hpp"
+#include "vam-print/commands.hpp"
 
 namespace vam::print_tool {
 
@@ -149,7 +150,7 @@ void write_summary(const Run& run, const ShownLight& light, int status) {
   std::error_code ignored;
   fs::remove(run.file(".reserve"), ignored);
   run.talk.keep(run.folder);
-  for (const char* pipe : {".stage", ".project", ".capture", ".views"}) fs::remove(run.file(pipe), ignored);
+  for (const char* pipe : pipes) fs::remove(run.file(pipe), ignored);
   io::write_text(run.file("summary.json"), lines_of(facts_of(run, light, status)));
   io::write_text(run.file("SHA256SUMS"), sums_of(run.folder));  // whoever finds the list finds all of it
 }

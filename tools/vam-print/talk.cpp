@@ -71,11 +71,21 @@ void Talk::forget(const std::string& tool) const {
   fs::remove(path(tool), ignored);
 }
 
+void Talk::forget() const {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder_, ignored)) fs::remove(entry.path(), ignored);
+}
+
 void Talk::show(const std::string& tool) const {
-  std::string said = text(tool);
-  if (!said.empty() && said.back() == '\n') said.pop_back();
+  show(tool, [](const std::string&) { return true; });
+}
+
+void Talk::show(const std::string& tool, const std::function<bool(const std::string&)>& counts) const {
+  const std::string said = trimmed(text(tool), "\n");
   if (said.empty()) return;
-  for (const std::string& line : split(said, '\n')) pass_on(line);
+  for (const std::string& line : split(said, '\n')) {
+    if (counts(line)) pass_on(line);
+  }
 }
 
 void Talk::keep(const std::string& run) const {

@@ -2,6 +2,7 @@
 // What the tools say, kept in memory: the disk of the run may be full.
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace vam::print_tool {
@@ -21,8 +22,10 @@ class Talk {
   [[nodiscard]] std::string text(const std::string& tool) const;
   void add(const std::string& tool, const std::string& line) const;
   void forget(const std::string& tool) const;
-  /// Shows what a tool said, each line as it is.
+  void forget() const;
+  /// Shows what a tool said, each line as it is; or of its lines those that count.
   void show(const std::string& tool) const;
+  void show(const std::string& tool, const std::function<bool(const std::string&)>& counts) const;
   /// Into a run folder.
   void keep(const std::string& run) const;
 
