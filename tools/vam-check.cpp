@@ -13,7 +13,7 @@
 #include "cli/app.hpp"
 #include "io/inspect/provenance.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/resumption.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"

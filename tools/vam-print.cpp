@@ -21,8 +21,6 @@
 #include "session/printer.hpp"
 #include "vam-print/arm.hpp"
 #include "vam-print/drive.hpp"
-#include "vam-print/resume.hpp"
-#include "vam-print/summary.hpp"
 
 namespace {
 
@@ -83,20 +81,20 @@ class Print {
   int leave(int status) {
     if (!drive_) drive_.emplace(run_);
     drive_->end_all();
-    print_tool::ShownLight light(run_.folder);
-    light.read();
-    claim_.release(run_, light.lit());
-    if (!is_used(run_, light)) {  // refused before any device was in use: nothing to tell
+    run_.look();
+    claim_.release(run_, run_.is_lit());
+    if (!is_used(run_)) {  // refused before any device was in use: nothing to tell
       drive_->end_watching();
       std::error_code ignored;
       std::filesystem::remove_all(run_.folder, ignored);
       return status;
     }
-    log_dark(run_, light);
+    log_dark(run_);
+    drive_->keep_logs();
     run_.note("end", {{"outcome", run_.outcome}, {"status", status}});
     drive_->end_watching();
     try {
-      write_summary(run_, light, status);
+      write_summary(run_, status);
     } catch (const std::exception&) {
       say(run_.file("summary.json") + ": cannot be written completely; free space on the disk");
       if (status == 0) status = static_cast<int>(Fault::io);

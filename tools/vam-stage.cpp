@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log/chain.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "cli/app.hpp"
@@ -73,8 +74,8 @@ void drive(const std::string& command, Options& options) {
   device::EventLog log(options.log);
   auto& clock = device::real_clock();
   const auto stage = device::open_stage(options.device, clock, &guardian);
-  const auto print = [first = true](const device::AngleSample& sample) mutable {
-    device::print_line(to_line(sample, std::exchange(first, false)));
+  const auto print = [first = true, chain = std::string()](const device::AngleSample& sample) mutable {
+    device::print_line(chained(to_line(sample, std::exchange(first, false)), chain));
   };
   device::hurry(device::Urgency::driver);
   Json begin{{"command", command}, {"device", options.device}};

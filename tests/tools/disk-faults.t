@@ -44,13 +44,12 @@ resumed write:error=ENOSPC:when=2 74
 is 'where the disk is full no image is left' "$(follow= inject write:error=ENOSPC:when=2 vam-capture --device replay:views.exr --frames 2 -o full/; ls full)" manifest.jsonl
 resumed fsync:error=EIO:when=2 74
 
-# A log of flips is on the disk every second, and what is there is stated.
+# A log of flips is on the disk every second.
 tiny_print frames.exr
-play() { inject "$1" vam-project frames.exr -o null: --speed 120 --turns 1 --max-missed 1 --max-missed-lit 1 --log flips --log-seals seals; }
+play() { inject "$1" vam-project frames.exr -o null: --speed 120 --turns 1 --max-missed 1 --max-missed-lit 1 --log flips; }
 play fdatasync:delay_exit=1000
-holds 'a print of 3 s brings its log to the disk' "$(grep -c 'fdatasync.*= 0' .log/trace) >= 6"
-is 'all of it' "$(tail -n 1 seals | grep -o '"bytes":[0-9]*,"sha256":"[0-9a-f]*"')" "\"bytes\":$(stat -c %s flips),\"sha256\":\"$(sha256sum <flips | cut -c-64)\""
-rm flips seals; play fdatasync:error=EIO
+holds 'a print of 3 s brings its log to the disk' "$(grep -c 'fdatasync.*= 0' .log/trace) >= 3"
+rm flips; play fdatasync:error=EIO
 is 'a disk that fails ends no print' "$? $(grep -c '"event":"end"' flips)" '0 1'
 is 'and is told' "$(cat .log/err)" 'vam-project: warning: flips: cannot be brought to the disk (Input/output error); a power failure may lose its last lines'
 done_testing

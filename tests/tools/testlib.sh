@@ -73,6 +73,8 @@ holds() {  # holds NAME EXPRESSION: arithmetic truth, by awk: holds "volume" "$v
   if awk "BEGIN { exit !($2) }"; then report 0 "$1"; else report 1 "$1"; echo "# not true: $2"; fi
 }
 
+unchain() { sed -i 's/,"chain":"[0-9a-f]*"}$/}/' "$@"; }  # unchain LOG...: as of a program that states no chain
+
 json() {  # json FILE KEY: the number, text or truth at that dotted key
   python3 -c 'import json,sys
 value=json.load(open(sys.argv[1]))

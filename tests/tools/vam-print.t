@@ -123,7 +123,7 @@ holds 'and many of them were shown' "$(cut -d' ' -f2 compared) > 100"
 is 'a view every 10 degrees' "$(ls run/views | grep -c png)" 36
 is 'the run folder: outcome' "$(json run/summary.json outcome)" done
 is 'the run folder: every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' run/events.jsonl)" 0
-is 'the run folder: exit statuses' "$(grep -c '"event":"ended","tool":"[a-z]*","status":0}' run/events.jsonl) $(tail -n 1 run/events.jsonl | grep -c '"event":"end","outcome":"done","status":0}')" '4 1'
+is 'the run folder: exit statuses' "$(grep -c '"event":"ended","tool":"[a-z]*","status":0,' run/events.jsonl) $(tail -n 1 run/events.jsonl | grep -c '"event":"end","outcome":"done","status":0,')" '4 1'
 is 'the run folder: simulated devices' "$(json run/summary.json simulated)" "['stage', 'camera', 'light']"
 is 'the run folder: hash of the sinogram' "$(json run/summary.json sinogram_sha256)" "$(sha256sum <frames.exr | cut -d' ' -f1)"
 ok 'the run folder: every file is unchanged' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'

@@ -8,7 +8,7 @@
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "io/image/view_source.hpp"
-#include "io/settings/flip_rules.hpp"
+#include "io/settings/flip_log.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-calibrate/scan.hpp"
 
@@ -43,25 +43,11 @@ void refuse_over_exposed(const ScanOptions& options, const Image& image, const s
 }  // namespace
 
 std::vector<DisplayHistory> read_flips(const std::string& path) {
+  io::FlipLog log(path);
+  log.read();
   std::vector<DisplayHistory> flips;
-  io::FlipRules rules(io::FlipRules::Order::required);
-  int number = 0;
-  for (const auto& line : split(io::read_all(path), '\n')) {
-    ++number;
-    if (line.empty()) continue;
-    const std::string place = path + ":" + std::to_string(number);
-    const Json event = parse_distinct(line, place);
-    try {
-      if (event.at("event") != "flip") {
-        rules.note(event, place);
-        continue;
-      }
-      const io::LoggedFlip flip = rules.take(event, place);
-      const DisplayHistory showing{flip.t_s, flip.frame};
-      if (flips.empty() || flips.back().frame != showing.frame) flips.push_back(showing);
-    } catch (const Json::exception&) {
-      throw Error{Fault::data, place + ": is not an event of a vam-project log"};
-    }
+  for (const io::LoggedFlip& flip : log.flips()) {
+    if (flips.empty() || flips.back().frame != flip.frame) flips.push_back({flip.t_s, flip.frame});
   }
   if (flips.empty()) throw Error{Fault::data, path + ": contains no flips; give the log of vam-project"};
   return flips;

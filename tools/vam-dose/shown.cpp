@@ -16,8 +16,7 @@
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
-#include "io/settings/resumption.hpp"
-#include "io/settings/run_sums.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 

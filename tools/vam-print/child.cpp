@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -13,9 +14,16 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log/status_line.hpp"
+#include "base/system_error.hpp"
+#include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 
 namespace vam::print_tool {
@@ -38,8 +46,12 @@ void connect(int descriptor, const char* path, int flags) {
   close(opened);
 }
 
-// What the print does not depend on: others go first, and where memory ends, the kernel ends this one.
+// What the print does not depend on: others go first, it takes half of the memory at most, and where that ends, the
+// kernel ends this one.
 void give_way() {
+  const auto bytes = static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+  const rlimit half{bytes / 2, bytes / 2};
+  setrlimit(RLIMIT_DATA, &half);
   setpriority(PRIO_PROCESS, 0, niceness);
   const int score = open("/proc/self/oom_score_adj", O_WRONLY);
   if (score < 0) return;
@@ -130,6 +142,68 @@ int run_to_end(const Command& command, const std::string& said) {
   const int status = child.status();
   device::check_interrupted();
   return status;
+}
+
+Talk::~Talk() {
+  for (const auto& file : files_) close(file.second);
+}
+
+std::string Talk::path(const std::string& tool) const {
+  const auto [file, fresh] = files_.try_emplace(tool, -1);
+  if (fresh) file->second = memfd_create(tool.c_str(), MFD_CLOEXEC);
+  if (file->second < 0) throw system_error(Fault::memory, "cannot hold what " + tool + " says", errno);
+  return "/proc/self/fd/" + std::to_string(file->second);
+}
+
+std::string Talk::text(const std::string& tool) const {
+  const auto file = files_.find(tool);
+  return file == files_.end() ? "" : text_of("/proc/self/fd/" + std::to_string(file->second));
+}
+
+void Talk::add(const std::string& tool, const std::string& line) const {
+  std::ofstream(path(tool), std::ios::app) << line + "\n";
+}
+
+void Talk::forget(const std::string& tool) const { std::ofstream(path(tool), std::ios::trunc).close(); }
+
+void Talk::forget() const {
+  for (const auto& file : files_) forget(file.first);
+}
+
+void Talk::show(const std::string& tool, const std::function<bool(const std::string&)>& counts) const {
+  const std::string said = trimmed(text(tool), "\n");
+  if (said.empty()) return;
+  for (const std::string& line : split(said, '\n')) {
+    if (counts(line)) pass_on(line);
+  }
+}
+
+void Talk::show(const std::string& tool) const {
+  show(tool, [](const std::string&) { return true; });
+}
+
+void Talk::keep(const std::string& run) const {
+  for (const auto& file : files_) {
+    if (const std::string said = text(file.first); !said.empty())
+      std::ofstream(run + "/" + file.first + ".err") << said;
+  }
+}
+
+std::string text_of(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return "";
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string last_line(const std::string& text) {
+  const std::string whole = trimmed(text, "\n");
+  return whole.substr(whole.rfind('\n') + 1);  // npos + 1: all
+}
+
+void pass_on(const std::string& line) {
+  status_line::make_way();
+  std::fprintf(stderr, "%s\n", printable(line).c_str());
 }
 
 }  // namespace vam::print_tool

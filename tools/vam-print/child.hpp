@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tools as processes: their command lines, what they are connected to, how they end.
+// The tools as processes: their command lines, what they are connected to, what they say, how they end.
 #pragma once
 
 #include <sys/types.h>
 
 #include <csignal>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -63,5 +65,38 @@ class Child {
 /// Runs a command to its end and returns its status; throws device::Interrupted when a signal came meanwhile, which is
 /// passed on.
 int run_to_end(const Command& command, const std::string& said);
+
+/// What the tools say on standard error, in memory without a name: the disk of the run may be full.
+class Talk {
+ public:
+  Talk() = default;
+  ~Talk();
+  Talk(const Talk&) = delete;
+  Talk& operator=(const Talk&) = delete;
+
+  /// The file of what a tool says, for this process and until it becomes another, its children. Throws Fault::memory.
+  [[nodiscard]] std::string path(const std::string& tool) const;
+  [[nodiscard]] std::string text(const std::string& tool) const;
+  void add(const std::string& tool, const std::string& line) const;
+  void forget(const std::string& tool) const;
+  void forget() const;
+  /// Shows of the lines that a tool said those that count.
+  void show(const std::string& tool, const std::function<bool(const std::string&)>& counts) const;
+  void show(const std::string& tool) const;
+  /// Into a run folder.
+  void keep(const std::string& run) const;
+
+ private:
+  mutable std::map<std::string, int> files_;
+};
+
+/// The whole of a small file; empty where there is none.
+[[nodiscard]] std::string text_of(const std::string& path);
+
+/// The last line, without its end.
+[[nodiscard]] std::string last_line(const std::string& text);
+
+/// A line that has the name of its tool already.
+void pass_on(const std::string& line);
 
 }  // namespace vam::print_tool

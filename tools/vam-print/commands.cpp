@@ -55,8 +55,8 @@ Command project(const Run& run) {
   add_exposure(words, run, run.file("printer.toml"), run.options.accept_printer);
   if (run.options.correct) add(words, {"--frames-from", run.file("renewed")});
   add(words, {"--follow", run.file(".project"), "--max-missed", text(run.options.max_missed), "--max-missed-lit",
-              text(run.options.max_missed_lit), "--log", run.file("flips.jsonl"), "--log-seals",
-              run.file("events.jsonl"), "--report", run.file("project.json"), "--die-with-parent"});
+              text(run.options.max_missed_lit), "--log", run.file("flips.jsonl"), "--report", run.file("project.json"),
+              "--die-with-parent"});
   return {"project", words};
 }
 

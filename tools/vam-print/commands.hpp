@@ -2,7 +2,6 @@
 // The command lines of a print: what vam-print runs, and what runs by hand.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -24,9 +23,6 @@ namespace vam::print_tool {
 /// Beside it: new projections, the line on a terminal and the page.
 [[nodiscard]] Command renew(const Run& run);
 [[nodiscard]] Command watch(const Run& run);
-
-/// Between the tools, in the folder of the run.
-inline constexpr std::array pipes{".stage", ".project", ".capture", ".views"};
 
 /// All of them as a shell takes them, from an empty folder of the run to its end.
 [[nodiscard]] std::vector<std::string> lines_by_hand(const Run& run);

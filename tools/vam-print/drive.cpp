@@ -46,7 +46,7 @@ void Drive::start() {
   std::ofstream(run_.file("angles.jsonl")) << std::flush;
   for (const Command& command : tools_of(run_))
     tools_.emplace_back(command, run_.talk.path(command.name), Manner{.shared = lock_});
-  life_.enter(State::homed);
+  life_.reach(State::homed);
   run_.note("started");
   const bool terminal = isatty(STDERR_FILENO) == 1;
   if (terminal || run_.options.page) {
@@ -58,19 +58,25 @@ void Drive::start() {
     renewal_.emplace(renewal, run_.talk.path("renew"), Manner{.nice = true});
   }
   steward_.emplace(run_, tools_, lock_);
-  angles_ = std::make_unique<device::SyncedLog>(run_.file("angles.jsonl"));
+  std::vector<std::string> logs;
+  for (const char* log : {"flips", "angles", "stage", "capture", "ost", "renewed"})
+    logs.push_back(run_.file(std::string(log) + ".jsonl"));
+  keeper_.emplace(logs, [this](const Json& stated) {
+    run_.note("sealed", {{"logs", stated}});
+    run_.keep_events();
+  });
   // A busy machine must not hold up the order to end.
   device::hurry(device::Urgency::driver);
 }
 
 // Which state the logs show.
 void Drive::look() {
-  light_.read();
+  run_.look();
   if (life_.state() == State::homed) {
     std::ifstream angles(run_.file("angles.jsonl"));
-    if (angles.peek() != std::ifstream::traits_type::eof()) life_.enter(State::turning);
+    if (angles.peek() != std::ifstream::traits_type::eof()) life_.reach(State::turning);
   }
-  if (life_.state() == State::turning && light_.lit()) life_.enter(State::lit);
+  if (life_.state() == State::turning && run_.is_lit()) life_.reach(State::lit);
 }
 
 void Drive::wait_for_an_end() {
@@ -120,7 +126,7 @@ std::optional<int> Drive::take_end(Child tool) {
   if (name != "project") return {};
   life_.reach(State::dark);
   if (run_.open_loop_from) end_open_loop();
-  if (!light_.corrected()) return {};
+  if (!run_.is_corrected()) return {};
   run_.outcome = "complete, corrected";
   return 0;
 }
@@ -190,16 +196,16 @@ void Drive::give_up(std::string name, bool alone) {
 
 // A print that is corrected goes on when its camera is lost, or vam-ost: as planned, or as it was corrected.
 void Drive::hold(const std::string& name) {
-  life_.enter(State::held);
+  life_.reach(State::held);
   constexpr double digits = 100;
-  run_.open_loop_from = std::round(light_.turns() * digits) / digits;
+  run_.open_loop_from = std::round(run_.turns_shown() * digits) / digits;
   run_.planned_turns = std::ceil(run_.planned_turns);
   run_.note("open-loop", {{"tool", name}, {"turns", *run_.open_loop_from}});
   std::string how = "as it was corrected";
-  if (!light_.corrected()) {
+  if (!run_.is_corrected()) {
     const std::string planned = format_number(run_.planned_turns);
-    how = light_.turns() >= run_.planned_turns ? "and ends now: all " + planned + " planned turns are done"
-                                               : "as planned, to turn " + planned;
+    how = run_.turns_shown() >= run_.planned_turns ? "and ends now: all " + planned + " planned turns are done"
+                                                   : "as planned, to turn " + planned;
   }
   const std::string said = last_line(run_.talk.text(name));
   say("warning: " + (said.empty() ? name + " failed" : said) + "; the print goes on in open loop from turn " +
@@ -208,7 +214,7 @@ void Drive::hold(const std::string& name) {
 
 // Or when there is new light, which says itself when it ends.
 void Drive::require_planned_end() {
-  if (!light_.corrected() && light_.turns() >= run_.planned_turns) end_open_loop();
+  if (!run_.is_corrected() && run_.turns_shown() >= run_.planned_turns) end_open_loop();
 }
 
 void Drive::end_open_loop() {
@@ -232,7 +238,6 @@ void Drive::end_all() {
   tools_.clear();
   if (life_.state() != State::armed) life_.reach(State::still);
   steward_.reset();
-  angles_.reset();
   device::take_time();
   end_renewal();
 }
@@ -252,12 +257,12 @@ void Drive::end_renewal() {
   renewal_->order(SIGTERM);
   const int status = renewal_->status();
   renewal_.reset();
-  light_.read();
+  run_.look();
   if (status != 0 && status != 128 + SIGTERM) {
     return say("warning: vam-correct renew ended with status " + std::to_string(status) + ": " +
                last_line(run_.talk.text("renew")) + "; the print went on without new light");
   }
-  if (light_.corrected() || run_.open_loop_from || !light_.lit()) return;
+  if (run_.is_corrected() || run_.open_loop_from || !run_.is_lit()) return;
   say("warning: the print was not corrected: " + reason_as_before() + "; see " + run_.file("renewed.jsonl"));
 }
 

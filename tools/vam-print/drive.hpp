@@ -2,22 +2,20 @@
 // The event loop of a print: its tools run, and what the end of each means is decided by the state of the print.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include "device/os/synced_log.hpp"
+#include "device/os/log_keeper.hpp"
 #include "vam-print/child.hpp"
 #include "vam-print/leftover.hpp"
 #include "vam-print/run.hpp"
-#include "vam-print/shown_light.hpp"
 #include "vam-print/states.hpp"
 
 namespace vam::print_tool {
 
 class Drive {
  public:
-  explicit Drive(Run& run) : run_(run), light_(run.folder) {}
+  explicit Drive(Run& run) : run_(run) {}
 
   /// Starts the tools.
   void start();
@@ -25,6 +23,8 @@ class Drive {
   int watch();
   /// Dark, then still, whatever has happened; then what ran beside the print.
   void end_all();
+  /// Nothing is added to the logs any more but to the events, which state the others.
+  void keep_logs() { keeper_.reset(); }
   /// Until vam-status has read the end.
   void end_watching();
   /// The records are complete.
@@ -51,12 +51,11 @@ class Drive {
 
   Run& run_;
   Life life_;
-  ShownLight light_;
   int lock_ = -1;  // on the events, until the last tool has ended
   std::vector<Child> tools_;
   std::optional<Child> renewal_, watcher_;
   std::optional<Steward> steward_;
-  std::unique_ptr<device::SyncedLog> angles_;
+  std::optional<device::LogKeeper> keeper_;
 };
 
 }  // namespace vam::print_tool

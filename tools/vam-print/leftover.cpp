@@ -98,7 +98,7 @@ bool is_left_on(const Run& run, const Child& tool) {
 }
 
 void switch_off(const Run& run, const std::string& who) {
-  const std::string printed = run.talk.folder() + "/off";
+  const std::string printed = run.talk.path("off.out");
   const Command off{"off",
                     {"vam-devices", "off", "--printer", run.file("printer.toml"), "--light",
                      run.options.light.empty() ? "none" : run.options.light},

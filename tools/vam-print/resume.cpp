@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-print/resume.hpp"
-
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
-#include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
+#include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/resumption.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/stream/log_lines.hpp"
-#include "io/stream/stream.hpp"
+#include "vam-print/arm.hpp"
 
 namespace vam::print_tool {
 
@@ -29,40 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double turn_deg = 360;
-
-Json armed_event(const std::string& folder) {
-  io::LogLines events(folder + "/events.jsonl");
-  for (Json event; events.next(event);) {
-    if (text_at(event, "event") == "armed") return event;
-  }
-  return Json::object();
-}
-
-/// The last images of a print.
-struct LastImages {
-  double turns = 0;  // that vam-project was to show; 0: not stated
-  int count = 0;     // with light
-  double before_deg = 0, last_deg = 0;
-  [[nodiscard]] double step_deg() const { return count > 1 ? last_deg - before_deg : 0; }
-};
-
-LastImages last_images(const std::string& folder, const std::string& sinogram) {
-  LastImages images;
-  io::LogLines flips(folder + "/flips.jsonl");
-  for (Json event; flips.next(event);) {
-    const std::string name = text_at(event, "event");
-    if (name == "frames") {
-      throw Error{Fault::data, folder + ": showed new projections, so that the rest is not that of " + sinogram +
-                                   "; compute it (vam-dose --shown, vam-optimize --delivered) and print that"};
-    }
-    if (name == "sinogram" && images.turns == 0) images.turns = number_at(event, "turns");
-    if (name != "flip" || number_at(event, "frame", -1) < 0) continue;
-    images.before_deg = images.last_deg;
-    images.last_deg = number_at(event, "angle_deg");
-    ++images.count;
-  }
-  return images;
-}
 
 // Whoever prints keeps a lock on its events until the last tool has ended.
 void require_over(const std::string& folder) {
@@ -85,22 +48,6 @@ void require_not_resumed(const std::string& folder) {
               folder + ": already resumed, by " + (by.empty() ? "another print" : by) + "; resume that one instead"};
 }
 
-// As vam-status judges it; one that has ended is held to its hashes.
-void require_intact(const Run& run) {
-  const std::string& folder = run.options.resume;
-  if (const int status = run_to_end({"status", {"vam-status", folder}}, run.talk.path("status")); status != 0) {
-    std::string reason = last_line(run.talk.text("status"));
-    constexpr std::string_view name = "vam-status: ";
-    if (reason.starts_with(name)) reason.erase(0, name.size());
-    throw Error{static_cast<Fault>(status), reason};
-  }
-  run.talk.forget("status");
-  const std::string summary = folder + "/summary.json";
-  if (io::has_regular_file(summary) && text_at(parse_json(text_of(summary)), "outcome") == "complete, in open loop") {
-    throw Error{Fault::data, folder + ": is complete; it ended in open loop, with the turns of its plan"};
-  }
-}
-
 /// Where settings that decide the dose or its place are not the same.
 std::vector<std::string> differences(const model::Printer& then, const model::Printer& now) {
   std::vector<std::string> changed = io::changed_settings(then, now);
@@ -114,45 +61,61 @@ std::vector<std::string> differences(const model::Printer& then, const model::Pr
   return changed;
 }
 
-// In the events of the print that is resumed, whose last line a kill may have cut; one that ended has their hash.
+// In the events of the print that is resumed; one that ended has their hash.
 void tell(const std::string& folder, const std::string& event, const Json& facts) {
   if (fs::exists(folder + "/SHA256SUMS")) return;
-  const std::string log = folder + "/events.jsonl";
-  const std::string text = text_of(log);
-  if (!text.empty() && text.back() != '\n') fs::resize_file(log, text.rfind('\n') + 1);
-  device::EventLog(log, "vam-print")(event, facts);
+  device::EventLog(folder + "/events.jsonl", "vam-print")(event, facts);
+}
+
+// The last image that was shown, and how far the stage turns from one to the next.
+struct LastImage {
+  std::optional<double> at_deg;
+  double step_deg = 0;
+};
+
+LastImage last_image(const std::string& folder, const std::string& sinogram) {
+  LastImage image;
+  if (!io::has_regular_file(folder + "/flips.jsonl")) return image;
+  io::FlipLog log(folder);
+  log.read();
+  if (log.sinograms().size() > 1) {
+    throw Error{Fault::data, folder + ": showed new projections, so that the rest is not that of " + sinogram +
+                                 "; compute it (vam-dose --shown, vam-optimize --delivered) and print that"};
+  }
+  for (const io::LoggedFlip& flip : log.flips()) {
+    if (flip.frame < 0) continue;
+    if (image.at_deg) image.step_deg = flip.angle_deg - *image.at_deg;
+    image.at_deg = flip.angle_deg;
+  }
+  return image;
 }
 
 }  // namespace
 
-std::string armed_utc(const std::string& folder) { return text_at(armed_event(folder), "utc"); }
-
 void take_over(Run& run) {
   const std::string folder = run.options.resume;
-  require_intact(run);
-  const Json armed = armed_event(folder);
-  const double whole = number_at(armed, "turns");
-  if (whole < 1 || whole != std::floor(whole)) {
+  io::require_run(folder);
+  const io::RunEvents events = io::read_events(folder);
+  if (events.outcome == "complete, in open loop")
+    throw Error{Fault::data, folder + ": is complete; it ended in open loop, with the turns of its plan"};
+  if (events.turns < 1 || events.turns != std::floor(events.turns)) {
     throw Error{Fault::no_input, folder + ": not the run folder of a print that was armed; see its events.jsonl"};
   }
-  const LastImages images = last_images(folder, run.options.sinogram);
-  if (images.turns != 0 && images.turns != whole) {
-    throw Error{Fault::data, folder + "/events.jsonl: states " + format_number(whole) + " turns, but flips.jsonl " +
-                                 format_number(images.turns) + "; it was changed; restore it"};
-  }
+  const LastImage image = last_image(folder, run.options.sinogram);
   require_over(folder);
-  if (text_at(armed, "sinogram_sha256") != run.sinogram_sha256)
+  if (events.sinogram_sha256 != run.sinogram_sha256)
     throw Error{Fault::data, run.options.sinogram + ": not the sinogram of " + folder};
   require_not_resumed(folder);
   // The middle of the last image, and half of what the stage turned from one image to the next.
-  const double next_deg = images.count > 0 ? images.last_deg + images.step_deg() : 0;
-  if (next_deg >= turn_deg * whole) {
-    throw Error{Fault::data, folder + ": complete, all " + format_number(whole) + " turns; nothing is left to print"};
+  if (image.at_deg && *image.at_deg + image.step_deg >= turn_deg * events.turns) {
+    throw Error{Fault::data,
+                folder + ": complete, all " + format_number(events.turns) + " turns; nothing is left to print"};
   }
-  const double from_deg = images.count > 0 ? images.last_deg + images.step_deg() / 2 : number_at(armed, "from_deg");
+  const double from_deg = image.at_deg ? *image.at_deg + image.step_deg / 2 : events.from_deg;
   const double given = std::floor(from_deg / turn_deg);
   constexpr double digits = 1e4;
-  run.turns = static_cast<int>(whole - given);
+  run.resumed_utc = events.armed_utc;
+  run.turns = static_cast<int>(events.turns - given);
   run.from_deg = std::round((from_deg - turn_deg * given) * digits) / digits;
   if (!run.options.printer.file.empty()) return;
   // The settings that it was armed with, calibration included; records of today have no part in them.

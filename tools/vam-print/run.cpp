@@ -25,6 +25,19 @@ Run::Run(const Options& given)
   if (!options.resume.empty() || !options.until.empty()) options.accept_dose = true;
 }
 
+void Run::look() {
+  if (light_lost_) return;
+  try {
+    if (!light && !io::has_regular_file(file("flips.jsonl"))) return;
+    if (!light) light.emplace(folder);
+    light->read();
+  } catch (const Error&) {
+    light_lost_ = true;
+  }
+}
+
+double Run::turns_shown() const { return light && !light->flips().empty() ? light->flips().back().angle_deg / 360 : 0; }
+
 void Run::note(const std::string& event) { note(event, Json::object()); }
 
 void Run::note(const std::string& event, const Json& facts) {
@@ -36,8 +49,15 @@ void Run::note(const std::string& event, const Json& facts) {
   }
 }
 
+void Run::keep_events() {
+  try {
+    if (events_) events_->sync();
+  } catch (const Error&) {  // as above
+  }
+}
+
 std::string Run::require(const Command& command, const std::string& output) {
-  const std::string printed = output.empty() ? talk.folder() + "/printed" : output;
+  const std::string printed = output.empty() ? talk.path("printed") : output;
   Command whole = command;
   whole.files.push_back({STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC});
   if (const int status = run_to_end(whole, talk.path(command.name)); status != 0) fail(command.name, status);

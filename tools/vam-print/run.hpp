@@ -2,6 +2,7 @@
 // One print: what it was armed with, where its records are, what became of its tools.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,10 +11,10 @@
 
 #include "base/text/json_fwd.hpp"
 #include "device/os/event_log.hpp"
+#include "io/settings/flip_log.hpp"
 #include "model/printer.hpp"
 #include "vam-print/child.hpp"
 #include "vam-print/options.hpp"
-#include "vam-print/talk.hpp"
 
 namespace vam::print_tool {
 
@@ -33,6 +34,7 @@ struct Run {
   std::vector<std::string> printer_words;  // --printer FILE --set KEY=VALUE ...
   std::vector<std::string> scans;          // calibration that is required
   model::Printer printer;                  // in force
+  std::string resumed_utc;                 // when the print was armed of which this is the rest
   int turns = 0;
   double from_deg = 0;       // where light begins
   double planned_turns = 0;  // of a print that is corrected; until where it goes on in open loop
@@ -43,8 +45,17 @@ struct Run {
   std::optional<double> open_loop_from;  // the turn at which the views were lost
   std::optional<double> dark_s;          // when vam-project was seen to have ended
 
+  std::optional<io::FlipLog> light;  // that was shown
+
   [[nodiscard]] std::string file(const std::string& name) const { return folder + "/" + name; }
-  /// An event, if the disk has room for it.
+  /// Takes in what was added to `light`; a line that is none of a log of flips ends what is known.
+  void look();
+  [[nodiscard]] bool is_lit() const { return light && light->lit() > 0; }
+  /// New projections were shown; they say when they end.
+  [[nodiscard]] bool is_corrected() const { return light && light->end_turn(); }
+  /// Up to the last flip.
+  [[nodiscard]] double turns_shown() const;
+  /// An event, if the disk has room for it; from any thread, once there was one.
   void note(const std::string& event, const Json& facts);
   void note(const std::string& event);
   /// Runs a command, which says why it fails: what it printed, into `output` if that is given. Throws Ended.
@@ -52,9 +63,25 @@ struct Run {
   /// Shows what a tool said, and throws Ended.
   [[noreturn]] void fail(const std::string& tool, int status) const;
 
+  /// The events so far are on the disk.
+  void keep_events();
+
  private:
   std::unique_ptr<device::EventLog> events_;
+  bool light_lost_ = false;
 };
+
+/// Between the tools, in the folder of the run.
+inline constexpr std::array pipes{".stage", ".project", ".capture", ".views"};
+
+/// Something moved, was lit or taken.
+[[nodiscard]] bool is_used(const Run& run);
+
+/// Where vam-project was killed: when its last image went off, of which its log says nothing.
+void log_dark(const Run& run);
+
+/// summary.json and SHA256SUMS, and what the tools said. Throws Error where the disk has no room.
+void write_summary(const Run& run, int status);
 
 /// Lets a folder's new names and these files reach the disk, as far as it can.
 void bring_to_disk(const std::vector<std::string>& files);

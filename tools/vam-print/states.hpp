@@ -51,17 +51,48 @@ inline constexpr std::array<StateRule, 8> state_rules{{
 
 constexpr const StateRule& rule_of(State state) { return state_rules[static_cast<std::size_t>(state)]; }
 
-/// The table for the manual: a paragraph for each state.
-[[nodiscard]] std::vector<std::string> state_texts();
+// The table is in the order of the states; there is no way back, none from the dark to light, and from every motion one
+// to standstill.
+constexpr bool is_sound() {
+  for (std::size_t i = 0; i < state_rules.size(); ++i) {
+    const StateRule& rule = state_rules[i];
+    if (rule.state != static_cast<State>(i) || (rule.next & (2 * bit(rule.state) - 1)) != 0) return false;
+    if (rule.light && !rule.motion) return false;
+    if (rule.motion && rule.state < State::dark && (rule.next & bit(State::dark)) == 0) return false;
+    if (rule.state >= State::dark && (rule.light || rule.tool_lost != Loss::ignored)) return false;
+  }
+  return true;
+}
+static_assert(is_sound());
 
-/// The state of a print. Throws Fault::bug for a step that the table does not have.
+/// The table for the manual: a paragraph for each state.
+[[nodiscard]] inline std::vector<std::string> state_texts() {
+  std::vector<std::string> texts;
+  for (const StateRule& rule : state_rules) {
+    std::string next;
+    for (const StateRule& other : state_rules) {
+      if ((rule.next & bit(other.state)) != 0) next += (next.empty() ? "; then " : " or ") + std::string(other.name);
+    }
+    texts.push_back(std::string(rule.name) + ": " + std::string(rule.meaning) + next + ".");
+  }
+  return texts;
+}
+
+/// The state of a print.
 class Life {
  public:
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] const StateRule& rule() const { return rule_of(state_); }
-  void enter(State next);
   /// Through those between, to what is at least as late; nothing where it is later already.
-  void reach(State next);
+  void reach(State next) {
+    while (state_ < next) {
+      State step = next;  // the earliest one that may follow, unless `next` itself may
+      for (auto n = state_rules.size(); (rule().next & bit(next)) == 0 && n-- > 0;) {
+        if ((rule().next & bit(static_cast<State>(n))) != 0) step = static_cast<State>(n);
+      }
+      state_ = step;
+    }
+  }
 
  private:
   State state_ = State::armed;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-print/summary.hpp"
-
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <utility>
 
+#include "base/error.hpp"
 #include "base/log/log.hpp"
-#include "base/sha256.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
 #include "io/stream/stream.hpp"
-#include "vam-print/commands.hpp"
+#include "vam-print/run.hpp"
 
 namespace vam::print_tool {
 
@@ -21,41 +21,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The last lines of a log that have this, as JSON; discarded where there is none.
-Json last_with(const std::string& file, const std::string& words) {
-  Json last;
+// Of a log, those that have this in their text.
+std::vector<Json> entries(const std::string& file, const std::string& words) {
+  std::vector<Json> found;
   for (const std::string& line : split(text_of(file), '\n')) {
-    if (line.find(words) != std::string::npos) last = parse_json(line);
+    if (line.find(words) == std::string::npos) continue;
+    if (Json entry = parse_json(line); entry.is_object()) found.push_back(std::move(entry));
   }
-  return last.is_discarded() ? Json() : last;
+  return found;
 }
 
 long count_of(const std::string& file, const std::string& event) {
-  long count = 0;
-  for (const std::string& line : split(text_of(file), '\n')) count += text_at(parse_json(line), "event") == event;
-  return count;
-}
-
-bool is_simulated(const std::string& file, const std::string& event) {
-  const auto lines = split(text_of(file), '\n');
-  return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
-    return line.find("\"simulated\":true") != std::string::npos && text_at(parse_json(line), "event") == event;
-  });
+  return std::ssize(entries(file, "\"event\":\"" + event + "\""));
 }
 
 Json simulated(const Run& run) {
   Json devices = Json::array();
-  if (is_simulated(run.file("stage.jsonl"), "begin")) devices.push_back("stage");
-  if (is_simulated(run.file("capture.jsonl"), "begin")) devices.push_back("camera");
-  if (is_simulated(run.file("flips.jsonl"), "light")) devices.push_back("light");
+  for (const auto& [log, event, device] : {std::array{"stage.jsonl", "begin", "stage"},
+                                           {"capture.jsonl", "begin", "camera"},
+                                           {"flips.jsonl", "light", "light"}}) {
+    for (const Json& entry : entries(run.file(log), "\"simulated\":true")) {
+      if (text_at(entry, "event") != event) continue;
+      devices.push_back(device);
+      break;
+    }
+  }
   return devices;
 }
 
-// Of whole lines; a line that was cut counts for no reader.
-std::string flips_hash(const Run& run) {
-  std::string text = text_of(run.file("flips.jsonl"));
-  text.resize(text.rfind('\n') + 1);  // npos + 1: none
-  return sha256(text);
+// As far as the last image.
+Json reached(const Run& run) {
+  double lit_deg = 0;
+  for (const io::LoggedFlip& flip : run.light->flips()) lit_deg = flip.frame >= 0 ? flip.angle_deg : lit_deg;
+  constexpr double digits = 1e4;
+  const std::vector<Json> figures = entries(run.file("ost.jsonl"), "\"missing_percent\"");
+  return {{"turns", std::round(lit_deg / 360 * digits) / digits},
+          {"lit_flips", run.light->lit()},
+          {"missed_flips", run.light->missed()},
+          {"figures", figures.empty() ? Json() : figures.back()}};
 }
 
 Json embedded(const Run& run, const char* name) {
@@ -63,12 +66,7 @@ Json embedded(const Run& run, const char* name) {
   return value.is_discarded() ? Json() : value;
 }
 
-Json facts_of(const Run& run, const ShownLight& light, int status) {
-  Json reached;
-  if (fs::exists(run.file("flips.jsonl"))) {
-    reached = light.reached();
-    reached["figures"] = last_with(run.file("ost.jsonl"), "\"missing_percent\"");
-  }
+Json facts_of(const Run& run, int status) {
   Json statuses = Json::object();
   for (const auto& [name, ended] : run.statuses) statuses[name] = ended;
   Json facts{{"schema", FormatKind("vam-print").schema()},
@@ -78,8 +76,7 @@ Json facts_of(const Run& run, const ShownLight& light, int status) {
              {"status", status},
              {"turns", run.turns},
              {"simulated", simulated(run)},
-             {"reached", reached},
-             {"flips_sha256", flips_hash(run)},
+             {"reached", run.light ? reached(run) : Json()},
              {"sinogram_sha256", run.sinogram_sha256},
              {"exit_statuses", statuses}};
   if (run.options.correct) {
@@ -120,38 +117,36 @@ std::string sums_of(const std::string& folder) {
 
 }  // namespace
 
-bool is_used(const Run& run, const ShownLight& light) {
+bool is_used(const Run& run) {
   const auto has = [&](const char* name) { return !text_of(run.file(name)).empty(); };
-  return has("stage.jsonl") || has("capture.jsonl") || light.any();
+  return has("stage.jsonl") || has("capture.jsonl") || (run.light && !run.light->flips().empty());
 }
 
-void log_dark(const Run& run, const ShownLight& light) {
-  const auto& last = light.last();
-  const std::string file = run.file("flips.jsonl");
-  if (!run.dark_s || !last || last->frame < 0 || !text_of(file).ends_with('\n')) return;
+void log_dark(const Run& run) {
+  if (!run.dark_s || !run.light || run.light->flips().empty() || run.light->flips().back().frame < 0) return;
+  const io::LoggedFlip& last = run.light->flips().back();
   std::error_code ignored;
   fs::remove(run.file(".reserve"), ignored);
-  const double on_s = std::max(0.0, *run.dark_s - last->t_s);
+  const double on_s = std::max(0.0, *run.dark_s - last.t_s);
   const double turned_deg = run.printer.stage.speed_deg_s * on_s;
-  const Json flip{{"utc", utc_text(utc_seconds())},
-                  {"t_monotonic_s", last->t_s + on_s},
-                  {"event", "flip"},
-                  {"frame", -1},
-                  {"angle_deg", last->angle_deg + turned_deg},
-                  {"by", "vam-print"}};
-  std::ofstream(file, std::ios::app) << flip.dump() + "\n";
+  try {
+    device::EventLog(run.file("flips.jsonl"))
+        .at(last.t_s + on_s, "flip", {{"frame", -1}, {"angle_deg", last.angle_deg + turned_deg}, {"by", "vam-print"}});
+  } catch (const Error&) {
+    // The disk is full, which is reported.
+  }
   constexpr double noticed_s = 0.1;
   if (on_s <= noticed_s) return;
   say("warning: the last image stayed on for " + fixed_number(on_s, 2) + " s, while the stage turned by " +
       fixed_number(turned_deg, 0) + " deg; vam-dose --shown counts this light at the angle where it began");
 }
 
-void write_summary(const Run& run, const ShownLight& light, int status) {
+void write_summary(const Run& run, int status) {
   std::error_code ignored;
   fs::remove(run.file(".reserve"), ignored);
   run.talk.keep(run.folder);
   for (const char* pipe : pipes) fs::remove(run.file(pipe), ignored);
-  io::write_text(run.file("summary.json"), lines_of(facts_of(run, light, status)));
+  io::write_text(run.file("summary.json"), lines_of(facts_of(run, status)));
   io::write_text(run.file("SHA256SUMS"), sums_of(run.folder));  // whoever finds the list finds all of it
 }
 

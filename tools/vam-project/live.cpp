@@ -66,7 +66,7 @@ int Live::take_offer(int turn) {
 // From here on each flip is a heartbeat. The log's threads begin before the print hurries.
 void Live::begin() {
   log_.write_aside();
-  keeper_.emplace(options_.log, options_.log_seals);
+  keeper_.emplace(std::vector{options_.log});
   device::hurry(device::Urgency::driver);
   if (relay_ != nullptr) relay_->close();
 }

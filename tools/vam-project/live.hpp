@@ -13,7 +13,7 @@
 
 #include "base/text/json.hpp"
 #include "device/os/event_log.hpp"
-#include "device/os/synced_log.hpp"
+#include "device/os/log_keeper.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/projector/player.hpp"
 #include "device/projector/relayed_lamp.hpp"
@@ -58,7 +58,7 @@ class Live {
 
   LiveOptions options_;
   device::Guardian guardian_;                // first: it forks before any thread, window or device
-  std::optional<device::SyncedLog> keeper_;  // ends after the log that it keeps
+  std::optional<device::LogKeeper> keeper_;  // ends after the log that it keeps
   device::EventLog log_;
   device::Clock& clock_;
   std::unique_ptr<device::Relay> relay_;

@@ -100,9 +100,6 @@ void add_live(cli::App& app, Options& all) {
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error. Every second it is brought to the disk.");
-  app.option("--log-seals", "FILE", options.log_seals,
-             "Append to FILE, whenever --log was brought to the disk, the number of its bytes and their SHA-256, by "
-             "which lines that are lost later are found out; used by vam-print.");
   app.flag("--die-with-parent", options.with_parent, "Blank the display and exit when the parent process exits.");
 }
 

@@ -18,7 +18,6 @@ struct LiveOptions {
   std::string follow;
   std::string light;
   std::string log;
-  std::string log_seals;
   std::optional<double> latency_ms;
   double max_led_current_percent = 0;
   std::string relay;

@@ -129,7 +129,6 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
     facts["frames"] = live.frames();
     facts["turns"] = turns;
     facts["from_deg"] = options.live.from_deg;
-    if (!options.live.log_seals.empty()) facts["seals"] = true;
     live.note("sinogram", facts);
     std::optional<Renewal> renewal;  // its thread begins before the print hurries
     if (!options.live.frames_from.empty()) renewal.emplace(options.live.frames_from, live, renew);

@@ -19,8 +19,7 @@
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/resumption.hpp"
-#include "io/settings/run_sums.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
@@ -60,11 +59,7 @@ bool about_to_be_armed(const RunFolder& run) {
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path) : path_(path) {
-  std::error_code ignored;
-  if (!fs::is_directory(path, ignored))
-    throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
-  io::require_run_logs(path);
-  io::require_resumption(path);
+  io::require_run(path);
   if (!io::has_regular_file(file("events.jsonl")) && !about_to_be_armed(*this)) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
@@ -113,15 +108,12 @@ void RunFolder::read_events() {
     const std::chrono::duration<double> age = fs::file_time_type::clock::now() - written;
     progress_.silent_s = std::min(progress_.silent_s, std::max(0.0, age.count()));
   }
-  io::LogLines events(file("events.jsonl"));
-  for (Json line; events.next(line);) {
-    if (line.value("event", Json()) == "armed") {
-      progress_.turns = number_at(line, "turns", 0);
-      progress_.from_deg = number_at(line, "from_deg", 0);
-    } else if (line.value("event", Json()) == "end") {
-      progress_.outcome = text_at(line, "outcome");
-      progress_.status = static_cast<int>(number_at(line, "status", 0));
-    }
+  const io::RunEvents events = io::read_events(path_);
+  if (events.turns > 0) progress_.turns = events.turns;
+  progress_.from_deg = events.from_deg;
+  if (events.outcome) {
+    progress_.outcome = events.outcome;
+    progress_.status = events.status;
   }
   if (!progress_.outcome) read_summary();
   progress_.simulated.clear();
@@ -161,13 +153,9 @@ void RunFolder::read_angle() {
 
 void RunFolder::read_flips() {
   if (progress_.turns > 0 && settled_) progress_.given_fraction = 0;
-  const auto stated = io::stated_flips(path_);
-  if (!flips_) {
-    if (!io::has_regular_file(file("flips.jsonl"))) return io::require_stated_flips(path_);
-    flips_.emplace(path_);
-  }
+  if (!flips_ && !io::has_regular_file(file("flips.jsonl"))) return;
+  if (!flips_) flips_.emplace(path_);
   flips_->read();
-  io::require_stated_flips(path_, stated, flips_->lit(), flips_->sha256());
   progress_.missed = flips_->missed();
   progress_.blanks = flips_->blanks();
   if (const auto shown = flips_->shown(); !shown.empty()) {  // angles.jsonl may be cut
@@ -189,12 +177,9 @@ void RunFolder::look_for_end() {
   progress_.abandoned = !progress_.outcome && !is_alive && (is_over || progress_.silent_s > silence_s);
   if (is_alive || warned_ || !(progress_.outcome || progress_.abandoned) || io::has_run_sums(path_)) return;
   warned_ = true;
-  const auto stated = io::stated_flips(path_);
-  const bool is_held = stated ? !stated->sha256.empty() : flips_ && !flips_->seals_text().empty();
+  const std::string sealed = io::sealed_flips(path_);
   warn(path_ + ": has no SHA256SUMS, which a print writes when it has ended: it was killed, or the list is gone; " +
-       (!is_held ? "its logs are not verified"
-        : stated ? "of its logs only flips.jsonl is verified"
-                 : "of its logs only flips.jsonl is verified, " + flips_->seals_text()));
+       (sealed.empty() ? "its logs are not verified" : "only its logs are verified: " + sealed));
 }
 
 void RunFolder::read_records() {

@@ -2,18 +2,23 @@
 #include "device/os/event_log.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstring>
+#include <exception>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log/chain.hpp"
 #include "base/system_error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/utc.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
-#include "device/os/line_writer.hpp"
+#include "device/os/process.hpp"
 
 namespace vam::device {
 
@@ -33,7 +38,14 @@ EventLog::EventLog(const std::string& path, FormatKind schema) : path_(path), sc
 }
 
 EventLog::~EventLog() {
-  writer_.reset();
+  if (aside_.joinable()) {
+    {
+      const std::lock_guard lock(access_);
+      ended_ = true;
+    }
+    changed_.notify_all();
+    aside_.join();
+  }
   if (fd_ >= 0) close(fd_);
 }
 
@@ -50,20 +62,86 @@ void EventLog::at(double t_s, const std::string& event, const Json& facts) {
 
 void EventLog::line(const Json& facts) {
   if (fd_ < 0) return;
+  const std::lock_guard lock(access_);
+  require_written();
   Json whole = facts;
-  if (!versioned_.test_and_set()) whole["schema"] = schema_.schema();
+  if (!std::exchange(versioned_, true)) whole["schema"] = schema_.schema();
   // Bytes that a device made up need not be UTF-8.
-  const std::string text = whole.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (writer_) return writer_->put(text);
-  write_text(fd_, text, path_);
+  const std::string text = whole.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (!aside_.joinable()) return write({text});
+  pending_.push_back(text);
+  changed_.notify_all();
+}
+
+void EventLog::write(const std::vector<std::string>& objects) {
+  if (!shared_) catch_up();
+  std::string text;
+  for (const std::string& object : objects) text += (chained_ ? chained(object, chain_) : object) + "\n";
+  for (std::size_t at = 0; at < text.size();) {  // a disk that is just full takes a part, and says why at the rest
+    const ssize_t count = ::write(fd_, text.data() + at, text.size() - at);
+    if (count < 0) throw Error{Fault::io, path_ + ": write failed (" + std::strerror(errno) + ")"};
+    at += static_cast<std::size_t>(count);
+  }
+  size_ += static_cast<std::int64_t>(text.size());
+}
+
+// With what others have added, as a part of this process that ended, or one that was killed.
+void EventLog::catch_up() {
+  struct stat about = {};
+  if (path_ == "-" || fstat(fd_, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size == size_) return;
+  constexpr off_t longest = 1 << 20;  // line that is read
+  const off_t from = std::max<off_t>(0, about.st_size - longest);
+  std::string tail(static_cast<std::size_t>(about.st_size - from), '\0');
+  const int reader = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  const ssize_t count = reader < 0 ? -1 : pread(reader, tail.data(), tail.size(), from);
+  const int problem = errno;
+  if (reader >= 0) close(reader);
+  if (count != std::ssize(tail)) throw system_error(Fault::io, path_ + ": cannot be read on", problem);
+  tail.resize(tail.rfind('\n') + 1);  // npos + 1: none
+  size_ = from + std::ssize(tail);
+  if (size_ < about.st_size && ftruncate(fd_, size_) != 0)
+    throw system_error(Fault::io, path_ + ": cannot be written", errno);
+  if (!tail.empty()) tail.pop_back();
+  chain_ = chain_of(tail.substr(tail.rfind('\n') + 1));
+  chained_ = size_ == 0 || !chain_.empty();
 }
 
 void EventLog::write_aside() {
-  if (fd_ >= 0 && !writer_) writer_ = std::make_unique<LineWriter>(fd_, path_);
+  if (fd_ >= 0 && !aside_.joinable()) aside_ = std::thread([this] { write_in_order(); });
+}
+
+// As urgent as who drives the device: what is not written yet is lost when the program is killed.
+void EventLog::write_in_order() {
+  hurry(Urgency::driver);
+  std::unique_lock lock(access_);
+  while (problem_.empty()) {
+    changed_.wait(lock, [this] { return !pending_.empty() || ended_; });
+    if (pending_.empty()) return;
+    const std::vector<std::string> objects = std::exchange(pending_, {});
+    writing_ = true;
+    lock.unlock();
+    std::string problem;
+    try {
+      write(objects);
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    lock.lock();
+    writing_ = false;
+    problem_ = problem;
+    changed_.notify_all();
+  }
+}
+
+void EventLog::require_written() const {
+  if (!problem_.empty()) throw Error{Fault::io, problem_};
 }
 
 void EventLog::sync() {
-  if (writer_) writer_->finish();
+  std::unique_lock lock(access_);
+  changed_.wait(lock, [this] { return (pending_.empty() && !writing_) || !problem_.empty(); });
+  require_written();
+  lock.unlock();  // others do not wait for the disk
   if (fd_ >= 0) fdatasync(fd_);
 }
 

@@ -2,21 +2,23 @@
 // One JSON line per event, with UTC and monotonic time, for cron and for a later search for causes.
 #pragma once
 
-#include <atomic>
+#include <condition_variable>
+#include <cstdint>
 #include <functional>
-#include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "base/text/format_version.hpp"
 #include "base/text/json_fwd.hpp"
 
 namespace vam::device {
 
-class LineWriter;
-
-/// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file, one write a line, so that several
-/// processes may share it; the first line that each adds has the schema, too. "-" is standard error; an empty path logs
-/// nothing. Throws Fault::no_output, Fault::io.
+/// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file; the first line that each log adds
+/// has the schema, too. A file that is new, or of such lines, is chained (base/log/chain.hpp), by one writer at a time;
+/// what a writer that was killed has begun of a line is cut off. "-" is standard error; an empty path logs nothing.
+/// Throws Fault::no_output, Fault::io.
 class EventLog {
  public:
   explicit EventLog(const std::string& path, FormatKind schema = "vam-log");
@@ -27,8 +29,10 @@ class EventLog {
   void operator()(const std::string& event, const Json& facts);
   /// What happened at a time of its own, on CLOCK_MONOTONIC.
   void at(double t_s, const std::string& event, const Json& facts);
-  /// A line as it is.
+  /// A line as it is; from any thread.
   void line(const Json& facts);
+  /// Several processes may write at once, and no line has a chain.
+  void share() { shared_ = true; }
   /// From now on lines are written by a thread of their own, in order: nobody waits for the disk. What cannot be
   /// written is thrown by the next line, or by sync().
   void write_aside();
@@ -38,12 +42,25 @@ class EventLog {
   void undo();
 
  private:
+  void write(const std::vector<std::string>& objects);
+  void catch_up();
+  void write_in_order();
+  void require_written() const;
+
   std::string path_;
   FormatKind schema_;
   int fd_ = -1;
-  bool made_ = false;
-  std::atomic_flag versioned_;  // the schema is stated
-  std::unique_ptr<LineWriter> writer_;
+  bool made_ = false, versioned_ = false;  // the schema is stated
+  bool shared_ = false, chained_ = false;
+  std::int64_t size_ = -1;  // of the file, as this has left it
+  std::string chain_;       // of its last line
+
+  std::mutex access_;
+  std::condition_variable changed_;
+  std::vector<std::string> pending_;
+  std::string problem_;
+  bool writing_ = false, ended_ = false;
+  std::thread aside_;
 };
 
 /// Runs body; what ends it early is logged to that path, {"event": "error", "status": 75, "message": "..."} or

@@ -14,10 +14,8 @@
 #include "io/image/any_frames.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
-#include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/settings/resumption.hpp"
-#include "io/settings/run_sums.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/log_lines.hpp"
@@ -63,20 +61,10 @@ std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType ty
   return {{what, source->is_sealed(), source->seal(), source->info().history, source->has_checksums()}};
 }
 
-// Of a run without a summary, how much of its flips was held to seals, in words; empty: nothing.
-std::string seals_of(const std::string& run) {
-  FlipLog log(run);
-  log.read();
-  return log.seals_text();
-}
-
-// A print that goes on, or was killed: its settings and, up to the last seal, its flips are what they were.
+// A print that goes on, or was killed: its settings and logs are what they were, up to where its events state them.
 std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
-  const auto outcome = logged_outcome(path);  // first: the log states the version of the folder
-  require_run_settings(path);
-  require_run_logs(path);
-  require_resumption(path);
-  require_stated_flips(path);
+  const auto outcome = read_events(path).outcome;  // first: the log states the version of the folder
+  require_run(path);
   if (outcome) {
     throw Error{Fault::data,
                 path +
@@ -85,30 +73,28 @@ std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
                     *outcome + ", by events.jsonl); wait, or restore both; if it was killed in that " +
                     "minute, nothing of it can be verified"};
   }
-  const std::string log = (std::filesystem::path(path) / "flips.jsonl").string();
-  if (const std::string seals = has_regular_file(log) ? seals_of(path) : ""; !seals.empty())
-    return {{"run folder of a print that goes on or was killed: flips.jsonl " + seals, true, "", {}}};
+  if (const std::string sealed = sealed_flips(path); !sealed.empty())
+    return {{"run folder of a print that goes on or was killed: " + sealed, true, "", {}}};
   throw Error{Fault::data, path +
                                ": has no SHA256SUMS, which a print writes when it has ended: it goes on, was "
                                "killed, or the list is gone; nothing of it can be verified"};
 }
 
-// A print that has ended left a list of hashes, and one of its flips in the summary.
+// A print that has ended left a list of hashes.
 std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
   require_run_versions(path);
-  const auto stated = stated_flips(path);
   if (has_run_sums(path)) {
     const RunSums sums = read_run_sums(path);
     auto damage = run_damage(path, sums, fast);
-    if (damage.empty() && !fast) require_stated_flips(path);
+    if (damage.empty() && !fast) require_logs(path);
     return {{"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, false, damage}};
   }
-  if (!stated) return inspect_unended(path);
-  if (!fast) require_stated_flips(path);
-  if (stated->sha256.empty()) return {{"run folder without SHA256SUMS", false, "", {}}};
+  if (!has_regular_file((std::filesystem::path(path) / "summary.json").string())) return inspect_unended(path);
+  require_run_logs(path);
+  if (sealed_flips(path).empty()) return {{"run folder without SHA256SUMS", false, "", {}}};
   throw Error{Fault::data, path +
-                               ": has no SHA256SUMS, which a print writes when it has ended; only flips.jsonl of it "
-                               "can be verified; restore the list"};
+                               ": has no SHA256SUMS, which a print writes when it has ended; only its logs can be "
+                               "verified; restore the list"};
 }
 
 std::vector<ProvenanceEntry> inspect_capture(const std::string& path, bool fast) {
@@ -134,14 +120,12 @@ void require_record_size(const Json& json, const std::string& text, const std::s
 std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
   const std::string name = input_name(path);
-  if (const auto stated = stated_flips(path); stated && !stated->sha256.empty()) {
-    require_stated_flips(path);
-    return {{"flips of a print", true, "", {}}};
-  }
   const std::filesystem::path file(path);
   if (!fast && file.filename() == "flips.jsonl" && has_regular_file((file.parent_path() / "events.jsonl").string())) {
-    const std::string seals = seals_of(path);
-    return {{"flips of a print without a summary" + (seals.empty() ? "" : ": " + seals), !seals.empty(), "", {}}};
+    const std::string run = file.parent_path().string();
+    require_run_logs(run.empty() ? "." : run);
+    const std::string sealed = sealed_flips(run);
+    return {{"flips of a print" + (sealed.empty() ? "" : ": " + sealed), !sealed.empty(), "", {}}};
   }
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
@@ -149,6 +133,11 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
   if (file.filename() == "manifest.jsonl" && is_of(head, "vam-capture")) {  // it says nothing without the images
     const std::string folder = file.parent_path().string();
     return inspect_capture(folder.empty() ? "." : folder, fast);
+  }
+  if (path.ends_with(".jsonl") && has_regular_file(path)) {
+    LogLines lines(path);
+    for (std::string line; lines.next(line);) continue;
+    if (lines.is_chained()) return {{"log", true, "", {}}};
   }
   const Json json = parse_distinct(text, name);
   if (json.is_object()) {
@@ -179,7 +168,8 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path, bool fast) {
 }  // namespace
 
 std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast) {
-  if (std::filesystem::path(path).filename() == "flips.jsonl" && !has_regular_file(path)) require_stated_flips(path);
+  const std::filesystem::path file(path);
+  if (file.filename() == "flips.jsonl" && !has_regular_file(path)) require_logs(file.parent_path().string());
   const auto type = known_file_type(path);
   if (!type) {
     for (const char* ending : {".exr", ".vdb", ".mkv"}) {

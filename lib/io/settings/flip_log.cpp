@@ -7,12 +7,15 @@
 #include <cstring>
 #include <filesystem>
 #include <set>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
+#include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -21,23 +24,14 @@ namespace {
 
 constexpr double last_run_up_deg = -360;  // from this angle on missed blanks are judged
 
-// SHA-256 of the sinogram of a run folder; empty where it is not known.
-std::string armed_sinogram(const std::string& run) {
-  if (!std::filesystem::is_directory(run)) return "";
-  LogLines events((std::filesystem::path(run) / "events.jsonl").string());
-  for (Json event; events.next(event);) {
-    if (event.contains("sinogram_sha256") && event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
-  }
-  return "";
-}
-
 std::string log_of(const std::string& run) {
   return std::filesystem::is_directory(run) ? (std::filesystem::path(run) / "flips.jsonl").string() : run;
 }
 
 // The hashes that a run states; none while there is no log.
 std::set<std::string> hashes_of(const std::string& run) {
-  std::set<std::string> hashes{armed_sinogram(run)};
+  std::set<std::string> hashes;
+  if (std::filesystem::is_directory(run)) hashes.insert(read_events(run).sinogram_sha256);
   if (has_regular_file(log_of(run))) {
     FlipLog log(run);
     log.read();
@@ -47,10 +41,15 @@ std::set<std::string> hashes_of(const std::string& run) {
   return hashes;
 }
 
-// A print that has ended is held to the hash of its flips.
-bool has_stated_hash(const std::string& run) {
-  const auto stated = stated_flips(run);
-  return stated && !stated->sha256.empty();
+int whole_at(const Json& event, const char* key, const std::string& place) {
+  constexpr int most = 100000000;  // frames, and blanks of 100 Hz in 11 days
+  const int least = std::string_view(key) == "frame" ? -1 : 0;
+  const Json& value = event.at(key);
+  const double number = value.is_number_integer() ? value.get<double>() : -2;
+  if (number >= least && number <= most) return static_cast<int>(number);
+  throw Error{Fault::data, place + ": " + key + " " + briefly(value.dump()) + " is not a whole number from " +
+                               std::to_string(least) + " to " + std::to_string(most) +
+                               "; the log was changed; restore it"};
 }
 
 std::string beginnings(const std::set<std::string>& hashes) {
@@ -61,64 +60,69 @@ std::string beginnings(const std::set<std::string>& hashes) {
 
 }  // namespace
 
-FlipLog::FlipLog(const std::string& path)
-    : file_(log_of(path)),
-      lines_(file_),
-      rules_(has_stated_hash(path) ? FlipRules::Order::free : FlipRules::Order::required) {
-  if (!has_regular_file(file_)) {
-    require_stated_flips(path);
-    throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(ENOENT)};
-  }
-  if (!has_stated_hash(path)) proof_.emplace(file_);
+FlipLog::FlipLog(const std::string& path) : file_(log_of(path)), lines_(file_) {
+  if (!has_regular_file(file_)) throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(ENOENT)};
 }
 
 void FlipLog::read() {
-  if (proof_) proof_->read();
-  for (std::string text; lines_.next(text);) {
-    ++line_;
-    text.push_back('\n');
-    hash_.add(text.data(), text.size());
-    bytes_ += text.size();
-    take(parse_distinct(text, place()));
-    if (proof_ && proof_->check(bytes_, hash_)) sealed_ = count_of(flips_);
-  }
-  if (!proof_) return;
-  FlipsEnd end{.seals_since_s = seals_since_s_};
-  for (const RunFlip& flip : flips_) {
-    end.lit = flip.frame >= 0;
-    end.t_s = flip.t_s;
-    if (!end.lit) continue;
-    end.lit_s = flip.t_s;
-    if (!end.lit_deg) end.lit_deg = flip.angle_deg;
-  }
-  proof_->require_all(bytes_, end);
+  for (std::string text; lines_.next(text);) take(parse_distinct(text, lines_.place()));
 }
-
-std::string FlipLog::place() const { return file_ + ":" + std::to_string(line_); }
 
 void FlipLog::take(const Json& event) {
   try {
-    if (event.at("event") == "display") begin_run();
-    if (event.at("event") == "sinogram" && proof_) proof_->require_armed(event);
-    if (event.at("event") == "sinogram" || event.at("event") == "frames") {
+    const std::string name = event.at("event");
+    if (name == "display") begin_run();
+    if (name == "sinogram") {
+      frames_ = event.value("frames", 0L);
+      turns_ = event.value("turns", 0.0);
+    }
+    if (name == "sinogram" || name == "frames") {
       sinograms_.push_back({event.value("sinogram_sha256", ""), event.at("full_scale"), event.value("sinogram", "")});
       sinogram_ = count_of(sinograms_) - 1;
-      if (event.at("event") == "frames" && event.contains("turns"))
+      if (name == "frames" && event.contains("turns"))
         end_turn_ = event.at("turn").get<double>() + event.at("turns").get<double>();
-      if (!seals_since_s_ && event.value("seals", false)) seals_since_s_ = event.at("t_monotonic_s").get<double>();
     }
-    if (event.at("event") != "flip") return rules_.note(event, place());
-    flips_.push_back({rules_.take(event, place()), false, sinogram_});
-    if (flips_.back().angle_deg < last_run_up_deg) return;
-    missed_ += flips_.back().missed;
-    blanks_ += 1 + flips_.back().missed;
+    if (name == "flip") take_flip(event);
   } catch (const Json::exception&) {
-    throw Error{Fault::data, place() + ": is not an event of a vam-project log"};
+    throw Error{Fault::data, lines_.place() + ": is not an event of a vam-project log"};
   }
 }
 
+void FlipLog::take_flip(const Json& event) {
+  const LoggedFlip flip{event.at("t_monotonic_s"), whole_at(event, "frame", lines_.place()), event.at("angle_deg"),
+                        event.contains("missed") ? whole_at(event, "missed", lines_.place()) : 0};
+  require_possible(flip);
+  flips_.push_back(flip);
+  places_.push_back({false, sinogram_});
+  if (flip.angle_deg < last_run_up_deg) return;
+  missed_ += flip.missed;
+  blanks_ += 1 + flip.missed;
+}
+
+void FlipLog::require_possible(const LoggedFlip& flip) const {
+  constexpr double most_s = 1e9;      // 30 years since the machine started
+  constexpr double most_turns = 1e6;  // as of stage.turns
+  const bool lit = flip.frame >= 0;
+  const double least_deg = lit ? 0 : -360 * most_turns;
+  const double most_deg = 360 * (lit && turns_ > 0 ? turns_ : most_turns);
+  const auto refuse = [&](const std::string& problem) {
+    throw Error{Fault::data, lines_.place() + ": " + problem + "; the log was changed; restore it"};
+  };
+  if (!(flip.t_s >= 0 && flip.t_s <= most_s)) {
+    refuse("time " + format_number(flip.t_s) + " s is not between 0 and " + format_number(most_s) +
+           " s since the machine started");
+  }
+  if (frames_ > 0 && flip.frame >= frames_)
+    refuse("frame " + std::to_string(flip.frame) + " is none of the " + std::to_string(frames_) + " of the print");
+  if (flip.angle_deg >= least_deg && flip.angle_deg <= most_deg) return;
+  refuse("angle " + format_number(flip.angle_deg) + " deg is not between " + format_number(least_deg) + " and " +
+         format_number(most_deg) + " deg" + (lit ? ", where images are shown" : ""));
+}
+
 void FlipLog::begin_run() {
-  if (!flips_.empty()) flips_.back().last = true;
+  if (!places_.empty()) places_.back().last = true;
+  frames_ = 0;
+  turns_ = 0;
   sinogram_ = -1;
   end_turn_.reset();
 }
@@ -129,13 +133,13 @@ std::vector<ShownImage> FlipLog::images(const Counts& counts) const {
   double before_s = 0;
   for (std::size_t i = 0; i < flips_.size(); ++i) {
     if (flips_[i].frame < 0 || (end_s_ && flips_[i].t_s >= *end_s_)) continue;
-    const bool last = flips_[i].last || i + 1 == flips_.size();
+    const bool last = places_[i].last || i + 1 == flips_.size();
     double seconds = !last ? std::max(0.0, flips_[i + 1].t_s - flips_[i].t_s) : before_s;
     before_s = seconds;
     if (end_s_) seconds = std::min(seconds, *end_s_ - flips_[i].t_s);
-    if (counts(flips_[i])) shown.push_back({flips_[i].angle_deg, seconds});
+    if (counts(places_[i])) shown.push_back({flips_[i].angle_deg, seconds});
   }
-  if (end_s_ && !flips_.empty() && !flips_.back().last && counts(flips_.back())) extrapolate(before_s, shown);
+  if (end_s_ && !flips_.empty() && !places_.back().last && counts(places_.back())) extrapolate(before_s, shown);
   return shown;
 }
 
@@ -158,86 +162,28 @@ void FlipLog::extrapolate(double image_s, std::vector<ShownImage>& shown) const 
 }
 
 long FlipLog::lit() const {
-  return std::count_if(flips_.begin(), flips_.end(), [](const RunFlip& flip) { return flip.frame >= 0; });
+  return std::count_if(flips_.begin(), flips_.end(), [](const LoggedFlip& flip) { return flip.frame >= 0; });
 }
-
-std::string FlipLog::seals_text() const {
-  if (!sealed_) return "";
-  const int all = count_of(flips_);
-  return "sealed up to flip " + std::to_string(*sealed_) + " of " + std::to_string(all) +
-         (*sealed_ < all ? "; unsealed after it: " + std::to_string(all - *sealed_) : "");
-}
-
-std::string FlipLog::sha256() const { return Sha256(hash_).digest(); }
 
 void FlipLog::truncate_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }
 
 std::vector<ShownImage> FlipLog::shown() const {
-  return images([](const RunFlip&) { return true; });
+  return images([](const RunPlace&) { return true; });
 }
 
 std::vector<ShownImage> FlipLog::shown_of(const std::string& sha256) const {
   const auto is_it = [&](const ShownSinogram& one) { return !one.sha256.empty() && one.sha256 == sha256; };
   const bool stated = std::any_of(sinograms_.begin(), sinograms_.end(), is_it);
-  return images([&](const RunFlip& flip) {
-    const bool is_unknown = flip.sinogram < 0 || sinograms_[flip.sinogram].sha256.empty();
-    return is_unknown ? !stated : is_it(sinograms_[flip.sinogram]);
+  return images([&](const RunPlace& at) {
+    const bool is_unknown = at.sinogram < 0 || sinograms_[at.sinogram].sha256.empty();
+    return is_unknown ? !stated : is_it(sinograms_[at.sinogram]);
   });
-}
-
-std::optional<FlipSummary> stated_flips(const std::string& run) {
-  const std::filesystem::path log(log_of(run));
-  const std::string file = (log.parent_path() / "summary.json").string();
-  if (log.filename() != "flips.jsonl" || !has_regular_file(file)) return std::nullopt;
-  constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
-  const Json summary = parse_distinct(read_all(file, Content::text, most_bytes), file);
-  if (!is_of(summary, "vam-print")) return std::nullopt;  // being written
-  FlipSummary stated;
-  const Json reached = summary.value("reached", Json());
-  if (reached.is_object() && reached.value("lit_flips", Json()).is_number_integer()) stated.lit = reached["lit_flips"];
-  if (const Json hash = summary.value("flips_sha256", Json()); hash.is_string()) stated.sha256 = hash;
-  return stated;
-}
-
-std::optional<std::string> logged_outcome(const std::string& run) {
-  std::optional<std::string> outcome;
-  LogLines events((std::filesystem::path(run) / "events.jsonl").string());
-  for (Json event; events.next(event);) {
-    if (text_at(event, "event") == "end") outcome = text_at(event, "outcome", "unknown");
-  }
-  return outcome;
-}
-
-void require_stated_flips(const std::string& run, const std::optional<FlipSummary>& stated, long lit,
-                          const std::string& sha256) {
-  if (!stated) return;
-  constexpr const char* remedy = "; it was cut or changed; restore it";
-  if (stated->lit && *stated->lit != lit) {
-    throw Error{Fault::data, log_of(run) + ": has " + std::to_string(lit) + " lit flips, but summary.json states " +
-                                 std::to_string(*stated->lit) + remedy};
-  }
-  if (stated->sha256.empty() || stated->sha256 == sha256) return;
-  throw Error{Fault::data, log_of(run) + ": has lines whose SHA-256 begins " + sha256.substr(0, 8) +
-                               ", but summary.json states " + stated->sha256.substr(0, 8) + remedy};
-}
-
-void require_stated_flips(const std::string& run) {
-  const auto stated = stated_flips(run);
-  if (!has_regular_file(log_of(run))) {
-    require_stated_flips(run, stated, 0, vam::sha256(""));
-    return require_no_flips(log_of(run));
-  }
-  FlipLog log(run);
-  log.read();
-  require_stated_flips(run, stated, log.lit(), log.sha256());
 }
 
 DisplayHistory read_showing(const std::string& run, const std::string& sinogram, std::optional<double> before_s) {
   require_sinogram_of(run, sinogram);
-  const auto stated_log = stated_flips(run);
   FlipLog log(run);
   log.read();
-  require_stated_flips(run, stated_log, log.lit(), log.sha256());
   if (before_s) log.truncate_at(*before_s);
   const std::string given = sinogram == "-" ? "" : sha256_of(sinogram);
   DisplayHistory showing{sinogram == "-" ? log.shown() : log.shown_of(given)};

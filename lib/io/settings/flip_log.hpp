@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/sha256.hpp"
-#include "io/settings/flip_rules.hpp"
-#include "io/settings/log_cross_check.hpp"
+#include "base/text/json_fwd.hpp"
 #include "io/stream/log_lines.hpp"
 
 namespace vam::io {
@@ -26,17 +24,26 @@ struct ShownSinogram {
   std::string name = {};  // of its file, where it then was
 };
 
+/// A line of the log, where the image changed.
+struct LoggedFlip {
+  double t_s = 0;  // CLOCK_MONOTONIC
+  int frame = -1;  // -1: dark
+  double angle_deg = 0;
+  long missed = 0;  // vertical blanks since the flip before
+};
+
 /// The log of a print, also of one that goes on.
 class FlipLog {
  public:
   /// flips.jsonl, or the run folder (vam-print) that holds it. Throws Fault::no_input, Fault::data for no regular file.
   explicit FlipLog(const std::string& path);
 
-  /// Takes in the whole lines that were added since the last call. Throws Fault::data for another kind of file, for
-  /// lines that no print leaves (FlipRules), and, of a run folder without a summary, to whose hash its lines are held,
-  /// where other logs prove that lines are missing or were changed (LogCrossCheck).
+  /// Takes in the whole lines that were added since the last call. Throws Fault::data for another kind of file, and for
+  /// numbers that no print has: frames are those that the log states, images are shown at 0 deg or later, within the
+  /// turns that it states.
   void read();
 
+  [[nodiscard]] const std::vector<LoggedFlip>& flips() const { return flips_; }
   /// The lit images so far, in order.
   [[nodiscard]] std::vector<ShownImage> shown() const;
   /// Those of a sinogram, by its SHA-256; where the log does not state it, those of which it states none.
@@ -54,18 +61,15 @@ class FlipLog {
   [[nodiscard]] long blanks() const { return blanks_; }
   /// Flips to images with light.
   [[nodiscard]] long lit() const;
-  /// Of a run folder without a summary, up to which flip the log was held to its seals, in words; empty: to none.
-  [[nodiscard]] std::string seals_text() const;
-  /// SHA-256 of the lines so far, their ends included.
-  [[nodiscard]] std::string sha256() const;
 
  private:
-  struct RunFlip : LoggedFlip {
+  struct RunPlace {
     bool last = false;  // of its run
     int sinogram = -1;  // -1: not stated
   };
   void take(const Json& event);
-  [[nodiscard]] std::string place() const;
+  void take_flip(const Json& event);
+  void require_possible(const LoggedFlip& flip) const;
   void begin_run();
   template <class Counts>
   [[nodiscard]] std::vector<ShownImage> images(const Counts& counts) const;
@@ -74,46 +78,24 @@ class FlipLog {
 
   std::string file_;
   LogLines lines_;
-  FlipRules rules_;
-  std::optional<LogCrossCheck> proof_;
-  Sha256 hash_;
-  std::uint64_t bytes_ = 0;
-  int line_ = 0;
-  std::vector<RunFlip> flips_;
+  long frames_ = 0;   // of the print; 0: not stated
+  double turns_ = 0;  // likewise
+  std::vector<LoggedFlip> flips_;
+  std::vector<RunPlace> places_;  // theirs
   std::vector<ShownSinogram> sinograms_;
-  int sinogram_ = -1;          // that is shown
-  std::optional<int> sealed_;  // flips up to the last seal
-  std::optional<double> seals_since_s_;
+  int sinogram_ = -1;  // that is shown
   std::optional<double> end_s_, end_turn_;
   long missed_ = 0;
   long blanks_ = 0;
 };
-
-/// What the summary.json of a run states of its log of flips, which vam-print writes when it ends.
-struct FlipSummary {
-  std::optional<long> lit;  // flips with light
-  std::string sha256;       // of its whole lines; empty: not stated
-};
-/// None where no summary is there yet. Read it before the log, which it closes.
-[[nodiscard]] std::optional<FlipSummary> stated_flips(const std::string& run);
-/// How a print ended, by the last of the events that vam-print writes before the summary; none while it goes on, or of
-/// one that was killed.
-[[nodiscard]] std::optional<std::string> logged_outcome(const std::string& run);
-/// Throws Fault::data where a log differs from what was stated: a number of lit flips with both numbers, other lines by
-/// the beginnings of both hashes. A log that is gone has neither.
-void require_stated_flips(const std::string& run, const std::optional<FlipSummary>& stated, long lit,
-                          const std::string& sha256);
-/// Throws as stated_flips(), FlipLog and require_stated_flips(); of a run folder also where flips.jsonl is gone, and
-/// its other logs prove that there was light.
-void require_stated_flips(const std::string& run);
 
 /// What a run showed of a sinogram.
 struct DisplayHistory {
   std::vector<ShownImage> images;
   double full_scale = 0;  // 0: not stated
 };
-/// Throws as FlipLog, require_sinogram_of() and require_stated_flips(), and Fault::data for a log in which its
-/// full scale changes. before_s: as FlipLog::end_at().
+/// Throws as FlipLog and require_sinogram_of(), and Fault::data for a log in which its full scale changes. before_s: as
+/// FlipLog::truncate_at().
 [[nodiscard]] DisplayHistory read_showing(const std::string& run, const std::string& sinogram,
                                           std::optional<double> before_s = {});
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/settings/resumption.hpp"
-
 #include <cstdint>
 #include <filesystem>
 
@@ -8,6 +6,7 @@
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "io/settings/flip_log.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
@@ -19,32 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* mark_name = "resumed.json";
 constexpr std::uint64_t most_mark_bytes = std::uint64_t{1} << 20;
-
-// What the events of a run say of it and of others.
-struct RunLinks {
-  std::string armed_utc;
-  std::string sinogram_sha256;
-  std::string resumes;
-  std::string resumes_utc;  // when that was armed
-  std::string resumed_by;   // empty: not resumed
-};
-
-RunLinks links_of(const std::string& run) {
-  RunLinks links;
-  LogLines events((fs::path(run) / "events.jsonl").string());
-  for (Json event; events.next(event);) {
-    const std::string name = text_at(event, "event");
-    if (name == "armed") {
-      links.armed_utc = text_at(event, "utc");
-      links.sinogram_sha256 = text_at(event, "sinogram_sha256");
-      links.resumes = text_at(event, "resumes");
-      links.resumes_utc = text_at(event, "resumes_utc");
-    }
-    if (name == "resumed") links.resumed_by = text_at(event, "by", "another print");
-    if (name == "released") links.resumed_by = "";
-  }
-  return links;
-}
 
 bool is_same(const fs::path& one, const fs::path& other) {
   std::error_code ignored;
@@ -98,7 +71,7 @@ std::string resumption_problem(const std::string& run) {
   const std::string problem = is_there ? mark_problem(run, path) : "";
   if (is_there && problem.empty()) return "";
   try {
-    const std::string by = links_of(run).resumed_by;
+    const std::string by = read_events(run).resumed_by;
     if (is_there) return problem + remedy_of(by);
     return by.empty() ? "" : path + ": is gone, but events.jsonl states that " + by + " resumed this print; restore it";
   } catch (const Error& error) {
@@ -117,12 +90,12 @@ void require_resumption(const std::string& run) {
   if (const std::string problem = resumption_problem(run); !problem.empty()) throw Error{Fault::data, problem};
 }
 
-std::string resumes_of(const std::string& run) { return links_of(run).resumes; }
+std::string resumes_of(const std::string& run) { return read_events(run).resumes; }
 
 bool resumes(const std::string& run, const std::string& earlier) {
-  const RunLinks links = links_of(run);
+  const RunEvents links = read_events(run);
   if (links.resumes.empty() || is_same(run, earlier)) return false;
-  const RunLinks first = links_of(earlier);
+  const RunEvents first = read_events(earlier);
   return links.resumes_utc == first.armed_utc && links.sinogram_sha256 == first.sinogram_sha256;
 }
 
@@ -131,7 +104,7 @@ std::vector<std::string> unmarked_resumptions(const std::vector<std::string>& ru
   std::error_code ignored;
   for (const std::string& earlier : runs) {
     const std::string mark = (fs::path(earlier) / mark_name).string();
-    if (fs::exists(fs::symlink_status(mark, ignored)) || !links_of(earlier).resumed_by.empty()) continue;  // told
+    if (fs::exists(fs::symlink_status(mark, ignored)) || !read_events(earlier).resumed_by.empty()) continue;  // told
     for (const std::string& run : runs) {
       if (!resumes(run, earlier) || !has_light(run)) continue;
       problems.push_back(mark + ": is gone, but " + run +

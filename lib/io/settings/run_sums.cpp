@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/settings/run_sums.hpp"
-
 #include <algorithm>
 #include <filesystem>
 
@@ -11,7 +9,7 @@
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/flip_log.hpp"
-#include "io/settings/resumption.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
@@ -149,7 +147,11 @@ void require_run_logs(const std::string& folder) {
     if (!has_regular_file(path_in(folder, name))) continue;
     if (const std::string problem = link_problem(folder, name); !problem.empty()) throw Error{Fault::data, problem};
   }
-  if (!has_run_sums(folder)) return require_sealed_settings(folder);
+  if (!has_run_sums(folder)) {
+    require_run_versions(folder);
+    require_sealed_settings(folder);
+    return require_logs(folder);
+  }
   const RunSums sums = read_run_sums(folder);
   for (const char* name : counted) {
     const bool needed = std::string(name) == "events.jsonl" || has_regular_file(path_in(folder, name));
@@ -172,6 +174,14 @@ void require_run_settings(const std::string& folder) {
   throw Error{Fault::data, path +
                                ": is gone, without which the print can be neither resumed nor its dose computed; "
                                "restore it"};
+}
+
+void require_run(const std::string& folder) {
+  if (std::error_code ignored; !fs::is_directory(folder, ignored))
+    throw Error{Fault::no_input, folder + ": not a folder; give the run folder of vam-print"};
+  require_run_logs(folder);
+  require_resumption(folder);
+  if (!read_events(folder).outcome) require_run_settings(folder);
 }
 
 void require_run_versions(const std::string& folder) {

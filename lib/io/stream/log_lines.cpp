@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log/chain.hpp"
 #include "base/system_error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
@@ -38,8 +39,29 @@ LogLines::LogLines(const std::string& path, std::streamoff tail_bytes) : path_(p
   if (std::string first; tail_bytes == 0 || !next(first)) return;
   stream_.seekg(0, std::ios::end);
   const std::streamoff size = stream_.tellg();
-  stream_.seekg(size > tail_bytes ? size - tail_bytes : 0);
-  if (size > tail_bytes) stream_.ignore(tail_bytes, '\n');  // begins somewhere within
+  if (size <= tail_bytes) {
+    *this = LogLines(path);
+    return;
+  }
+  stream_.seekg(size - tail_bytes);
+  stream_.ignore(tail_bytes, '\n');  // begins somewhere within
+  line_ = 0;
+  tail_ = skipped_ = true;
+}
+
+std::string LogLines::place() const { return path_ + (line_ > 0 ? ":" + std::to_string(line_) : ""); }
+
+void LogLines::require_next(const std::string& line) {
+  line_ += tail_ ? 0 : 1;
+  const std::string chain = chain_of(line);
+  if (!chained_) {
+    (void)parse_distinct(line, path_);
+    chained_ = !chain.empty();
+  }
+  const bool known = !std::exchange(skipped_, false);
+  if (*chained_ == chain.empty() || (*chained_ && known && !follows(line, chain_)))
+    throw Error{Fault::data, place() + ": does not follow from the line before it; the log was changed; restore it"};
+  chain_ = chain;
 }
 
 bool LogLines::next(std::string& line) {
@@ -50,7 +72,7 @@ bool LogLines::next(std::string& line) {
   constexpr int end_of_file = std::char_traits<char>::eof();
   for (int byte = bytes.sbumpc(); byte != end_of_file; byte = bytes.sbumpc()) {
     if (byte == '\n') {
-      if (begin == 0) (void)parse_distinct(line, path_);
+      require_next(line);
       return true;
     }
     if (line.size() == most_bytes) {

@@ -29,6 +29,7 @@ SimGcsSettings sim_settings(const device::Address& address) {
 SimLog file_sim_log(const std::string& path) {
   if (path.empty()) return {};
   const auto log = std::make_shared<device::EventLog>(path);
+  log->share();
   return [log](const Json& line) { log->line(line); };
 }
 

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/sha256.hpp"
 #include "io/stream/stream.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"
@@ -173,27 +172,25 @@ TEST_CASE("a log that grows is read line by line, and its missed blanks are coun
   CHECK(log.blanks() == 4);
 }
 
-TEST_CASE("a log is held to the summary beside it, whole lines alone, and to nothing where it states nothing") {
+TEST_CASE("numbers that no print has are refused, with their line") {
   const scratch::Folder folder;
-  const std::string lines = flip(11, 0, 2) + flip(13, 1, 92);
-  const auto summary = [&](const std::string& keys) {
-    (void)folder.write("summary.json", R"({"schema": "vam-print/1")" + keys + "}");
+  const auto refusal = [&](const std::string& second) {
+    (void)folder.write("log", R"({"event":"sinogram","full_scale":1,"frames":60,"turns":3})"
+                              "\n" +
+                                  flip(10, 0, 0) + second);
+    return error_of([&] { (void)read_shown(folder / "log"); }, Fault::data);
   };
-  const std::string hash = R"(, "flips_sha256": ")" + vam::sha256(lines) + "\"";
-  const std::string log = folder.write("flips.jsonl", lines);
-  const auto held = [&] { vam::io::require_stated_flips(log); };
-  held();  // no summary
-  summary("");
-  held();
-  CHECK(vam::io::stated_flips(log)->sha256.empty());
-  summary(R"(, "reached": {"lit_flips": 3})");
-  CHECK(has(error_of(held, Fault::data), "has 2 lit flips, but summary.json states 3"));
-  summary(hash);
-  held();
-  (void)folder.write("flips.jsonl", lines + "{\"utc\"");
-  held();
-  (void)folder.write("flips.jsonl", flip(11, 0, 2) + flip(13, 1, 91));
-  CHECK(has(error_of(held, Fault::data), "states " + vam::sha256(lines).substr(0, 8)));
-  std::filesystem::remove(log);
-  error_of(held, Fault::data);
+  const char* remedy = "; the log was changed; restore it";
+  CHECK(has(refusal(flip(11, 99999, 6)), std::string(":3: frame 99999 is none of the 60 of the print") + remedy));
+  CHECK(has(refusal(flip(11, 60, 6)), "frame 60 is none of the 60"));
+  CHECK(has(refusal(flip(11, -2, 6)), "frame -2 is not a whole number from -1 to"));
+  CHECK(has(refusal(flip(1e308, 1, 6)), "time 1e+308 s is not between 0 and 1e+09 s"));
+  CHECK(has(refusal(flip(-1, 1, 6)), "time -1 s"));
+  CHECK(has(refusal(flip(11, 1, -1000)), "angle -1000 deg is not between 0 and 1080 deg, where images are shown"));
+  CHECK(has(refusal(flip(11, 1, 1081)), "angle 1081 deg"));
+  CHECK(has(refusal(flip(11, -1, 1e300)), "angle 1e+300 deg"));
+  const std::string line = R"({"event":"flip","t_monotonic_s":11,"angle_deg":6,"frame":)";
+  CHECK(has(refusal(line + "1.5}\n"), "frame 1.5 is not a whole number"));
+  CHECK(has(refusal(line + "18446744073709551615}\n"), "is not a whole number"));
+  CHECK(has(refusal(line + "1,\"missed\":-1}\n"), "missed -1"));
 }

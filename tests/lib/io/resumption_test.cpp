@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/settings/resumption.hpp"
-
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "io/settings/run_folder.hpp"
 #include "testing.hpp"
 
 namespace {
