@@ -62,6 +62,7 @@ ColourBox box_of(std::vector<Rgb>::iterator first, std::vector<Rgb>::iterator la
 RgbImage in_few_colours(RgbImage image) {
   constexpr std::size_t most = 256;
   std::vector<Rgb> colours = image.values;
+  colours.erase(std::unique(colours.begin(), colours.end()), colours.end());  // most are their neighbour's
   std::sort(colours.begin(), colours.end());
   colours.erase(std::unique(colours.begin(), colours.end()), colours.end());
   if (colours.size() <= most) return image;

@@ -139,9 +139,10 @@ std::string encode_indexed_png(const RgbImage& image) {
   std::map<Rgb, char> index;
   PngBytes rows;
   PngRemark palette{"PLTE", {}};
+  auto at = index.end();
   for (const Rgb& colour : image.values) {
-    const auto [at, is_new] = index.try_emplace(colour, static_cast<char>(index.size()));
-    if (is_new) palette.data.append(colour.begin(), colour.end());
+    if (at == index.end() || at->first != colour) at = index.try_emplace(colour, static_cast<char>(index.size())).first;
+    if (palette.data.size() < 3 * index.size()) palette.data.append(colour.begin(), colour.end());
     rows += at->second;
   }
   if (index.size() > most) throw Error{Fault::bug, "PNG: a palette of " + std::to_string(index.size()) + " colours"};
