@@ -58,7 +58,7 @@ class InputFile {
 /// directory that also SIGHUP, SIGINT and SIGTERM remove; commit() makes it appear, whole, in one step.
 class OutputFile {
  public:
-  /// Named: has a temporary path from the start, for writers that insist on one; it ends in the extension of `path`.
+  /// Named: has a temporary path from the start, as where a file system knows none without.
   enum class Temporary { unnamed, named };
 
   /// Throws Error: no_output (cannot create, is a directory, is write-protected), usage (binary to a terminal).
@@ -72,8 +72,6 @@ class OutputFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// True for a pipe, a device and stdout: what is written is gone, write_at() must not be used.
   [[nodiscard]] bool is_stream() const { return target_.empty(); }
-  /// The path under which another writer may open the unfinished file. Only of Temporary::named; empty for a stream.
-  [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
   /// Bytes written so far.
   [[nodiscard]] std::uint64_t position() const { return position_; }
 

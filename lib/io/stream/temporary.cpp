@@ -97,12 +97,6 @@ std::string directory_of(const std::string& path) {
   return slash == std::string::npos ? "" : path.substr(0, slash + 1);
 }
 
-std::string extension_of(const std::string& path) {
-  const std::string file = path.substr(directory_of(path).size());
-  const auto dot = file.rfind('.');
-  return dot == std::string::npos || dot == 0 || file.size() - dot > 16 ? "" : file.substr(dot);
-}
-
 // A zombie, which has ended and only not been waited for, does not.
 bool runs(int pid) {
   if (kill(pid, 0) != 0 && errno == ESRCH) return false;
@@ -124,7 +118,7 @@ bool is_left_over(const fs::path& path) {
   if (std::sscanf(name.c_str(), ".vam-%d-%u%n", &pid, &count, &read) != 2) return false;
   constexpr std::string_view old = "-old";
   const bool aside = name.ends_with(old);
-  if (!aside && name[read] != '\0' && name[read] != '.') return false;
+  if (!aside && name[read] != '\0') return false;
   if (pid <= 0 || runs(pid)) return false;
   std::error_code ignored;
   if (fs::exists(path.parent_path() / (aside ? name.substr(0, name.size() - old.size()) : name + std::string(old)),
@@ -160,8 +154,7 @@ int with_new_name(const std::string& target, std::string& name, int& slot,
   static std::atomic<unsigned> counter{0};
   sweep(directory_of(target));
   while (true) {
-    name = directory_of(target) + ".vam-" + std::to_string(getpid()) + "-" + std::to_string(counter++) +
-           extension_of(target);
+    name = directory_of(target) + ".vam-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
     if (faccessat(AT_FDCWD, name.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) continue;  // left by a namesake; not ours
     slot = enlist(name);
     const int result = create(name.c_str());

@@ -8,7 +8,7 @@
 
 namespace vam::io {
 
-/// Creates an empty file ".vam-<pid>-<n><extension>" beside `target` and lists its name, so that SIGHUP, SIGINT and
+/// Creates an empty file ".vam-<pid>-<n>" beside `target` and lists its name, so that SIGHUP, SIGINT and
 /// SIGTERM remove it before they end the process (unless they are handled or ignored elsewhere).
 /// Such names that a dead process has left there (SIGKILL, a loss of power) are removed first.
 /// Returns the descriptor, or -1 with errno set.
