@@ -11,10 +11,8 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-sys.dont_write_bytecode = True
-from screen import raw_grey  # noqa: E402
-from trials import NEVER, SIGNALS, end_by, ended_by, report  # noqa: E402
+from screen import raw_grey
+from trials import NEVER, SIGNALS, end_by, ended_by, report
 
 COLUMNS, ROWS = 64, 48
 

@@ -14,10 +14,8 @@ import subprocess
 import sys
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-sys.dont_write_bytecode = True
-from screen import Screen  # noqa: E402
-from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, load, report, wait  # noqa: E402
+from screen import Screen
+from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, load, report, wait
 
 PRINT = ["vam-print", "frames.exr", "--display", "sdl:0", "--uncalibrated", "--max-missed", "0.9", "--max-missed-lit", "0.9",
          "--run-up", "0.05", "--turns", "40"]

@@ -11,10 +11,8 @@ import sys
 import threading
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-sys.dont_write_bytecode = True
-from screen import Screen  # noqa: E402
-from trials import NEVER, SIGNALS, end_by, ended_by, report, wait  # noqa: E402
+from screen import Screen
+from trials import NEVER, SIGNALS, end_by, ended_by, report, wait
 
 LANES = 9  # of trials: a cause each; every lane must have as many as the others
 

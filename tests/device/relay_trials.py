@@ -12,9 +12,7 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-sys.dont_write_bytecode = True
-from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, end_by, load, report  # noqa: E402
+from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, end_by, load, report
 
 STATED_S = 0.3  # of the relay, after the last heartbeat
 TICK_S = 0.02   # of the simulator and of this machine

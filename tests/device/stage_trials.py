@@ -11,9 +11,7 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-sys.dont_write_bytecode = True
-from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
+from trials import NEVER, SIGNALS, Log, end_by, ended_by, report
 
 SCHEME = sys.argv[2]
 OPTIONS = {"gcs": "?baud=115200"}.get(SCHEME, "")

@@ -52,7 +52,6 @@ def read(path):
 
 def main(verb, path, *rest):
     if verb == "make":
-        sys.dont_write_bytecode = True
         from scans import write_png
         level = compile(rest[2], path, "eval")
         rows = [[eval(level, {"x": x, "y": y}) for x in range(int(rest[0]))] for y in range(int(rest[1]))]

@@ -2,12 +2,9 @@
 """Holds the scan of a flat field, taken live, against the simulated camera's settings.
 usage: scan_judge.py FIELD VIGNETTING SIGMA   "good" or "bad", the part of pixels within 2 sigma, the worst error"""
 
-import os
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-sys.dont_write_bytecode = True
-import exr  # noqa: E402
+import exr
 
 
 def flat(path, vignetting, sigma):

@@ -2,7 +2,7 @@
 # Helpers of the end-to-end tests (POSIX sh). A test sources this file, runs in a fresh scratch directory that is
 # removed at the end, prints TAP and ends with done_testing.
 set -u
-LC_ALL=C; export LC_ALL
+LC_ALL=C PYTHONDONTWRITEBYTECODE=1; export LC_ALL PYTHONDONTWRITEBYTECODE
 unset VAM_PRINTER
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/vam-test.XXXXXX") || exit 1
 trap 'rm -rf "$scratch"' EXIT

@@ -42,7 +42,6 @@ stretch_z is a factor of 0.1 to 10
 END
 scripts=$VAM_SOURCE/scripts
 vam-slice --shape box:x=2,y=2,z=1 --voxel 0.25 --stretch-z 1.038 -o sliced.vdb
-PYTHONDONTWRITEBYTECODE=1; export PYTHONDONTWRITEBYTECODE
 ok "with Python alone" sh -c 'python3 arrays.py "$1" plain >got' - "$scripts"
 same "what was written comes back" got want
 if python3 -c 'import numpy' 2>/dev/null; then
