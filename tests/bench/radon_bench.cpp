@@ -30,13 +30,12 @@ std::vector<Slab> filled(int count, int width, int height) {
   return slabs;
 }
 
-template <bool adjoint_direction>
-void radon(benchmark::State& state, double turn_rad, int slabs, double alpha, vam::Simd level) {
+void radon(benchmark::State& state, bool adjoint_direction, double turn_rad, int slabs, double alpha, vam::Simd level) {
   const ParallelGeometry geometry{n, n, columns, angles, 0.5 * (n - 1), 0.5 * (n - 1), 0, turn_rad / angles, alpha};
   std::vector<Slab> images = filled(slabs, n, n);
   std::vector<Slab> sinograms = filled(slabs, columns, angles);
   for (auto _ : state) {
-    if constexpr (adjoint_direction) {
+    if (adjoint_direction) {
       adjoint(geometry, sinograms, images, level);
     } else {
       forward(geometry, images, sinograms, level);
@@ -50,14 +49,9 @@ void radon(benchmark::State& state, double turn_rad, int slabs, double alpha, va
 void add(const std::string& name, double turn_rad, int slabs, double alpha, vam::Simd level) {
   if (level > vam::simd_level()) return;
   for (const bool adjoint_direction : {false, true}) {
-    benchmark::RegisterBenchmark(((adjoint_direction ? "adjoint/" : "forward/") + name).c_str(),
-                                 [=](benchmark::State& state) {
-                                   if (adjoint_direction) {
-                                     radon<true>(state, turn_rad, slabs, alpha, level);
-                                   } else {
-                                     radon<false>(state, turn_rad, slabs, alpha, level);
-                                   }
-                                 })
+    benchmark::RegisterBenchmark(
+        ((adjoint_direction ? "adjoint/" : "forward/") + name).c_str(),
+        [=](benchmark::State& state) { radon(state, adjoint_direction, turn_rad, slabs, alpha, level); })
         ->Unit(benchmark::kMillisecond)
         ->UseRealTime();
   }
