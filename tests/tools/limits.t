@@ -44,15 +44,15 @@ else
   is 'and two do' "$status $(cat two.err)" '0 '
 fi
 if ! sanitized; then
-  # Where libraries do not fit the system's loader ends with 127; where they fit and cannot start, the tool with 71.
   odd=0
-  for mib in 8 $(seq 60 4 120); do
-    sh -c "ulimit -v $((mib * 1024)); exec vam-slice --version" >bounded 2>&1; status=$?
-    case "$status $(wc -l <bounded)" in
-      '71 1' | '0 1' | '127 1') ;;
-      *) odd=$((odd + 1)); echo "# $mib MiB: $status"; sed 's/^/# /' bounded ;;
-    esac
-  done
+  within() {  # within KIB ENDS REGEX COMMAND: in so many KiB of addresses its end is one of ENDS, 'STATUS MATCHING-LINES|...';
+    # 127, or 139 also for a version, if libraries do not fit, and 71 if they fit and cannot start
+    timeout 60 sh -c "ulimit -v $1; exec $4" 2>bounded >found </dev/null; status=$?
+    case "|$2|" in *"|$status $(grep -v warning: bounded | grep -Ec "$3")|"*) return ;; esac
+    [ $status -eq 139 ] && { sh -c "ulimit -v $1; exec ${4%% *} --version" >/dev/null 2>&1; [ $? -eq 139 ]; } && return
+    odd=$((odd + 1)); echo "# $1 KiB, $4: $status"; sed 's/^/# /' bounded
+  }
+  for mib in 8 $(seq 60 4 120); do within $((mib * 1024)) '71 1|0 0|127 1' . 'vam-slice --version'; done
   is 'a start in 8 to 120 MiB of addresses is done or refused in one line' $odd 0
   for kib in 64 96 255; do
     is "a stack of $kib KiB is refused" "$(sh -c "ulimit -s $kib; exec vam-slice --shape cylinder --voxel 0.5 -o x.vdb" 2>&1; echo $?)" \
@@ -61,22 +61,17 @@ if ! sanitized; then
   done
   ok 'one of 256 KiB does' sh -c 'ulimit -s 256; vam-slice --shape gyroid --voxel 0.5 | vam-sinogram | vam-view --image-size 100 -o x.png'
   # The libraries that draw end the process where memory or a thread is refused.
-  for mib in 160 200 220 230 240 260; do
-    sh -c "ulimit -v $((mib * 1024)); exec vam-view part.vdb -o bounded.png" 2>bounded; status=$?
-    case "$status $(grep -Ec '^vam-view: .*(raise|allow more|raise its limits?).*' bounded)" in '0 0' | '71 1') report 0 "a figure in $mib MiB of addresses: $status" ;;
-      *) report 1 "a figure in $mib MiB of addresses: $status"; sed 's/^/# /' bounded ;;
-    esac
-  done
+  raise='(raise|allow more|raise its limits?)'
+  for mib in 160 200 220 230 240 260; do within $((mib * 1024)) '0 0|71 1' "^vam-view: .*$raise" 'vam-view part.vdb -o bounded.png'; done
+  is 'a figure in 160 to 260 MiB of addresses is drawn, or refused with the remedy' $odd 0
   python3 -c '
 n = 40000
 print("OFF\n%d %d 0" % (4 * n, 4 * n))
 for i in range(n): print("0 0 %d\n1 0 %d\n0 1 %d\n0.2 0.2 %f" % (i, i, i, i + 0.5))
 for i in range(0, 4 * n, 4): print("3 %d %d %d\n3 %d %d %d\n3 %d %d %d\n3 %d %d %d" % (i, i + 2, i + 1, i, i + 1, i + 3, i + 1, i + 2, i + 3, i + 2, i, i + 3))' >many.off
+  raise='(MiB of addresses are in use, the limit is [0-9]+ MiB; raise it|limit of [0-9]+ MiB of addresses leaves; raise it|raise its limits?)'
   for mib in $(seq 110 10 180); do
-    sh -c "ulimit -v $((mib * 1024)); exec vam-sdf many.off part.vdb --align none -o bounded.ply" >bounded 2>&1; status=$?
-    case "$status $(grep -v warning: bounded | grep -Ec '^vam-sdf: .*(MiB of addresses are in use, the limit is [0-9]+ MiB; raise it|limit of [0-9]+ MiB of addresses leaves; raise it|raise its limits?) .ulimit|shared libraries')" in '71 1' | '127 1') ;;
-      *) odd=$((odd + 1)); echo "# $mib MiB: $status"; sed 's/^/# /' bounded ;;
-    esac
+    within $((mib * 1024)) '71 1|127 1' "^vam-sdf: .*($raise .ulimit|shared libraries)" 'vam-sdf many.off part.vdb --align none -o bounded.ply'
   done
   is 'a deviation in 110 to 180 MiB of addresses is refused with the limit' $odd 0
   # Threads of the libraries throw where nobody catches, their initialisers where nothing can be thrown, and the reader
@@ -84,15 +79,7 @@ for i in range(0, 4 * n, 4): print("3 %d %d %d\n3 %d %d %d\n3 %d %d %d\n3 %d %d 
   small_printer >small.toml
   vam-optimize --printer small.toml part.vdb --method fbp --angles 24 -o light.exr
   while read -r command; do
-    for kib in $(seq 70000 400 100000); do
-      sh -c "ulimit -v $kib; exec timeout 60 $command" 2>bounded >found </dev/null
-      status=$?
-      case "$status $(grep -vc warning: bounded)" in '0 '* | '71 1' | '127 1') ;;
-        '139 '*) sh -c "ulimit -v $kib; exec ${command%% *} --version" >/dev/null 2>&1  # the system's loader may end so
-          [ $? -eq 139 ] || { odd=$((odd + 1)); echo "# $kib KiB, $command: $status"; } ;;
-        *) odd=$((odd + 1)); echo "# $kib KiB, $command: $status"; sed 's/^/# /' bounded ;;
-      esac
-    done
+    for kib in $(seq 70000 400 100000); do within "$kib" '0 0|71 1|127 1' . "$command"; done
   done <<'EOF'
 vam-dose --printer small.toml light.exr --like part.vdb -o bounded.vdb
 vam-optimize part.vdb --geometry parallel --method fbp --angles 8 -o bounded.exr
@@ -101,7 +88,7 @@ vam-score part.vdb --grid target --target part.vdb
 vam-report part.vdb light.exr -o bounded.html
 EOF
   is 'in 70000 to 100000 KiB of addresses a tool is done, or refused in one line' $odd 0
-  rm -f bounded* small.toml light.exr many.off
+  rm -f bounded* found small.toml light.exr many.off
 fi
 # Few open files: all of it or one line with the remedy, and figures are the same.
 if ! sanitized; then
@@ -143,8 +130,9 @@ vam-stage status --set stage.device=sim:
 EOF
   done
   is 'with 4 to 16 open files a tool is done, or refused in one line' $odd 0
-  prlimit --nofile=6 vam-project few.exr --printer printer.toml -o few-none/ 2>.log/err
-  is 'and leaves no folder' "$? $(ls -A | grep -c '^\.vam-')" '71 0'
+  for files in 4 5 6; do
+    fails 71 'Too many open files; raise the limit' prlimit --nofile=$files vam-project -q few.exr --printer printer.toml -o few-none/
+  done
   holds 'most are refused at 4' "$refusals >= 15"
   # Fonts are files, too.
   drawn=0
@@ -240,9 +228,6 @@ done
 $exr make wrong.exr space=projector width=64 height=8 count=22 row=99
 fails 65 'wrong.exr: vam:z_mm of image 21 is 2079, beyond 2000' vam-dose wrong.exr -o x.vdb
 tiny_print tiny.exr
-for files in 4 5 6; do
-  sanitized || fails 71 'Too many open files; raise the limit' sh -c "ulimit -n $files; exec vam-project -q tiny.exr --printer printer.toml -o few"
-done
 fails 66 '/dev/zero: is a device that never ends; name a file' vam-project tiny.exr --printer printer.toml --set projector.response=/dev/zero -o x.mkv
 $exr make far.exr space=projector width=64 height=36 count=7500 row=0.26 reach=1 printer=none
 fails 65 'projector: [0-9]+ rows of its images cross 16 slices, and 192 can' vam-dose far.exr --printer printer.toml -o x.vdb
