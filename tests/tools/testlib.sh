@@ -13,9 +13,9 @@ ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS  # what is preloaded 
 number=0
 failures=0
 
-exr="python3 $VAM_SOURCE/tests/tools/exr.py"  # stacks, images and arrays without our own readers and writers
-png="python3 $VAM_SOURCE/tests/tools/png.py"
-npy="python3 $VAM_SOURCE/tests/tools/npy.py"
+exr="python3 -S $VAM_SOURCE/tests/tools/exr.py"  # stacks, images and arrays without our own readers and writers
+png="python3 -S $VAM_SOURCE/tests/tools/png.py"
+npy="python3 -S $VAM_SOURCE/tests/tools/npy.py"
 
 sanitized() { ldd "$(command -v vam-slice)" | grep -q libasan; }  # by AddressSanitizer, which changes calls and memory
 
@@ -76,7 +76,7 @@ holds() {  # holds NAME EXPRESSION: arithmetic truth, by awk: holds "volume" "$v
 unchain() { sed -i 's/,"chain":"[0-9a-f]*"}$/}/' "$@"; }  # unchain LOG...: as of a program that states no chain
 
 json() {  # json FILE KEY: the number, text or truth at that dotted key
-  python3 -c 'import json,sys
+  python3 -IS -c 'import json,sys
 value=json.load(open(sys.argv[1]))
 for key in sys.argv[2].split("."): value=value[int(key)] if isinstance(value,list) else value[key]
 print(str(value).lower() if isinstance(value,bool) else value)' "$1" "$2"
