@@ -133,15 +133,17 @@ struct SimScene::State {
   [[nodiscard]] std::vector<double> glow(const std::vector<LitRow>& lit, double shift) const {
     const auto& ends = beams.columns();
     std::vector<std::vector<double>> sheets(lit.size());
-    for (std::size_t b = 0; b < lit.size(); ++b) {
-      for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    std::vector<std::size_t> bright;  // the others give nothing
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      for (std::size_t b = 0; b < lit.size(); ++b) {
         sheets[b].push_back(lit[b].mean(ends[k] + shift, ends[k + 1] + shift));
+        if (sheets[b][k] != 0 && (bright.empty() || bright.back() != k)) bright.push_back(k);
       }
     }
     std::vector<double> light(columns);
     for (std::size_t c = 0; c < light.size(); ++c) {
       const ColumnSight& seen = sights[c];
-      for (std::size_t k = 0; k < seen.gains.size(); ++k) {
+      for (const std::size_t k : bright) {
         const auto narrow = std::min(static_cast<std::size_t>(seen.blurs[k]), lit.size() - 1);
         const auto wide = std::min(narrow + 1, lit.size() - 1);
         const double part = seen.blurs[k] - static_cast<double>(narrow);
