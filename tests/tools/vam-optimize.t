@@ -3,7 +3,6 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 vam-slice --shape disc-grid --voxel 0.1 -o part.vdb || exit 1
-value() { json "$1" "$2"; }
 
 # Every method of the table, as completion offers them.
 methods=$(vam-optimize --completion bash | sed -n "s/.*--method) .*-W .auto \([^']*\).*/\1/p")
@@ -11,41 +10,41 @@ holds "there are methods" "$(echo $methods | wc -w) >= 7"
 for method in $methods; do
   few='--iterations 3'; [ $method != fbp ] || few=
   quiet "$method" vam-optimize --method $method --angles 90 $few --report $method.json part.vdb -o $method.exr
-  holds "$method separates most of the part" "$(value $method.json iou) > 0.9"
+  holds "$method separates most of the part" "$(json $method.json iou) > 0.9"
 done
 quiet "dose-norm as usual" vam-optimize --method dose-norm --angles 90 --report dn.json part.vdb -o dn.exr
-holds "dose-norm widens the process window of fbp" "$(value dn.json pw) > $(value fbp.json pw)"
+holds "dose-norm widens the process window of fbp" "$(json dn.json pw) > $(json fbp.json pw)"
 vam-optimize --method dose-norm --angles 90 --set projector.telecentric=true --report level.json part.vdb -o level.exr
 is "with level rays a part of constant cross-section needs a few slices, its ends included" \
-  "$([ "$(value level.json distinct_slices)" -le 5 ] && echo yes)" yes
+  "$([ "$(json level.json distinct_slices)" -le 5 ] && echo yes)" yes
 
 quiet "auto is apg until the part prints with a margin" vam-optimize --angles 180 --report auto.json part.vdb -o auto.exr
-is "auto reaches its goal" "$(value auto.json stopped_by)" goal
-holds "no voxel is wrong" "$(value auto.json ver) == 0"
+is "auto reaches its goal" "$(json auto.json stopped_by)" goal
+holds "no voxel is wrong" "$(json auto.json ver) == 0"
 vam-optimize --method apg --angles 180 --iterations 24 --patience 0 --report apg.json part.vdb -o apg.exr
 # The limit is a multiple of the even intensity, which coarser voxels have 0.6 % higher.
 holds "from coarse to fine, a third of the iterations give a wider window at the same intensity" \
-  "$(value auto.json iterations) <= 8 && $(value auto.json pw) > $(value apg.json pw) && $(value auto.json max_intensity) <= 1.01 * $(value apg.json max_intensity)"
+  "$(json auto.json iterations) <= 8 && $(json auto.json pw) > $(json apg.json pw) && $(json auto.json max_intensity) <= 1.01 * $(json apg.json max_intensity)"
 holds "its report has the deviation of the surface" \
-  "$(value auto.json surface.mean_mm) ^ 2 < 0.01 ^ 2 && $(value auto.json surface.rms_mm) < 0.025"
+  "$(json auto.json surface.mean_mm) ^ 2 < 0.01 ^ 2 && $(json auto.json surface.rms_mm) < 0.025"
 
 resin='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05'
 quiet "unlimited" vam-optimize --angles 90 $resin --set optimize.surface=free --max-intensity 0 --report spikes.json part.vdb -o spikes.exr
 quiet "limited by default" vam-optimize --angles 90 $resin --set optimize.surface=free --report limited.json part.vdb -o limited.exr
-holds "a limit prints at least three times as fast" "3 * $(value limited.json duration_s) <= $(value spikes.json duration_s)"
-holds "at nearly the same process window" "$(value limited.json pw) > $(value spikes.json pw) - 0.02"
+holds "a limit prints at least three times as fast" "3 * $(json limited.json duration_s) <= $(json spikes.json duration_s)"
+holds "at nearly the same process window" "$(json limited.json pw) > $(json spikes.json pw) - 0.02"
 quiet "a print of three turns" vam-optimize --angles 90 $resin --turns 3 --report turns.json part.vdb -o turns.exr
-is "the print takes three turns" "$(value turns.json turns)" 3
+is "the print takes three turns" "$(json turns.json turns)" 3
 vam-dose turns.exr --like part.vdb $resin --exposure-plan -o dose.vdb --report plan.json
-is "vam-dose plans the same" "$(value plan.json turns)" 3
+is "vam-dose plans the same" "$(json plan.json turns)" 3
 quiet "the shortest" vam-optimize --angles 90 $resin --shortest --report shortest.json part.vdb -o shortest.exr
 holds "the shortest print has less intensity than the usual one" \
-  "$(value shortest.json peak_intensity) < 0.8 * $(value limited.json peak_intensity)"
-holds "the shortest print meets the same conditions" "$(value shortest.json ver) == 0 && $(value shortest.json pw) >= 0.055"
+  "$(json shortest.json peak_intensity) < 0.8 * $(json limited.json peak_intensity)"
+holds "the shortest print meets the same conditions" "$(json shortest.json ver) == 0 && $(json shortest.json pw) >= 0.055"
 vam-slice --shape cylinder:diameter=4,height=2 --voxel 0.5 -o small.vdb
 quiet '--shortest of another method has the conditions of auto' \
   vam-optimize --method apg --shortest --angles 24 --report small.json small.vdb -o small.exr
-is 'and ends when they are met' "$(value small.json stopped_by)" goal
+is 'and ends when they are met' "$(json small.json stopped_by)" goal
 vam-optimize --method dose-norm --angles 24 --bits 8 --set optimize.full_scale=0.01 small.vdb -o small.exr 2>clipped
 ok 'full grey below the peak is a warning' grep -q 'the peak intensity of .* exceeds optimize.full_scale 0.01 and is clipped' clipped
 vam-slice --shape cylinder:diameter=4,height=2.25 --voxel 0.5 -o cut.vdb  # its end slices are covered by a half or so
@@ -58,7 +57,7 @@ judged() {  # judged NAME PART PRINTER OPTIONS...: the report and vam-dose | vam
   vam-score --target "$judged_part" --report judged.json shown.vdb >/dev/null
   for figure in ver pw iou min_part max_void outside_gelled_voxels; do
     holds "$name: the report has the $figure of the frames as they are written" \
-      "($(value shown.json $figure) - $(value judged.json $figure)) ^ 2 <= 1e-12"  # floats, angles in another order
+      "($(json shown.json $figure) - $(json judged.json $figure)) ^ 2 <= 1e-12"  # floats, angles in another order
   done
 }
 judged 'one bit' small.vdb '' --bits 1
@@ -70,8 +69,8 @@ is "a part that does not print for its maximum intensity is reported" "$(grep -c
 
 quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o handle.vdb &&
   vam-optimize --angles 90 --report handle.json handle.vdb -o handle.exr'
-holds "no voxel of the handle is wrong" "$(value handle.json ver) == 0"
-is "no voxel of the handle is in shadow" "$(value handle.json dark_part_voxels)" 0
+holds "no voxel of the handle is wrong" "$(json handle.json ver) == 0"
+is "no voxel of the handle is in shadow" "$(json handle.json dark_part_voxels)" 0
 
 vam-slice --shape boat --voxel 0.2 -o boat.vdb
 quiet "with chief rays in the vial" vam-optimize --angles 90 --method apg --iterations 10 --report vial.json boat.vdb -o vial.exr
@@ -93,33 +92,33 @@ for how in footprints fourier; do
 done
 # 1e-3 of the largest dose lies between them at most, and a voxel's dose rises by several per cent at the surface.
 holds "judged by footprints light made by either prints the same" \
-  "($(value judged-fourier.json iou) - $(value judged-footprints.json iou))^2 < 0.002^2"
+  "($(json judged-fourier.json iou) - $(json judged-footprints.json iou))^2 < 0.002^2"
 vam-resample parallel.exr -o resampled.exr
 for how in vial resampled; do
   vam-dose $how.exr --like boat.vdb -o dose.vdb && vam-score dose.vdb --target boat.vdb --report judged-$how.json >table
 done
-is "the print of the vial model has no error" "$(value judged-vial.json ver)" 0.0
+is "the print of the vial model has no error" "$(json judged-vial.json ver)" 0.0
 vam-dose vial.exr --like boat.vdb -o dose.vdb --report dosed.json
-holds "all tools see the same voxels outside the part's box" "$(value vial.json outside_voxels) > 10000 &&
-  $(value vial.json outside_voxels) == $(value dosed.json outside_voxels) &&
-  $(value vial.json outside_voxels) == $(value judged-vial.json outside_voxels)"
-holds "no voxel outside the box gels" "$(value vial.json outside_gelled_voxels) == 0 && $(value dosed.json outside_gelled_voxels) == 0 &&
-  $(value judged-vial.json outside_gelled_voxels) == 0 && $(value vial.json outside_max_dose) < 0.8"
+holds "all tools see the same voxels outside the part's box" "$(json vial.json outside_voxels) > 10000 &&
+  $(json vial.json outside_voxels) == $(json dosed.json outside_voxels) &&
+  $(json vial.json outside_voxels) == $(json judged-vial.json outside_voxels)"
+holds "no voxel outside the box gels" "$(json vial.json outside_gelled_voxels) == 0 && $(json dosed.json outside_gelled_voxels) == 0 &&
+  $(json judged-vial.json outside_gelled_voxels) == 0 && $(json vial.json outside_max_dose) < 0.8"
 holds "the largest dose there is the same to the judges and that of the optimiser within 1 %" \
-  "$(value dosed.json outside_max_dose) == $(value judged-vial.json outside_max_dose) &&
-  ($(value dosed.json outside_max_dose) / $(value vial.json outside_max_dose) - 1)^2 < 1e-4"
-is "the brightest slice limits the exposure" "$(value vial.json limited_by.0.value)" "$(value vial.json peak_intensity)"
-is "without wrong voxels no face is reported as blurred" "$(value vial.json blurred_faces)" '[]'
+  "$(json dosed.json outside_max_dose) == $(json judged-vial.json outside_max_dose) &&
+  ($(json dosed.json outside_max_dose) / $(json vial.json outside_max_dose) - 1)^2 < 1e-4"
+is "the brightest slice limits the exposure" "$(json vial.json limited_by.0.value)" "$(json vial.json peak_intensity)"
+is "without wrong voxels no face is reported as blurred" "$(json vial.json blurred_faces)" '[]'
 
 # A wide lid far above a short lens, with little time
 vam-slice --shape cylinder:diameter=14,height=20 --voxel 0.4 --set projector.throw_ratio=0.6 -o lid.vdb
 vam-optimize --angles 60 --method dose-norm --set projector.throw_ratio=0.6 --set stage.motion=stepped lid.vdb -o lid.exr --report lid.json 2>lid.txt
 is "a warning names blurred faces, their width and the tilt that helps" \
   "$(grep -c 'warning: lid.vdb: climbing rays blur 2 horizontal faces of the part, .* 12.4 mm wide, over .* voxels .*--rotate [0-9]*,0,0' lid.txt)" 1
-holds "the report contains the blurred faces" "$(value lid.json blurred_faces.0.blur_voxels) > 2 && $(value lid.json blurred_faces.0.wrong_voxels) > 0 &&
-  $(value lid.json blurred_faces_remedy.tilt_deg) >= 2"
-holds "vam-dose confirms the process window" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.001"
-holds "the process window is wider than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
+holds "the report contains the blurred faces" "$(json lid.json blurred_faces.0.blur_voxels) > 2 && $(json lid.json blurred_faces.0.wrong_voxels) > 0 &&
+  $(json lid.json blurred_faces_remedy.tilt_deg) >= 2"
+holds "vam-dose confirms the process window" "$(json judged-vial.json pw) > $(json vial.json pw) - 0.001"
+holds "the process window is wider than after resampling" "$(json judged-vial.json pw) > $(json judged-resampled.json pw)"
 fails 65 'outside its columns 0 to 1023' vam-optimize --geometry vial --set projector.axis_column=9000 part.vdb -o out.exr
 
 absorbing="--set resin.absorption_per_mm=0.1"
@@ -127,16 +126,16 @@ for how in exact disc none; do
   quiet "absorption: $how" vam-optimize --angles 90 --method apg --iterations 15 --geometry parallel --set optimize.absorption_model=$how $absorbing part.vdb -o sinogram.exr
   vam-dose sinogram.exr --like part.vdb $absorbing -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report $how.json >table
 done
-holds "vam-dose confirms the absorption in the loop" "$(value exact.json pw) > $(value none.json pw) + 0.05"
-is "absorption in the loop leaves no wrong voxel" "$(value exact.json ver)" 0.0
+holds "vam-dose confirms the absorption in the loop" "$(json exact.json pw) > $(json none.json pw) + 0.05"
+is "absorption in the loop leaves no wrong voxel" "$(json exact.json ver)" 0.0
 
 blurring="--set resin.psf_mm=0.12"
 for blur in true false; do
   quiet "blur: $blur" vam-optimize --geometry parallel --angles 90 --iterations 25 --patience 0 --set optimize.blur=$blur $blurring part.vdb -o sinogram.exr
   vam-dose sinogram.exr --like part.vdb $blurring -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report "blur-$blur.json" >table
 done
-holds "projections compensated for the blur print" "$(value blur-true.json pw) > 0 && $(value blur-true.json ver) == 0"
-holds "projections without compensation do not print" "$(value blur-false.json pw) < 0"
+holds "projections compensated for the blur print" "$(json blur-true.json pw) > 0 && $(json blur-true.json ver) == 0"
+holds "projections without compensation do not print" "$(json blur-false.json pw) < 0"
 
 ok "through pipes" sh -c 'vam-optimize --geometry parallel --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
 ok "the pipe's file is complete" vam-resample piped.exr -o projector.exr
@@ -150,7 +149,7 @@ is "the trace has a header and a line for every iterate" "$(wc -l <trace.csv)" 6
 is "its columns" "$(head -n 1 trace.csv)" iteration,ver,pw,ipdr,cv,iou
 quiet "resuming" vam-optimize --method cal --angles 90 --init cal.exr --iterations 4 --report on.json part.vdb -o on.exr
 quiet "until a goal" vam-optimize --method cal --angles 90 --until 'iou>=0.5' --report goal.json part.vdb -o goal.exr
-is "it stops there" "$(value goal.json stopped_by)" goal
+is "it stops there" "$(json goal.json stopped_by)" goal
 quiet "grey levels" vam-optimize --method fbp --angles 90 --bits 3 --set optimize.dither=true part.vdb -o grey.exr
 
 # Interrupted again and again, later each time, until it completes: the same bytes as in one run.
@@ -254,14 +253,14 @@ is "a front that cannot be written leaves the projections" \
 
 # The proof.
 quiet "a proof" vam-optimize --angles 24 --certify proof.vdb --report proved.json small.vdb -o proved.exr
-holds "no light is better than the bound" "$(value proved.json certificate.least_void_over_part) > 0 &&
-  $(value proved.json certificate.least_void_over_part) <= $(value proved.json certificate.unlimited_void_over_part) &&
-  $(value proved.json certificate.least_void_over_part) <= $(value proved.json certificate.void_over_part)"
+holds "no light is better than the bound" "$(json proved.json certificate.least_void_over_part) > 0 &&
+  $(json proved.json certificate.least_void_over_part) <= $(json proved.json certificate.unlimited_void_over_part) &&
+  $(json proved.json certificate.least_void_over_part) <= $(json proved.json certificate.void_over_part)"
 ok "its weights are a volume to look at" vam-view proof.vdb -o proof.png
 quiet "the widest window of limited light" vam-optimize --method minimax --iterations 80 --patience 0 --angles 24 \
   --report widest.json small.vdb -o widest.exr
-holds "the window is within its bound" "$(value widest.json least_void_over_part) > 0.3 &&
-  $(value widest.json least_void_over_part) <= $(value widest.json max_void) / $(value widest.json min_part)"
+holds "the window is within its bound" "$(json widest.json least_void_over_part) > 0.3 &&
+  $(json widest.json least_void_over_part) <= $(json widest.json max_void) / $(json widest.json min_part)"
 fails 65 "certificate" vam-optimize --weights proof.vdb part.vdb -o out.exr
 is 'the help fits on a screen, with a dozen options' \
   "$(vam-optimize --help | awk '/^  -/ && !/--version/ { n++ } END { print (NR <= 30), (n <= 14) }')" '1 1'
@@ -269,8 +268,8 @@ fails 64 'p.exr' vam-optimize --certify p.exr part.vdb -o out.exr
 
 # A budget of time.
 quiet "in three seconds" vam-optimize --angles 60 --budget 3 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json coarse.vdb -o out.exr
-is "time stops the run" "$(value budget.json stopped_by)" time
-holds "its light is of use" "$(value budget.json iou) > 0.95"
+is "time stops the run" "$(json budget.json stopped_by)" time
+holds "its light is of use" "$(json budget.json iou) > 0.95"
 vam-optimize --angles 60 --budget 0.01 --max-intensity 0.12 part.vdb -o out.exr 2>short.txt
 is "which is named where it is too short" "$(grep -c 'does not print after [0-9]* iterations* within --budget: .*; a larger --budget' short.txt)" 1
 
@@ -305,8 +304,8 @@ fails 64 "'lamp=3': the unit must be %" vam-optimize $records --robust calibrati
 vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 $records
 quiet "tolerances of the records" vam-optimize --angles 30 --iterations 10 $records --robust calibration,lamp=3% \
   --set optimize.yield_printers=0 --report recorded.json coarse.vdb -o recorded.exr
-is "those that there are" "$(value recorded.json robust.single.0.name) $(value recorded.json robust.single.1.name)" "lamp psf"
-is "the others are named" "$(value recorded.json robust.exact)" "['axis', 'index', 'angle', 'radius']"
+is "those that there are" "$(json recorded.json robust.single.0.name) $(json recorded.json robust.single.1.name)" "lamp psf"
+is "the others are named" "$(json recorded.json robust.exact)" "['axis', 'index', 'angle', 'radius']"
 
 # The print at the threshold against the design: 0.1 voxels of 0.26 mm on average, RMS 0.25.
 vam-slice --shape torus --voxel 0.26 -o torus.vdb && vam-optimize --angles 120 torus.vdb -o asked.exr
@@ -318,16 +317,16 @@ sdf() { python3 -c 'import json, sys; print(json.load(open("asked-sdf.json"))["p
 holds "the print is as large as the design" "$(sdf mean_mm) >= -0.026 && $(sdf mean_mm) <= 0.026 && $(sdf rms_mm) <= 0.065"
 quiet "a band around the surface" vam-optimize --angles 45 --iterations 10 --set optimize.surface_margin_mm=0.15 --report band.json part.vdb -o band.exr
 quiet "surface voxels constrained, too" vam-optimize --angles 45 --iterations 10 --set optimize.surface=voxels --report surface.json part.vdb -o surface.exr
-holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"
+holds "more constraints, a narrower window" "$(json band.json pw) > $(json surface.json pw)"
 printf 'dose,response\n0.2,0\n0.7,0.05\n0.9,0.95\n1.2,1\n' >cure.csv
 quiet "a measured response" vam-optimize --method bclp --resin-response cure.csv --angles 45 --iterations 20 --report cure.json part.vdb -o cure.exr
-holds "its window's middle is the threshold" "$(value cure.json threshold_dose) > 0.79 && $(value cure.json threshold_dose) < 0.81"
+holds "its window's middle is the threshold" "$(json cure.json threshold_dose) > 0.79 && $(json cure.json threshold_dose) < 0.81"
 is "its verdict ends a run" "$(vam-optimize --grey-target --band 0.45 --angles 45 --iterations 5 -v part.vdb -o grey.exr 2>&1 | grep -cE '^vam-optimize: part.vdb not met: [0-9.]+ % of [0-9]+ voxels are within their bands around the target')" 1
 vam-slice --shape cylinder:diameter=4,height=1 --voxel 0.4 -o short.vdb
 is "or says that the target is met" "$(vam-optimize --grey-target --band 0.5 --angles 45 --iterations 5 -v short.vdb -o grey.exr 2>&1 | grep -cE '^vam-optimize: short.vdb met: 100 % of [0-9]+ voxels are within their bands around the target')" 1
 quiet "a grey target" vam-optimize --grey-target --band 0.45 --angles 45 --iterations 20 --report grey.json part.vdb -o grey.exr
 is "no doses of part and void" "$(grep -c min_part grey.json)" 0
-holds "most are within their band" "$(value grey.json ver) < 0.05"
+holds "most are within their band" "$(json grey.json ver) < 0.05"
 printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
 fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --resin-response falls.csv part.vdb -o out.exr
 fails 66 "'logstic' is none of .*did you mean logistic" vam-optimize --method bclp --resin-response logstic part.vdb -o out.exr
