@@ -51,10 +51,15 @@ void enter(Beam& beam, double radius, double n1, double n2) {
   refract(beam, {beam.point[0] / radius, beam.point[1] / radius, 0}, n1, n2);
 }
 
-// In the frame of the vial, which stands at (dx, dy) of the lab.
-Beam trace(const ViewBench& bench, double column, double row, double dx, double dy) {
-  const double x = (column - bench.axis_column) * bench.pixel_mm;
-  const double z = (bench.axis_row - row) * bench.pixel_mm;
+// As it comes to the vial, in the frame of the lab; one after the other, as their pixels and the rays in these.
+Beam sight(const ViewBench& bench, std::size_t at) {
+  const auto side = static_cast<std::size_t>(bench.rays);
+  const auto columns = static_cast<std::size_t>(bench.columns);
+  const auto place = [&](std::size_t n, std::size_t pixel) {
+    return static_cast<double>(pixel) + (static_cast<double>(n % side) + 0.5) / bench.rays - 0.5;
+  };
+  const double x = (place(at, at / (side * side) % columns) - bench.axis_column) * bench.pixel_mm;
+  const double z = (bench.axis_row - place(at / side, at / (side * side) / columns)) * bench.pixel_mm;
   const double back = bench.lens_mm > 0 ? bench.lens_mm : 100;
   const Place lens = bench.lens_mm > 0 ? Place{0, -back, 0} : Place{x, -back, z};
   Beam beam{true, lens, {x - lens[0], back, z - lens[2]}, 1};
@@ -64,6 +69,11 @@ Beam trace(const ViewBench& bench, double column, double row, double dx, double 
     beam.point = along(beam.point, (back - bench.window_mm) / beam.direction[1], beam.direction);
     refract(beam, {0, -1, 0}, 1, bench.bath_index);
   }
+  return beam;
+}
+
+// In the frame of the vial, which stands at (dx, dy) of the lab.
+Beam entered(const ViewBench& bench, Beam beam, double dx, double dy) {
   beam.point[0] -= dx;
   beam.point[1] -= dy;
   double outside = bench.bath_index;
@@ -121,21 +131,10 @@ double scattered(const Body& body, const Place& point, const Place& d, double ab
 Place turned(const Place& v, double c, double s) { return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]}; }
 Place turned(const Place& v, double angle) { return turned(v, std::cos(angle), std::sin(angle)); }
 
-// One after the other, as their pixels and the rays in these.
-Beam beam_at(const ViewBench& bench, std::size_t at, double dx, double dy) {
-  const auto side = static_cast<std::size_t>(bench.rays);
-  const auto columns = static_cast<std::size_t>(bench.columns);
-  const std::size_t pixel = at / (side * side);
-  const auto offset = [&](std::size_t n) { return (static_cast<double>(n % side) + 0.5) / bench.rays - 0.5; };
-  return trace(bench, static_cast<double>(pixel % columns) + offset(at),
-               static_cast<double>(pixel / columns) + offset(at % (side * side) / side), dx, dy);
-}
-
 std::vector<float> one_view(const ViewBench& bench, const std::vector<Body>& bodies, const std::vector<Bubble>& bubbles,
-                            double share, const std::vector<Beam>& straight) {
+                            double share, bool wobbles, const std::vector<Beam>& sights) {
   // A point of the lab is that of the part turned back by the angle of the part.
   const double angle = 2 * std::numbers::pi * share + bench.azimuth_deg * std::numbers::pi / 180;
-  const bool wobbles = bench.run_out_mm[0] != 0 || bench.run_out_mm[1] != 0;
   const Place shift = turned({bench.run_out_mm[0], bench.run_out_mm[1], 0}, -angle);
   std::vector<Body> all = bodies;
   for (const Bubble& bubble : bubbles) {
@@ -148,11 +147,11 @@ std::vector<float> one_view(const ViewBench& bench, const std::vector<Body>& bod
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   std::vector<float> pixels;
-  pixels.reserve(straight.size() / rays);
-  for (std::size_t i = 0; i < straight.size(); i += rays) {
+  pixels.reserve(sights.size() / rays);
+  for (std::size_t i = 0; i < sights.size(); i += rays) {
     double light = 0;
     for (std::size_t n = i; n < i + rays; ++n) {
-      const Beam beam = wobbles ? beam_at(bench, n, shift[0], shift[1]) : straight[n];
+      const Beam beam = wobbles ? entered(bench, sights[n], shift[0], shift[1]) : sights[n];
       if (!beam.there) continue;
       const Place p = turned(beam.point, c, s);
       const Place d = turned(beam.direction, c, s);
@@ -184,15 +183,19 @@ float brightest(const std::vector<std::vector<float>>& views) {
 std::vector<std::vector<float>> bench_views(const ViewBench& bench, const std::vector<Body>& bodies,
                                             const std::vector<Bubble>& bubbles, int count) {
   const auto pixels = static_cast<std::size_t>(bench.rows) * static_cast<std::size_t>(bench.columns);
-  std::vector<Beam> straight(pixels * static_cast<std::size_t>(bench.rays) * static_cast<std::size_t>(bench.rays));
-  for (std::size_t n = 0; n < straight.size(); ++n) straight[n] = beam_at(bench, n, 0, 0);
+  std::vector<Beam> sights(pixels * static_cast<std::size_t>(bench.rays) * static_cast<std::size_t>(bench.rays));
+  const bool wobbles = bench.run_out_mm[0] != 0 || bench.run_out_mm[1] != 0;
+  for (std::size_t n = 0; n < sights.size(); ++n) {
+    sights[n] = wobbles ? sight(bench, n) : entered(bench, sight(bench, n), 0, 0);
+  }
   std::vector<std::vector<float>> views(static_cast<std::size_t>(count));
   std::vector<std::thread> workers;
   const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   for (int t = 0; t < threads; ++t) {
     workers.emplace_back([&, t] {
       for (int i = t; i < count; i += threads)
-        views[static_cast<std::size_t>(i)] = one_view(bench, bodies, bubbles, static_cast<double>(i) / count, straight);
+        views[static_cast<std::size_t>(i)] =
+            one_view(bench, bodies, bubbles, static_cast<double>(i) / count, wobbles, sights);
     });
   }
   for (auto& worker : workers) worker.join();
