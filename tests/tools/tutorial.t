@@ -34,4 +34,14 @@ ok 'the tour of README.md' sh -ec 'cd own; head -n 2 ../tour.sh | sh -e; cd ../t
 is 'it keeps a printer of yours' "$(cat own/printer.toml)" '[stage]'
 is 'it writes what it names' "$(ls tour | tr '\n' ' ')" \
   'dose.png dose.vdb part.vdb print.mkv print.png printer.toml projector.exr report.html '
+
+# Section 10 is for the instrument: each of its commands is one that the tools understand, and only its files are missing.
+mkdir ten
+sed -n -e '/^\.Sh 10/,/^\.Sh SEE/s/^\.Dl \(\\ \)*//p' "$VAM_SOURCE/man/vam-tutorial.7" | sed 's/\\e$/\\/' |
+  awk '/\\$/ { sub(/\\$/, ""); printf "%s", $0; next } { print }' | grep -v '^python3 tests/' >ten.sh
+holds 'section 10 has commands' "$(grep -c . ten.sh) >= 8"
+while IFS= read -r line; do
+  (cd ten && display=null: sh -c "$line") </dev/null >.log/ten 2>&1
+  is "section 10: $line" $? 66
+done <ten.sh
 done_testing
