@@ -6,6 +6,7 @@
 
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
@@ -26,6 +27,7 @@ std::vector<model::Condition> conditions_of(const plan_tool::Options& options) {
 }
 
 void run(const plan_tool::Options& options) {
+  if (options.printers) return io::write_text("-", io::preset_list());
   const std::vector<model::Condition> conditions = conditions_of(options);
   const model::Printer printer = session::load_printer(options.printer);
   if (session::print_printer(options.printer, printer, "-")) return;

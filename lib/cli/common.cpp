@@ -11,11 +11,13 @@ App& add_output(App& app, std::string& output) {
 
 App& add_printer(App& app, PrinterOptions& options) {
   app.group("Printer");
-  app.option(printer_flag, "FILE", options.file, "Printer settings (TOML).");
+  app.option(printer_flag, "FILE", options.file,
+             "Printer settings (TOML); or names of vam-plan --printers, e.g. opencal,vial-16,dudma: a printer, a vial, "
+             "a resin.");
   app.default_is(
       "$VAM_PRINTER, else ./printer.toml, else the built-in printer (1024 x 768 pixels of 0.065 mm, throw ratio 1.8, "
       "vial of 25.4 mm, index 1.53)");
-  app.brief("Printer settings. Default: $VAM_PRINTER or printer.toml.").not_in_job();
+  app.brief("Printer settings, or names of vam-plan --printers. Default: $VAM_PRINTER or printer.toml.").not_in_job();
   app.option("--set", "KEY=VALUE", options.sets, "Override one setting, e.g. vial.radius_mm=10.").not_in_job();
   app.brief("Override one setting, e.g. vial.radius_mm=10.");
   app.flag("--print-printer", options.print, "Print the settings in force as commented TOML and exit.").not_in_job();

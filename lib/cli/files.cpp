@@ -93,7 +93,8 @@ std::vector<std::string> App::inputs() const {
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {
       if (option.reads) paths.push_back(option.value());
-      if (option.flag == printer_flag && option.value() != "-") paths.push_back(printer_path(option.value()));
+      if (option.flag == printer_flag && option.value() != "-" && !given("--print-printer"))
+        paths.push_back(printer_path(option.value()));
     }
   }
   std::erase(paths, "");

@@ -51,6 +51,8 @@ struct Resin {
   double index = 1.53;
   // natural logarithm of intensity lost per mm; 0 absorbs nothing and leaves doses relative
   double absorption_per_mm = 0;
+  std::optional<double> initiator_mmol_l;     // its concentration; with the next, absorption_per_mm follows from it
+  std::optional<double> extinction_l_mol_cm;  // of the initiator, base 10
   std::optional<double> critical_dose_mj_cm3;
   double psf_mm = 0;  // Gaussian sigma of the beam, across it and along z
   double diffusion_mm2_s = 0;

@@ -41,7 +41,8 @@ model::Printer printer_of(const cli::PrinterOptions& options, const model::Metad
 }
 
 bool print_printer(const cli::PrinterOptions& options, const model::Printer& printer, const std::string& output) {
-  if (options.print) io::write_text(output, io::printer_toml(printer));
+  if (options.print)
+    io::write_text(output, io::preset_settings(printer_path(options.file)).comment + io::printer_toml(printer));
   return options.print;
 }
 

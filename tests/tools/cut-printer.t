@@ -6,10 +6,12 @@ PATH=$VAM_SOURCE/scripts:$PATH
 vam-slice --print-printer --set vial.radius_mm=10 -o whole.toml
 cp whole.toml named.json
 box 4 4 1 >box.off
-fails 64 'whole.toml: is also the input' vam-slice --print-printer --printer whole.toml -o whole.toml
+quiet 'a printer file is written over itself' vam-slice --print-printer --printer whole.toml -o whole.toml
+same 'and says the same' whole.toml named.json
 fails 64 'named.json: is also the input' env VAM_PRINTER=named.json vam-slice box.off --voxel 0.5 -o x.vdb --report named.json
 mv named.json printer.toml
-fails 64 'printer.toml: is also the input' vam-project --print-printer -o printer.toml
+quiet 'also the one that is found' vam-project --print-printer -o printer.toml
+fails 64 'printer.toml: is also the input' vam-slice box.off --voxel 0.5 -o printer.toml
 same 'the printer file is kept' whole.toml printer.toml
 rm printer.toml
 ok 'what the shell makes for the output is no printer file' sh -c 'vam-slice --print-printer >printer.toml'

@@ -25,6 +25,9 @@ void declare(cli::App& app, Options& options) {
       "Exit with status 1 unless all conditions hold, e.g. 'prints>=1,duration_s<=120', on numbers of the report.");
   cli::add_report(app, options.report);
   cli::add_printer(app, options.printer);
+  app.flag("--printers", options.printers,
+           "List the presets that --printer takes instead of a file: printers, vials and resins, each value with its "
+           "source, and exit.");
   cli::add_threads(app);
   app.usual({"--shape", "--unit", "--up", "--scale", "--voxel", "--no-preview", "--require", "--report", "--printer",
              "--set"});

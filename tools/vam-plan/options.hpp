@@ -20,6 +20,7 @@ struct Options {
   bool unit_given = false;
   bool unit_known = false;  // it or the scale is given
   bool no_preview = false;
+  bool printers = false;
   std::string require, report;
   cli::PrinterOptions printer;
 };

@@ -162,7 +162,7 @@ constexpr ScanKind scans[] = {
 
 // What a record sets is held to the ranges of the printer file, and the axis to the image.
 void require_possible(model::Printer printer, const CalibrationRecord& record) {
-  centre_axis(printer);
+  settle(printer);
   const auto refuse = [&](const std::string& why) {
     throw Error{Fault::data, record.path + ": " + why + "; run vam-calibrate"};
   };

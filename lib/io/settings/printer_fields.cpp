@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
@@ -63,6 +65,8 @@ const std::vector<PrinterField> fields{
     {"resin", "name", at<&Printer::resin, &Resin::name>, "name, for information only"},
     {"resin", "index", at<&Printer::resin, &Resin::index>, "refractive index at the projector's wavelength", 1, 4},
     {"resin", "absorption_per_mm", at<&Printer::resin, &Resin::absorption_per_mm>, "absorption coefficient, natural logarithm (base e)", 0, 1e6},
+    {"resin", "initiator_mmol_l", at<&Printer::resin, &Resin::initiator_mmol_l>, "concentration of the initiator: with extinction_l_mol_cm it states absorption_per_mm", 0, 1e6, true},
+    {"resin", "extinction_l_mol_cm", at<&Printer::resin, &Resin::extinction_l_mol_cm>, "molar extinction coefficient of the initiator at the projector's wavelength, base 10", 0, 1e9, true},
     {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at the gelation threshold", 0, most_mj_cm3, true},
     {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 10},
     {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "diffusion coefficient of what absorbed the dose, not of oxygen", 0, 0.1},
@@ -142,6 +146,22 @@ std::string device_objection(const PrinterField& field, const std::string& devic
   return excerpt(device) + ": unknown device scheme; use one of " + join(known, ":, ") + ":";
 }
 
+/// By the initiator, if both are known: ln 10 eps c [physics §4], of l/(mol cm) and mmol/l.
+std::optional<double> absorption_of(const Resin& resin) {
+  if (!resin.initiator_mmol_l || !resin.extinction_l_mol_cm) return std::nullopt;
+  return std::numbers::ln10 * *resin.extinction_l_mol_cm * *resin.initiator_mmol_l * 1e-4;
+}
+
+std::string absorption_objection(const Resin& resin) {
+  if (resin.initiator_mmol_l.has_value() != resin.extinction_l_mol_cm.has_value())
+    return "resin.initiator_mmol_l and resin.extinction_l_mol_cm state the absorption together; set both, or neither";
+  constexpr double rounding = 1e-3;
+  const auto stated = absorption_of(resin);
+  if (!stated || std::abs(*stated - resin.absorption_per_mm) <= rounding * *stated) return "";
+  return "resin.absorption_per_mm " + format_number(resin.absorption_per_mm) + " is not the " + format_number(*stated) +
+         " of resin.initiator_mmol_l and resin.extinction_l_mol_cm; delete it, or these two";
+}
+
 }  // namespace
 
 std::span<const PrinterField> printer_fields() { return fields; }
@@ -152,7 +172,9 @@ Printer without_axis() {
   return printer;
 }
 
-void centre_axis(Printer& printer) {
+void settle(Printer& printer) {
+  if (const auto stated = absorption_of(printer.resin); stated && printer.resin.absorption_per_mm == 0)
+    printer.resin.absorption_per_mm = *stated;
   Projector& projector = printer.projector;
   if (std::isnan(projector.axis_column)) projector.axis_column = 0.5 * (projector.columns - 1);
   if (std::isnan(projector.axis_row)) projector.axis_row = 0.5 * (projector.rows - 1);
@@ -189,6 +211,7 @@ std::string objection(const PrinterField& field, const Slot& slot) {
 
 std::string contradiction(const Printer& printer) {
   const auto& [projector, vial, bath, resin, stage, camera, optimize, calibration] = printer;
+  if (const std::string why = absorption_objection(resin); !why.empty()) return why;
   if (vial.wall_mm >= vial.radius_mm) {
     return "vial.wall_mm " + mm_text(vial.wall_mm) + " leaves no room in vial.radius_mm " + mm_text(vial.radius_mm);
   }

@@ -259,6 +259,30 @@ void override_one(Printer& printer, const std::string& set) {
     throw Error{Fault::usage, subject + ": '" + value + "' is not a value"};
   }
   assign(printer, *field, *node, Fault::usage, subject);
+  model::Resin& resin = printer.resin;  // what is set last states the absorption
+  if (name == "resin.absorption_per_mm") resin.initiator_mmol_l = resin.extinction_l_mol_cm = std::nullopt;
+  if (name == "resin.initiator_mmol_l" || name == "resin.extinction_l_mol_cm") resin.absorption_per_mm = 0;
+}
+
+/// The built-in value of a setting that a preset should have is no property of that printer.
+void warn_of_unpublished(const std::vector<std::string>& keys, const std::vector<std::string>& sets,
+                         const std::string& preset, const Printer& printer) {
+  std::vector<std::string> assumed;
+  for (const std::string& key : keys) {
+    const auto is_it = [&](const std::string& set) { return set.starts_with(key + "="); };
+    if (std::none_of(sets.begin(), sets.end(), is_it) && has_setting(printer, key)) assumed.push_back(key);
+  }
+  if (assumed.empty()) return;
+  warn(preset + ": " + join(assumed, ", ") + (assumed.size() == 1 ? " is" : " are") +
+       " not published, and taken from the built-in printer; give yours by --set or in a file (--print-printer)");
+}
+
+/// Of "opencal,vial-17" the first name that is none.
+std::string suggested_preset(const std::string& names) {
+  for (const std::string& name : split(names, ',')) {
+    if (!is_preset(name)) return did_you_mean(name, preset_names());
+  }
+  return "";
 }
 
 std::string slurp(const std::string& file) {
@@ -268,6 +292,10 @@ std::string slurp(const std::string& file) {
   std::string text(most_file_bytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(stream.gcount());
+  if (!stream.is_open() && file.find_first_of("./") == std::string::npos) {
+    throw Error{Fault::no_input,
+                file + ": is no file, and no preset" + suggested_preset(file) + "; vam-plan --printers lists them"};
+  }
   if (!stream.is_open() || stream.bad()) {
     throw system_error(Fault::no_input, file + ": cannot open", errno);
   }
@@ -293,7 +321,7 @@ bool has_printer_section(std::string_view text) {
 Printer parse_printer(std::string_view toml, const std::string& subject, const std::vector<std::string>& sets) {
   Printer printer = read_settings(toml, subject);
   for (const auto& set : sets) override_one(printer, set);
-  centre_axis(printer);
+  settle(printer);
   check(printer, sets.empty() ? Fault::data : Fault::usage, subject);
   return printer;
 }
@@ -301,7 +329,11 @@ Printer parse_printer(std::string_view toml, const std::string& subject, const s
 Printer load_printer(const std::string& file, const std::vector<std::string>& sets, Records records) {
   const std::string path = printer_path(file);
   Printer printer = without_axis();
-  if (!path.empty()) {
+  PresetSettings preset;
+  if (is_preset(path)) {
+    preset = preset_settings(path);
+    for (const auto& set : preset.sets) override_one(printer, set);
+  } else if (!path.empty()) {
     const std::string text = slurp(path);
     const bool sealed = require_text_seal(text, path);
     printer = read_settings(text, path);
@@ -318,7 +350,8 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
     apply_records(printer, settled.calibration, utc_seconds());
   }
   for (const auto& set : sets) override_one(printer, set);
-  centre_axis(printer);
+  settle(printer);
+  warn_of_unpublished(preset.unpublished, sets, path, printer);
   std::string subject = path;  // with several --set any of them may be the cause
   if (path.empty() && !sets.empty()) subject = sets.size() == 1 ? sets.front() : "printer settings";
   check(printer, sets.empty() ? Fault::data : Fault::usage, subject);

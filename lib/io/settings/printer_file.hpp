@@ -14,14 +14,28 @@ namespace vam::io {
 /// stopped by old ones.
 enum class Records { apply, ignore };
 
-/// The settings in force. Of these the first that exists is read: `file` (when not empty), $VAM_PRINTER,
-/// ./printer.toml, else the embedded default, the printer of [RAY21]. Then come the current calibration records of
-/// calibration.folder, and then each of `sets`, "vial.radius_mm=12", overrides one setting; a text needs no quotes.
-/// Relative files and folders in a file are taken relative to it. Throws Error: no_input (file missing), usage (an
-/// impossible --set), data (not TOML, unknown key, wrong type, impossible value; with file, line and the nearest known
-/// key; a calibration record that is stale or of another instrument).
+/// The settings in force. Of these the first that exists is read: `file` (when not empty; names of presets, else a
+/// file), $VAM_PRINTER, ./printer.toml, else the embedded default, the printer of [RAY21]. Then come the current
+/// calibration records of calibration.folder, and then each of `sets`, "vial.radius_mm=12", overrides one setting; a
+/// text needs no quotes. Relative files and folders in a file are taken relative to it. Throws Error: no_input (file
+/// missing), usage (an impossible --set), data (not TOML, unknown key, wrong type, impossible value; with file, line
+/// and the nearest known key; a calibration record that is stale or of another instrument).
 [[nodiscard]] model::Printer load_printer(const std::string& file, const std::vector<std::string>& sets,
                                           Records records = Records::apply);
+
+/// "opencal,vial-16,dudma": whether all of these are presets, which need no file; all that there are; a text that lists
+/// them with every value and its source.
+[[nodiscard]] bool is_preset(const std::string& names);
+[[nodiscard]] std::vector<std::string> preset_names();
+[[nodiscard]] std::string preset_list();
+
+/// What presets set, as --set does, the settings that they should set and nobody published, and both as comments for a
+/// printer file. Throws Fault::usage for two of a kind, and for a vial that cannot be computed.
+struct PresetSettings {
+  std::vector<std::string> sets, unpublished;
+  std::string comment;
+};
+[[nodiscard]] PresetSettings preset_settings(const std::string& names);
 
 /// Settings from TOML text, absent ones at their defaults, then each of `sets`. `subject` begins every message. Throws
 /// Fault::data, and Fault::usage for an impossible one of `sets`.

@@ -90,7 +90,6 @@ std::string printer_settings(const model::Printer& given) {
 namespace {
 
 // A file of fewer is taken for the few settings that somebody wanted to change.
-constexpr std::size_t most_sections_of_a_note = 2;
 constexpr int most_keys_of_a_note = 9;
 
 bool has_line(std::string_view text, std::string_view line) {
@@ -140,7 +139,7 @@ bool ends_before_the_last_section(const Outline& outline) {
   const auto all = section_names();
   const auto place = [&](const std::string& section) { return std::find(all.begin(), all.end(), section); };
   const auto& headings = outline.headings;
-  const bool note = headings.size() <= most_sections_of_a_note && outline.keys <= most_keys_of_a_note;
+  const bool note = outline.keys <= most_keys_of_a_note;
   return !note && !headings.empty() && headings.back() != all.back() &&
          std::is_sorted(headings.begin(), headings.end(),
                         [&](const std::string& a, const std::string& b) { return place(a) < place(b); });

@@ -2,6 +2,7 @@
 #include "io/settings/printer_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -51,6 +52,7 @@ TEST_CASE("every field changed survives the round trip") {
     if (auto* const* maybe = std::get_if<std::optional<double>*>(&slot)) **maybe = std::min(1e3 / 7, field.high / 7);
   }
   printer.stage.direction = -1;
+  printer.resin.absorption_per_mm = std::log(10) * 1e3 / 7 * 1e3 / 7 * 1e-4;  // of that initiator
   const auto back = parse_printer(printer_toml(printer), "changed");
   CHECK(printer_toml(back) == printer_toml(printer));
   CHECK(back.vial.radius_mm == printer.vial.radius_mm);
@@ -206,17 +208,19 @@ TEST_CASE("a printer file by hand is warned of where its end looks cut off, but 
             "a.toml: ends within a line, as if it was cut off, without [bath], [resin], [stage], [camera], [optimize], "
             "[calibration]; complete its last line\n"));
   const std::string three = "[projector]\nfps = 7\n[vial]\nradius_mm = 11\n[resin]\nindex = 1.5\n";
-  CHECK(has(said(three),
+  const std::string ten = "[projector]\nfps = 7\nrows = 9\ncolumns = 9\nbits = 8\npixel_mm = 1\nthrow_ratio = 9\n" +
+                          three.substr(three.find("[vial]")) + "psf_mm = 0\ndark_s = 0\n";
+  CHECK(has(said(ten),
             "ends after [resin], as if it was cut off, without [bath], [stage], [camera], [optimize], [calibration]; "
             "add what is missing, or the last line '# end of the settings' if nothing is\n"));
+  CHECK(said(three).empty());
   CHECK(has(said("[stage]\nturns = 2\n\n[camera]\n# fps = 2\n"), "ends with the heading [camera]"));
-  CHECK(has(sign_of_cut(" [ projector ] # a\r\nfps = 7\n[vial]\nwall_mm = 1\n[ resin ]\nindex = 1.5\n"),
-            "ends after [resin]"));
+  CHECK(has(sign_of_cut(" [ projector ] # a\r\n" + ten.substr(ten.find("fps"))), "ends after [resin]"));
   CHECK(said("[vial]\nradius_mm = 11\n").empty());
   CHECK(said("[projector]\nfps = 7\n[vial]\nradius_mm = 11\n").empty());
-  CHECK(said(three + "# end of the settings\n").empty());
-  CHECK(said(vam::io::sealed_text(three)).empty());
-  CHECK(sign_of_cut(three + "[calibration]\nfolder = \"r\"\n").empty());
+  CHECK(said(ten + "# end of the settings\n").empty());
+  CHECK(said(vam::io::sealed_text(ten)).empty());
+  CHECK(sign_of_cut(ten + "[calibration]\nfolder = \"r\"\n").empty());
   CHECK(sign_of_cut("[stage]\nturns = 2\n[vial]\nradius_mm = 11\n[resin]\nindex = 1.5\n").empty());  // in no order
   CHECK(sign_of_cut("# nothing yet\n").empty());
   // Nine keys are a note, ten are the description of an instrument.
@@ -224,6 +228,44 @@ TEST_CASE("a printer file by hand is warned of where its end looks cut off, but 
   for (int key = 0; key < 9; ++key) nine += "a = 1\n# b = 1\n";
   CHECK(sign_of_cut(nine).empty());
   CHECK(has(sign_of_cut(nine + "c = 1\n"), "ends after [projector]"));
+}
+
+TEST_CASE("a preset is a printer, a vial and a resin by name, complete but for what nobody published") {
+  const scratch::Folder folder;
+  std::string printed;
+  const auto said = [&](const std::string& names, const std::vector<std::string>& sets) {
+    const scratch::Redirect to(STDERR_FILENO, folder / "said");
+    printed = printer_toml(load_printer(names, sets));
+    return scratch::slurp(folder / "said");
+  };
+  CHECK(said("ray21,vial-25,bpagda", {}).empty());
+  const auto printer = parse_printer(printed, "p");
+  CHECK(1 / printer.resin.absorption_per_mm == doctest::Approx(15.9).epsilon(0.001));  // mm, as [RAY21] measured
+  CHECK(printer.projector.pixel_mm == 0.065);
+  CHECK(!printer.resin.critical_dose_mj_cm3);
+  CHECK(has(said("vial-16,opencal", {"projector.throw_ratio=1.3"}), "projector.max_intensity_mw_cm2 is not published"));
+  CHECK(has(printed, "axis_column = 539.5"));
+  CHECK(has(said("desktop", {}), "projector.pixel_mm, projector.max_intensity_mw_cm2, stage.speed_deg_s are not"));
+  CHECK(has(error_of([] { (void)load_printer("dudma,dpepa", {}); }, Fault::usage), "names a second resin"));
+  CHECK(has(error_of([] { (void)load_printer("ray21,cuvette", {}); }, Fault::usage), "cuvette: is square"));
+  CHECK(has(error_of([] { (void)load_printer("ray21,dudna", {}); }, Fault::no_input), "did you mean dudma?"));
+  for (const std::string& name : vam::io::preset_names()) {
+    if (name != "cuvette") (void)said(name, {});
+  }
+}
+
+TEST_CASE("concentration and extinction of the initiator state the absorption, or agree with it") {
+  const auto mu = [](const std::vector<std::string>& sets) {
+    return load_printer("dudma", sets).resin.absorption_per_mm;
+  };
+  CHECK(mu({"resin.initiator_mmol_l=10", "resin.extinction_l_mol_cm=46"}) ==
+        doctest::Approx(0.10592));  // ln 10 x 0.46 / cm
+  CHECK(mu({"resin.initiator_mmol_l=3.9"}) == doctest::Approx(0.5 * mu({})));
+  CHECK(mu({"resin.absorption_per_mm=0.1"}) == 0.1);
+  CHECK(has(refusal("[resin]\ninitiator_mmol_l = 5\n"), "set both, or neither"));
+  CHECK(has(refusal("[resin]\nabsorption_per_mm = 0.1\ninitiator_mmol_l = 10\nextinction_l_mol_cm = 46\n"),
+            "0.1 is not the 0.1059"));
+  CHECK(has(set_refusal("resin.initiator_mmol_l=-1"), "is not between 0"));
 }
 
 TEST_CASE("files that would fill the memory or the stack are refused in one line") {

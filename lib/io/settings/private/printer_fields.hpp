@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one table of the printer file's keys: it drives parsing, validation and printing.
+// The one table of the printer file's keys, which drives parsing, validation and printing; and its first and last line.
 #pragma once
 
 #include <optional>
@@ -36,8 +36,9 @@ struct PrinterField {
 
 /// A printer at its defaults but for the axis, whose place is not a number until it is set.
 [[nodiscard]] model::Printer without_axis();
-/// The axis of a printer in the middle of its columns and rows, where it is not set.
-void centre_axis(model::Printer& printer);
+/// Fills in what is not set: the axis, in the middle of the columns and rows, and the absorption that the initiator
+/// states.
+void settle(model::Printer& printer);
 
 /// "vial.radius_mm"
 [[nodiscard]] std::string dotted_name(const PrinterField& field);
