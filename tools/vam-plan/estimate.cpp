@@ -86,32 +86,47 @@ verdict::Verdict verdict_of(const Level& level, const EstimateTask& task, const 
                         outcome.print(preview.grid, task.stretch_z, light));
 }
 
-/// Whether what these voxels show is all of the part: no edge tapers, and no neck is narrower, than they resolve.
-bool may_tell(const Level& level, const EstimateTask& task) {
-  return level.is_final() ||
-         (level.shows_all() && !task.sharp_edges && task.thinnest_voxels >= model::narrow_voxels * level.coarseness);
+/// Why these voxels need not show all of the part: walls, gaps, edges or necks that are finer. Empty: they do.
+std::string hidden(const Level& level, const EstimateTask& task) {
+  if (level.is_final()) return "";
+  if (!level.shows_all()) return "walls or gaps are too thin for these voxels";
+  if (task.sharp_edges) return "edges taper to less than 3 voxels of the print";
+  if (task.thinnest_voxels < model::narrow_voxels * level.coarseness)
+    return "the thinnest place, of " + format_number(task.thinnest_voxels * task.grid.voxel_mm, 2) +
+           " mm, is less than two of these voxels";
+  return "";
 }
 
-/// What the print of these voxels shows of that of the final ones.
-std::optional<bool> prints(const Level& level, const verdict::Verdict& verdict, const EstimateTask& task) {
+bool may_tell(const Level& level, const EstimateTask& task) { return hidden(level, task).empty(); }
+
+/// What the print of these voxels shows of that of the final ones, or why it does not.
+struct Told {
+  std::optional<bool> prints;
+  std::string why_not{};
+};
+Told prints(const Level& level, const verdict::Verdict& verdict, const EstimateTask& task) {
   const verdict::Unresolved& final = task.unresolved;
+  const std::string fine = hidden(level, task);
+  if (final.leaves_doubt() && verdict.answer >= verdict::Answer::unsure)
+    return {{}, "walls or gaps are too thin for the voxels of the print"};
   switch (verdict.answer) {
     case verdict::Answer::no:
-      if (level.is_final() || is_lost(final) || (may_tell(level, task) && verdict.print.whole.pw < hopeless))
-        return false;
-      break;
+      if (level.is_final() || is_lost(final)) return {false};
+      if (fine.empty() && verdict.print.whole.pw < hopeless) return {false};
+      return {{}, fine.empty() ? "smaller voxels may open a window that is so little negative" : fine};
     case verdict::Answer::not_as_designed:
-      if (level.is_final() || is_lost(final)) return false;
-      break;
+      if (level.is_final() || is_lost(final)) return {false};
+      return {{}, "what is cut or joined on these voxels may be whole on smaller ones"};
     case verdict::Answer::yes:
-      if (may_tell(level, task) && !final.leaves_doubt() && verdict.print.whole.pw >= sure_window) return true;
-      break;
+      if (!fine.empty()) return {{}, fine};
+      if (verdict.print.whole.pw >= sure_window) return {true};
+      return {{}, "the process window is narrower than " + format_number(sure_window)};
     case verdict::Answer::not_judged:
     case verdict::Answer::unsure:
     case verdict::Answer::left_open:
       break;
   }
-  return std::nullopt;
+  return {{}, "pieces or holes of the print are in doubt"};
 }
 
 /// What tells where an estimate does not.
@@ -145,13 +160,12 @@ void judge(Estimate& made, const Level& level, const EstimateTask& task) {
   made.angles = optimize::PreviewTask{}.angles;
   made.iterations = preview.outcome.iterations;
   made.verdict = verdict_of(level, task, preview, preview.outcome);
-  const std::optional<bool> told = prints(level, made.verdict, task);
+  Told told = prints(level, made.verdict, task);
   const bool dose_decides = std::any_of(preview.beside.begin(), preview.beside.end(), [&](const auto& other) {
-    return prints(level, verdict_of(level, task, preview, other), task) != told;
+    return prints(level, verdict_of(level, task, preview, other), task).prints != told.prints;
   });
-  const std::string decisive = ", as " + format_number(100 * verdict::dose_margin) + " % of the dose decide";
-  if (!told || dose_decides)
-    made.verdict = leave_open(made.verdict, unknown(made, level, task, dose_decides ? decisive : ""));
+  if (dose_decides) told = {{}, format_number(100 * verdict::dose_margin) + " % of the dose decide"};
+  if (!told.prints) made.verdict = leave_open(made.verdict, unknown(made, level, task, ", as " + told.why_not));
   made.wrong = wrong_of(preview, task.stretch_z);
   made.trials = preview.trials;
   made.by_angles = preview.by_angles;
