@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/surface.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
+#include "base/compute/memory.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
@@ -21,6 +26,62 @@ model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std:
                                   ", or give " + scale + " to change the size"};
   }
   return std::move(read.mesh);
+}
+
+void add_array(cli::App& app, ArrayOptions& options, const std::vector<std::string>& not_for,
+               const std::vector<std::string>& excludes) {
+  app.option("--copies", "NXxNY[xNZ]", options.copies,
+             "Print the part so many times, in rows along x, y and z about the axis.");
+  app.excludes(excludes).not_for(not_for);
+  app.option(
+      "--beside", "MESH", options.beside,
+      "Print this mesh, too, in its own size and turned as PART, in rows about the axis; with --copies the meshes "
+      "take the places in turn.");
+  app.reads().excludes(excludes).not_for(not_for);
+  app.option("--gap", "LENGTH", options.gap, cli::non_negative,
+             "Distance of the bounding boxes of --copies and --beside, in the unit of PART and scaled with it.");
+  app.only_with({"--copies", "--beside"});
+}
+
+namespace {
+
+std::optional<std::array<int, 3>> counts_of(const ArrayOptions& array) {
+  if (array.copies.empty()) return std::nullopt;
+  constexpr int most = 100;
+  std::array<int, 3> counts{1, 1, 1};
+  const std::vector<std::string> words = split(array.copies, 'x');
+  if (words.size() < 2 || words.size() > 3)
+    throw Error{Fault::usage, "--copies: '" + array.copies + "' is not NXxNY or NXxNYxNZ, e.g. 2x2"};
+  for (std::size_t d = 0; d < words.size(); ++d) {
+    const auto count = parse_number(words[d]);
+    if (!count || *count != std::floor(*count) || *count < 1 || *count > most)
+      throw Error{Fault::usage, "--copies: '" + words[d] + "' is no number of copies; give 1 to 100"};
+    counts[d] = static_cast<int>(*count);
+  }
+  if (const auto places = counts[0] * counts[1] * counts[2]; places <= std::ssize(array.beside))
+    throw Error{Fault::usage, "--copies: " + array.copies + " has no place for " +
+                                  std::to_string(array.beside.size() + 1) + " meshes; give more"};
+  return counts;
+}
+
+}  // namespace
+
+model::TriangleSoup array_in_unit(const std::string& path, const ArrayOptions& array, bool given,
+                                  solid::Placement& placement) {
+  const auto counts = counts_of(array);
+  std::vector<model::TriangleSoup> bodies{mesh_in_unit(path, given, "--unit", "--scale")};
+  if (!counts && array.beside.empty()) return std::move(bodies.front());
+  for (const std::string& name : array.beside) bodies.push_back(mesh_in_unit(name, given, "--unit", "--scale"));
+  double largest = 0;
+  for (const auto& body : bodies)
+    largest = std::max(largest, static_cast<double>(body.points.size() + body.triangles.size()));
+  require_memory(
+      (counts ? (*counts)[0] * (*counts)[1] * (*counts)[2] : count_of(bodies)) * largest * sizeof(solid::Point),
+      path + ": " + array.copies + " copies", "print fewer");
+  const solid::Affine turn =
+      solid::rotation(std::exchange(placement.rotate_deg, {})) * std::exchange(placement.axes, {});
+  for (model::TriangleSoup& body : bodies) solid::transform(body, turn);
+  return solid::in_rows(bodies, counts, array.gap);
 }
 
 model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue,

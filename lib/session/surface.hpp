@@ -5,17 +5,35 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "cli/app.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/mesh.hpp"
 #include "model/metadata.hpp"
+#include "solid/voxel/placement.hpp"
 
 namespace vam::session {
+
+/// Copies of a mesh, and other meshes beside it.
+struct ArrayOptions {
+  std::string copies;
+  std::vector<std::string> beside;
+  double gap = 1;
+};
+/// --copies, --beside and --gap, not for these kinds and not with these options.
+void add_array(cli::App& app, ArrayOptions& options, const std::vector<std::string>& not_for,
+               const std::vector<std::string>& excludes);
 
 /// A mesh whose unit may be said on the command line. Throws Fault::usage where `flag` is given for a file that states
 /// its unit, by which that of the command line would be multiplied; `scale` is the option to change the size.
 [[nodiscard]] model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std::string& flag,
                                                const std::string& scale);
+
+/// mesh_in_unit(), or the meshes of an array by solid::in_rows(), which are turned as `placement` says, and no more by
+/// it. Throws Fault::usage as well for copies that are none, or fewer than the meshes.
+[[nodiscard]] model::TriangleSoup array_in_unit(const std::string& path, const ArrayOptions& array, bool given,
+                                                solid::Placement& placement);
 
 /// In mm of the part, whose stretch is undone; `prepare` changes a volume before, `measure` takes it with its surface
 /// before that is unstretched. Throws Fault::usage for a volume without an isovalue, Fault::data where it does not

@@ -272,4 +272,15 @@ fails 65 'black' vam-slice black -o x.vdb
 fails 64 "'cube.stl' must end in .vdb or .toml" vam-slice --shape sphere --voxel 2 -o cube.stl
 fails 64 "'x.PNG' must end in .vdb" vam-slice cube.stl -o x.PNG
 ok 'another name is a name' vam-slice cube.stl -o part.v2
+
+# Copies and others beside them keep their size; of a file that lies, they stand in rows of the upright part.
+box 2 1 3 >lying.off
+box 1 1 1 >small.off
+quiet 'an array' vam-slice lying.off --up y --copies 2x1x2 --gap 0.4 --scale 1.5 --voxel 0.25 --stretch-z 1 -o array.vdb --report array.json
+holds 'has the volume of its copies' "($(json array.json volume_mm3) / (4 * 6 * 1.5 ^ 3) - 1) ^ 2 < 0.01 ^ 2"
+quiet 'two bodies' vam-slice lying.off --beside small.off --voxel 0.25 --stretch-z 1 -o two.vdb --report two.json
+holds 'have that of both' "($(json two.json volume_mm3) / 7 - 1) ^ 2 < 0.01 ^ 2"
+fails 65 'lying.off: .*writable' vam-slice lying.off --copies 9x9 --voxel 0.25 -o x.vdb
+fails 64 'copies' vam-slice --shape sphere --copies 2x2 -o x.vdb
+fails 64 'insert' vam-slice lying.off --copies 2x2 --insert small.off -o x.vdb
 done_testing

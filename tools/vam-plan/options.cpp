@@ -14,6 +14,7 @@ void declare(cli::App& app, Options& options) {
   app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.");
   app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"}, "Axis of the file that points upwards.");
   app.option("--scale", "FACTOR", options.scale, cli::positive, "Scale factor.");
+  session::add_array(app, options.array, {}, {"--shape"});
   app.group("Output and performance");
   app.option(
       "--voxel", "MM", options.voxel_mm, cli::positive,

@@ -7,6 +7,7 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
+#include "session/surface.hpp"
 
 namespace vam::plan_tool {
 
@@ -16,6 +17,7 @@ struct Options {
   std::string unit = "mm";
   std::string up = "z";
   double scale = 1;
+  session::ArrayOptions array;
   std::optional<double> voxel_mm;  // none: a pixel
   bool unit_given = false;
   bool unit_known = false;  // it or the scale is given

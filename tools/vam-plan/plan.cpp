@@ -27,28 +27,21 @@ solid::Writable room_of(const model::Printer& printer) {
   return solid::writable(printer, optics::writable_radius_mm(printer));
 }
 
-solid::Placement placement_of(const Options& options, const model::Printer& printer, double factor) {
-  solid::Placement placement;
-  placement.axes = solid::upright(options.up);
-  placement.scale = options.scale * solid::mm_per(options.unit) * factor;
-  placement.stretch_z = 1 / model::vertical_magnification(printer);
-  placement.voxel_mm = voxel_of(options, printer);
-  return placement;
-}
-
 /// What is planned, read once: it may be scaled to fit.
 class Source {
  public:
   explicit Source(const Options& options)
       : options_(options), subject_(options.shape.empty() ? io::input_name(options.input) : "shape " + options.shape) {
-    if (options.shape.empty()) mesh_ = session::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale");
+    solid::Placement turned;
+    turned.axes = solid::upright(options.up);
+    if (options.shape.empty()) mesh_ = session::array_in_unit(options.input, options.array, options.unit_given, turned);
+    axes_ = turned.axes;
   }
   [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] solid::Part part(const model::Printer& printer, double factor) const {
-    solid::Part made =
-        options_.shape.empty()
-            ? solid::mesh_part(mesh_, subject_, map(printer, factor), solid::FillMode::automatic)
-            : solid::shape_part(options_.shape, placement_of(options_, printer, factor), room_of(printer));
+    solid::Part made = options_.shape.empty()
+                           ? solid::mesh_part(mesh_, subject_, map(printer, factor), solid::FillMode::automatic)
+                           : solid::shape_part(options_.shape, placement(printer, factor), room_of(printer));
     made.lattice = solid::row_lattice(printer.projector, voxel_of(options_, printer));
     return made;
   }
@@ -62,12 +55,21 @@ class Source {
 
  private:
   [[nodiscard]] solid::Affine map(const model::Printer& printer, double factor) const {
-    return solid::place(mesh_, placement_of(options_, printer, factor), room_of(printer), subject_);
+    return solid::place(mesh_, placement(printer, factor), room_of(printer), subject_);
+  }
+  [[nodiscard]] solid::Placement placement(const model::Printer& printer, double factor) const {
+    solid::Placement made;
+    made.axes = axes_;
+    made.scale = options_.scale * solid::mm_per(options_.unit) * factor;
+    made.stretch_z = 1 / model::vertical_magnification(printer);
+    made.voxel_mm = voxel_of(options_, printer);
+    return made;
   }
 
   const Options& options_;
   std::string subject_;
   model::TriangleSoup mesh_;
+  solid::Affine axes_;
 };
 
 Fit fit_of(const Source& source, const model::Printer& printer, double voxel_mm) {

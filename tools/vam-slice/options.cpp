@@ -30,6 +30,7 @@ void declare_placement(cli::App& app, Options& options) {
   app.option("--rotate", "X,Y,Z", options.rotate_deg, 3,
              "Rotation angles in degrees about x, then y, then z, right-handed.")
       .not_for({"images"});
+  session::add_array(app, options.array, not_a_mesh, {"--insert", "--insert-shape", "--compensate", "--no-centre"});
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive,
              "Scale the part so that its largest dimension is MM.")
       .excludes({"--unit", "--scale"})

@@ -9,6 +9,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "model/printer.hpp"
+#include "session/surface.hpp"
 #include "solid/voxel/part.hpp"
 
 namespace vam::slice_tool {
@@ -31,6 +32,7 @@ struct Options {
   std::optional<double> voxel_mm;
   std::vector<std::string> compensate;
   double damping = 0.8;
+  session::ArrayOptions array;
   std::string extent = "part";
   std::string unit = "mm";
   std::string up = "z";

@@ -47,10 +47,11 @@ solid::Part wrapped_part(model::TriangleSoup mesh, const solid::Affine& map, con
 }
 
 solid::Part mesh_part(const Options& options, const solid::Writable& room, Correction& correction) {
-  model::TriangleSoup mesh =
-      corrected(session::mesh_in_unit(options.input, options.unit_given, "--unit", "--scale"), options, correction);
+  solid::Placement placement = options.placement;
   const std::string subject = io::input_name(options.input);
-  const solid::Affine map = solid::place(mesh, options.placement, room, subject);
+  model::TriangleSoup mesh = corrected(
+      session::array_in_unit(options.input, options.array, options.unit_given, placement), options, correction);
+  const solid::Affine map = solid::place(mesh, placement, room, subject);
   if (options.fill == "wrap") return wrapped_part(std::move(mesh), map, options, subject);
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "model/rows.hpp"
 
@@ -160,6 +161,36 @@ void transform(model::TriangleSoup& soup, const Affine& map) {
   if (mirrors) {
     for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
   }
+}
+
+model::TriangleSoup in_rows(const std::vector<model::TriangleSoup>& bodies, std::optional<std::array<int, 3>> counts,
+                            double gap) {
+  std::vector<Bounds> boxes;
+  Point pitch{};
+  for (const auto& body : bodies) {
+    const Point size = boxes.emplace_back(extent(body).box).size();
+    for (std::size_t d = 0; d < 3; ++d) pitch[d] = std::max(pitch[d], size[d] + gap);
+  }
+  const int count = count_of(bodies);
+  const auto radius = [&](int along_x) {
+    return std::hypot(along_x * pitch[0] - gap, (count + along_x - 1) / along_x * pitch[1] - gap);
+  };
+  int best = 1;
+  for (int along_x = 2; along_x <= count; ++along_x) best = radius(along_x) < radius(best) ? along_x : best;
+  const auto [nx, ny, nz] = counts.value_or(std::array<int, 3>{best, count, 1});
+  model::TriangleSoup all;
+  for (int n = 0; n < (counts ? nx * ny * nz : count); ++n) {
+    const std::size_t which = static_cast<std::size_t>(n) % bodies.size();
+    const Point at{n % nx * pitch[0], n / nx % ny * pitch[1], n / (nx * ny) * pitch[2]};
+    const Point shift = at - boxes[which].centre();
+    const int first = count_of(all.points);
+    for (const Point& point : bodies[which].points) all.points.push_back(point + shift);
+    for (auto triangle : bodies[which].triangles) {
+      for (auto& corner : triangle) corner += first;
+      all.triangles.push_back(triangle);
+    }
+  }
+  return all;
 }
 
 Lattice row_lattice(const model::Projector& projector, double voxel_mm) {

@@ -72,6 +72,11 @@ struct PlacedExtent {
 /// All points moved; triangles turned over when the map mirrors.
 void transform(model::TriangleSoup& soup, const Affine& map);
 
+/// Bodies in turn at the places of an array along x, y and z, in cells of the largest of them and `gap` between; as
+/// many places as there are bodies, in the rows of the smallest radius, where `counts` are none.
+[[nodiscard]] model::TriangleSoup in_rows(const std::vector<model::TriangleSoup>& bodies,
+                                          std::optional<std::array<int, 3>> counts, double gap);
+
 /// How the lattice of voxels lies: by default their faces are at multiples of voxel_mm in x, y and z. Stacks of images
 /// bring a lattice of their own.
 struct Lattice {
