@@ -1,91 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-score: scores a dose against its target.
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/index.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
-#include "cli/app.hpp"
 #include "io/exr/stack.hpp"
-#include "io/mesh/file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
-#include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
 #include "model/conditions.hpp"
-#include "model/grid.hpp"
 #include "model/metadata.hpp"
-#include "model/printer.hpp"
-#include "optics/lit_fraction.hpp"
 #include "score/score.hpp"
 #include "session/dose_score.hpp"
 #include "session/exposure.hpp"
 #include "session/grey_target.hpp"
 #include "session/printer.hpp"
-#include "session/surface.hpp"
 #include "session/volumes.hpp"
-#include "solid/voxel/isosurface.hpp"
 #include "vam-score/options.hpp"
-
-namespace vam::score_tool {
-
-namespace {
-
-/// To --mesh. Throws Fault::data when nothing prints at this dose.
-void write_print(const Options& options, const io::SparseVolume& dose, double threshold) {
-  const auto require_print = [&](bool empty) {
-    if (!empty) return;
-    throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold) + " " + dose.units +
-                                 "; choose an --isovalue below the largest dose"};
-  };
-  const std::vector<std::string> comments{"threshold dose " + format_number(threshold) + " " + dose.units};
-  if (options.print_as == "mesh") {
-    const auto mesh = session::fine_surface(dose, threshold, dose.metadata);
-    require_print(mesh.triangles.empty());
-    for (const std::string& ending : io::written_mesh_endings())
-      if (options.print.ends_with(ending)) return io::write_mesh(options.print, mesh, comments);
-    return io::write_ply(options.print, mesh, {}, comments);  // of another name, as of a device
-  }
-  auto print = solid::printed_points(
-      dose.grid(), [&](int k, int count, float* out) { dose.read_slices(k, count, out); }, threshold);
-  require_print(print.points.points.empty());
-  model::unstretch(print.points, dose.metadata);
-  io::write_ply(options.print, print.points, print.values, comments);
-}
-
-/// By distance from the axis, in steps of half a voxel, up to the resin's edge.
-std::vector<double> fractions_by_radius(const model::Printer& printer, double step_mm) {
-  std::vector<double> radii_mm(static_cast<std::size_t>(model::resin_radius_mm(printer.vial) / step_mm) + 1);
-  for (std::size_t i = 0; i < radii_mm.size(); ++i) radii_mm[i] = static_cast<double>(i) * step_mm;
-  return optics::lit_fractions(printer, radii_mm);
-}
-
-/// Writes the grid 'lit_fraction' over those voxels: the fraction of stage angles [0, 1] from which the projector
-/// lights each (optics::lit_fraction); 0 outside the resin. The line of `app` is its history.
-void write_lit_fraction(const std::string& path, const model::Grid& grid, const model::Printer& printer,
-                        const cli::App& app) {
-  const double step_mm = 0.5 * grid.voxel_mm;
-  const std::vector<double> fractions = fractions_by_radius(printer, step_mm);
-  std::vector<float> slice(grid.slice_size());
-  for (int j = 0; j < grid.ny; ++j) {
-    for (int i = 0; i < grid.nx; ++i) {
-      const auto at = static_cast<std::size_t>(std::hypot(grid.x_mm(i), grid.y_mm(j)) / step_mm + 0.5);
-      if (at < fractions.size()) slice[product(j, grid.nx) + i] = static_cast<float>(fractions[at]);
-    }
-  }
-  io::SparseVolume volume("lit_fraction", grid);
-  for (int k = 0; k < grid.nz; ++k) volume.write_slices(k, 1, slice.data());
-  volume.units = "fraction of stage angles";
-  volume.history.push_back(app.history());
-  io::write_volume(path, volume);
-}
-
-}  // namespace
-
-}  // namespace vam::score_tool
+#include "vam-score/outputs.hpp"
 
 namespace {
 
@@ -133,43 +71,84 @@ std::vector<model::Condition> conditions_of(const Options& options) {
 }
 
 void score_grey(const Options& options, const std::vector<model::Condition>& conditions) {
-  session::Companions in(options.input, options.target, io::TargetKind::grey);
+  const std::string& input = options.inputs.front();
+  session::Companions in(input, options.target, io::TargetKind::grey);
   const io::SparseVolume& dose = in.choose(options.grid);
-  const model::Printer printer = session::printer_of(options.printer, dose.metadata, io::input_name(options.input));
+  const model::Printer printer = session::printer_of(options.printer, dose.metadata, io::input_name(input));
   const score::GreyScore result =
-      session::score_grey(dose, in.target_around(), options.grey, in.tolerance(), printer, options.input);
+      session::score_grey(dose, in.target_around(), options.grey, in.tolerance(), printer, input);
   io::write_report(options.report, "vam-score-grey", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
   model::require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }
 
-void run(const cli::App& app, Options& options) {
-  const std::vector<model::Condition> conditions = conditions_of(options);
-  if (session::print_printer(options.printer)) return;
-  if (options.grey.is_target) return score_grey(options, conditions);
-  require_files_for_outputs(options);
-  session::Companions in(options.input, options.target, io::TargetKind::coverage);
+/// A dose on its target, in its printer.
+struct Judged {
+  session::Companions in;
+  const io::SparseVolume& dose;
+  const io::SparseVolume& target;
+  model::Printer printer;
+  score::Score result;
+};
+Judged judged(Options options, const std::string& input, const std::vector<model::Condition>& conditions) {
+  session::Companions in(input, options.target, io::TargetKind::coverage);
   const io::SparseVolume& dose = in.choose(options.grid);
   const io::SparseVolume& target = in.target_around();
-  const model::Printer printer = session::printer_of(options.printer, dose.metadata, io::input_name(options.input));
+  const model::Printer printer = session::printer_of(options.printer, dose.metadata, io::input_name(input));
   session::warn_of_grey(target, in.file());
   options.how.target = io::input_name(in.file());
   session::resolve_exposure(options.how, dose, target, printer);
   require_known(conditions, options);
   score::Score result = session::score_print(dose, target, options.how);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
+  return {std::move(in), dose, target, printer, std::move(result)};
+}
+
+void meet(const std::vector<model::Condition>& conditions, const score::Score& result) {
+  model::require_met(conditions, [&](const std::string& name) { return result.figure(name); });
+}
+
+void tabulate(const Options& options, const std::vector<model::Condition>& conditions) {
+  std::vector<score::Score> results;
+  for (const std::string& input : options.inputs) results.push_back(judged(options, input, conditions).result);
+  score_tool::Table table{{"figure"}};
+  for (const std::string& input : options.inputs) table.front().push_back(io::input_name(input));
+  for (const std::string& name : score::Score::names()) {
+    std::vector<std::string>& row = table.emplace_back(1, name);
+    for (const score::Score& result : results) {
+      const double value = result.figure(name);
+      row.push_back(std::isnan(value) ? "" : format_number(value, 6));
+    }
+    if (std::all_of(row.begin() + 1, row.end(), [](const auto& cell) { return cell.empty(); })) table.pop_back();
+  }
+  io::write_text("-", score_tool::text_of(table, options.table));
+  for (const score::Score& result : results) meet(conditions, result);
+}
+
+void run(const cli::App& app, Options& options) {
+  const std::vector<model::Condition> conditions = conditions_of(options);
+  if (session::print_printer(options.printer)) return;
+  if (options.table != "text") return tabulate(options, conditions);
+  if (options.inputs.size() > 1) {
+    throw Error{Fault::usage, std::to_string(options.inputs.size()) +
+                                  " doses: one is scored at a time; give --table csv, markdown or latex for several"};
+  }
+  if (options.grey.is_target) return score_grey(options, conditions);
+  require_files_for_outputs(options);
+  const Judged judge = judged(options, options.inputs.front(), conditions);
+  const score::Score& result = judge.result;
   const Json figures = result.figures();
-  if (!options.lit_fraction.empty()) score_tool::write_lit_fraction(options.lit_fraction, target.grid(), printer, app);
-  if (!options.print.empty())
-    score_tool::write_print(options, dose, options.print_at.value_or(result.print_threshold()));
+  if (!options.lit_fraction.empty())
+    score_tool::write_lit_fraction(options.lit_fraction, judge.target.grid(), judge.printer, app);
+  if (!options.print.empty()) write_print(options, judge.dose, options.print_at.value_or(result.print_threshold()));
   io::write_report(options.report, "vam-score", figures);
   if (options.report != "-") {
     const std::string sinogram = options.sinogram.empty() ? "SINOGRAM" : options.sinogram;
-    const bool stated = model::stated_text(dose.metadata, "vam:dose_of") == "stated";
-    const std::string how = session::how_to_show(printer.resin, stated, sinogram, options.printer);
+    const bool stated = model::stated_text(judge.dose.metadata, "vam:dose_of") == "stated";
+    const std::string how = session::how_to_show(judge.printer.resin, stated, sinogram, options.printer);
     io::write_text("-", result.table(options.grid == "dose" ? how : ""));
   }
-  model::require_met(conditions, [&](const std::string& name) { return result.figure(name); });
+  meet(conditions, result);
 }
 
 }  // namespace

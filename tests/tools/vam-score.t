@@ -180,4 +180,22 @@ vam-score cd.vdb --target ct.vdb --report corner.json >corner
 is "what cures in the corner of a volume counts" "$(json corner.json max_void)" 2.0
 is "and how far void is judged is told" "$(grep ^judged corner)" \
   'judged       all void within 3.9 mm of the axis; the volume ends before the writable radius of 8.3 mm'
+
+# Several doses in one table, figures as rows: what one dose is scored alone is its column.
+cp cd.vdb 'a_b,c.vdb'
+alone=$(awk '$1 == "ver" { print $2 }' corner)
+vam-score cd.vdb 'a_b,c.vdb' --target ct.vdb --table csv >csv
+is 'a table for a spreadsheet' "$(head -n 1 csv)" 'figure,cd.vdb,"a_b,c.vdb"'
+holds 'with the figures of each' "$(awk -F, '$1 == "ver" { print ($2 - '"$alone"') ^ 2 + ($3 - '"$alone"') ^ 2 }' csv) < 1e-9"
+is 'and no empty row' "$(grep -c ',,$' csv)" 0
+vam-score cd.vdb 'a_b,c.vdb' --target ct.vdb --table markdown >markdown
+is 'for a page' "$(head -n 2 markdown | tr '\n' ' ')" '| figure | cd.vdb | a_b,c.vdb | |---|---:|---:| '
+vam-score cd.vdb 'a_b,c.vdb' --target ct.vdb --table latex >latex
+is 'for a paper' "$(sed -n '1,3p' latex | tr '\n' ' ')$(tail -n 1 latex)" '\begin{tabular}{lrr} figure & cd.vdb & a\_b,c.vdb \\ \hline \end{tabular}'
+is 'its names are escaped' "$(grep -c '[^\\]_' latex)" 0
+fails 1 'max_void = 2' vam-score cd.vdb 'a_b,c.vdb' --target ct.vdb --table csv --require 'max_void<=1'
+fails 64 '2 doses: one is scored at a time; give --table' vam-score cd.vdb 'a_b,c.vdb' --target ct.vdb
+fails 64 'table csv' vam-score cd.vdb --target ct.vdb --table csv --report t.json
+fails 64 "'html' is not one of" vam-score cd.vdb --target ct.vdb --table html
+fails 66 'none.vdb: cannot open' vam-score cd.vdb none.vdb --target ct.vdb --table csv
 done_testing

@@ -24,7 +24,7 @@ void declare_print(cli::App& app, Options& options) {
 }  // namespace
 
 void declare(cli::App& app, Options& options) {
-  app.positional("DOSE", options.input, "Volume (VDB) with the dose.").reads();
+  app.positional("DOSE ...", options.inputs, "Volume (VDB) with the dose; several with --table.").reads();
   app.option("--grid", "NAME", options.grid, "Grid to score; 'scatter' is a reconstruction of vam-ost.");
   app.option("--target", "FILE", options.target, "Volume with the grid 'target', of the same size and position.")
       .reads();
@@ -54,9 +54,14 @@ void declare(cli::App& app, Options& options) {
              "Write a report in JSON; its keys carry the units. - prints it on standard output instead of the table.")
       .not_in_job()
       .writes();
+  app.choice("--table", options.table, {"text", "csv", "markdown", "latex"},
+             "Form of the table: text, with the meaning of each figure and the verdict, or figures alone, a column for "
+             "each DOSE.");
+  for (const char* form : {"csv", "markdown", "latex"})
+    app.excludes({"--report", "--mesh", "--lit-fraction", "--grey-target"}, form);
   cli::add_threads(app);
   app.usual({"--grid", "--target", "--sinogram", "--require", "--critical-dose", "--surface", "--grey-target", "--mesh",
-             "--printer", "--set", "--report"});
+             "--printer", "--set", "--report", "--table"});
 }
 
 }  // namespace vam::score_tool

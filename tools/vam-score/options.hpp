@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
@@ -13,12 +14,13 @@
 namespace vam::score_tool {
 
 struct Options {
-  std::string input = "-";
+  std::vector<std::string> inputs{"-"};
   std::string grid = "dose";
   std::string target;
   std::string sinogram;
   std::string require;
   std::string report;
+  std::string table = "text";
   std::string lit_fraction;
   std::string print;
   std::string print_as = "mesh";
