@@ -106,9 +106,13 @@ plot::ImageFigure volume_figure(const Options& options, Companions& shown) {
   if (options.render)
     return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view, shown.insert());
   if (!options.compare.empty()) {
-    Companions other(options.compare, "", {});
-    return plot::view_difference(volume, other.choose(volume.name()),
-                                 view_tool::file_name(options.compare, options.input), options.view);
+    std::vector<Companions> files;
+    std::vector<plot::OtherVolume> others;
+    files.reserve(options.compare.size());
+    const std::vector<std::string> names = file_names(options);
+    for (const std::string& path : options.compare)
+      others.push_back({&files.emplace_back(path, "", std::nullopt).choose(volume.name()), names[files.size()]});
+    return plot::view_difference(volume, others, options.target.empty() ? nullptr : &shown.target(), options.view);
   }
   return plot::view_volume(volume, options.target.empty() ? nullptr : &shown.target(), options.view, shown.insert());
 }
@@ -126,7 +130,9 @@ void show_volume(Options options, const std::string& history) {
     return plot::save(options.output, plot::draw(plot), history, options.dpi);
   }
   if (is_movie(options)) return write_movie(options, shown, history);
-  write_figure(options, volume_figure(options, shown), history);
+  plot::ImageFigure figure = volume_figure(options, shown);
+  if (options.crop == "part") plot::crop_to_part(figure, shown.target_around(), options.view.plane);
+  write_figure(options, figure, history);
 }
 
 void show_images(const cli::App& app, Options options, io::FileType type) {
@@ -161,7 +167,7 @@ void run(const cli::App& app, Options& options) {
     throw Error{Fault::usage,
                 "--low " + format_number(*view.low) + ": must be below --high " + format_number(*view.high)};
   if (app.given("--title")) options.view.title = options.title;
-  options.view.name = view_tool::file_name(options.input, options.compare);
+  options.view.name = file_names(options).front();
   options.view.crop = !options.plain;
   options.view.plane = options.plane == "axial"     ? plot::Plane::axial
                        : options.plane == "coronal" ? plot::Plane::coronal

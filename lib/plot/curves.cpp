@@ -8,7 +8,8 @@
 namespace vam::plot {
 
 Plot convergence(const std::vector<Trace>& traces) {
-  constexpr std::array<std::array<Rgb, 2>, 2> colours{{{paint::blue, paint::vermilion}, {paint::green, paint::orange}}};
+  constexpr std::array<std::array<Rgb, 2>, 3> colours{
+      {{paint::blue, paint::vermilion}, {paint::green, paint::orange}, {paint::black, paint::grey}}};
   Plot curves;
   curves.x.label = "iteration";
   curves.x.whole = true;

@@ -47,9 +47,18 @@ struct ViewOptions {
                                     const model::Circle& circle, const ViewOptions& options,
                                     const io::SparseVolume* insert = nullptr);
 
-/// Each section of both volumes, and by how much the second is more. Throws Fault::data when the grids differ.
-[[nodiscard]] ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,
-                                          const std::string& other_name, const ViewOptions& options);
+/// A volume beside others, and its name.
+struct OtherVolume {
+  const io::SparseVolume* volume;
+  std::string name;
+};
+/// Each section of all volumes, and by how much the others are more than the first. With a target its outline is drawn.
+/// Throws Fault::data when the grids differ.
+[[nodiscard]] ImageFigure view_difference(const io::SparseVolume& volume, const std::vector<OtherVolume>& others,
+                                          const io::SparseVolume* target, const ViewOptions& options);
+
+/// Of sections of a volume on the grid of the target only the part and a margin.
+void crop_to_part(ImageFigure& figure, const io::SparseVolume& target, Plane plane);
 
 /// Throws Fault::data when the voxels of `grid`, which `name` has, are not those of the other.
 void require_same_voxels(const model::Grid& grid, const model::Grid& other, const std::string& name,

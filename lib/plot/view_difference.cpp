@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two volumes beside each other, and their difference.
 #include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/text/text.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
 #include "plot/private/view_parts.hpp"
@@ -16,10 +18,10 @@ Image difference(const Image& from, const Image& to) {
   return result;
 }
 
-std::vector<const Image*> pointers(const std::vector<Image>& first, const std::vector<Image>& second) {
+std::vector<const Image*> pointers(const std::vector<std::vector<Image>>& volumes) {
   std::vector<const Image*> all;
-  for (const Image& image : first) all.push_back(&image);
-  for (const Image& image : second) all.push_back(&image);
+  for (const auto& images : volumes)
+    for (const Image& image : images) all.push_back(&image);
   return all;
 }
 
@@ -32,34 +34,41 @@ void require_same_voxels(const model::Grid& grid, const model::Grid& other, cons
                                model::place_text(other) + "; " + remedy};
 }
 
-ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,
-                            const std::string& other_name, const ViewOptions& options) {
-  require_same_voxels(volume.grid(), other.grid(), options.name, "compare volumes of one grid");
+ImageFigure view_difference(const io::SparseVolume& volume, const std::vector<OtherVolume>& others,
+                            const io::SparseVolume* target, const ViewOptions& options) {
   const views::Sections sections = views::sections_of(volume.grid(), options);
-  const std::vector<Image> first = planes(volume, options.plane, sections.indices);
-  const std::vector<Image> second = planes(other, options.plane, sections.indices);
-  std::vector<Image> differences;
-  for (std::size_t n = 0; n < first.size(); ++n) differences.push_back(difference(first[n], second[n]));
-  ColourScale both = views::scale_for(pointers(first, second), options, views::Content::amount);
-  both.label = views::with_unit(volume.name(), volume.units);
+  std::vector<std::vector<Image>> seen{planes(volume, options.plane, sections.indices)};
+  std::vector<std::vector<Image>> differences;
+  std::vector<std::string> names{options.name};
+  for (const OtherVolume& other : others) {
+    require_same_voxels(volume.grid(), other.volume->grid(), options.name, "compare volumes of one grid");
+    names.push_back(other.name);
+    seen.push_back(planes(*other.volume, options.plane, sections.indices));
+    std::vector<Image>& change = differences.emplace_back();
+    for (std::size_t n = 0; n < seen[0].size(); ++n) change.push_back(difference(seen[0][n], seen.back()[n]));
+  }
+  ColourScale all = views::scale_for(pointers(seen), options, views::Content::amount);
+  all.label = views::with_unit(volume.name(), volume.units);
   ViewOptions signed_options = options;
   signed_options.low = signed_options.high = std::nullopt;
   signed_options.colours = "diverging";
-  ColourScale change = views::scale_for(pointers(differences, {}), signed_options, views::Content::amount);
+  ColourScale change = views::scale_for(pointers(differences), signed_options, views::Content::amount);
   change.label = views::with_unit("difference", volume.units);
   ImageFigure figure;
-  for (std::size_t n = 0; n < first.size(); ++n) {
+  for (std::size_t n = 0; n < sections.indices.size(); ++n) {
     const std::string place = sections.captions.size() > 1 ? ", " + sections.captions[n] : "";
-    figure.panels.push_back({first[n], options.name + place, {}});
-    figure.panels.back().scale = both;
-    figure.panels.push_back({second[n], other_name + place, {}});
-    figure.panels.back().scale = both;
-    figure.panels.push_back({differences[n], "second minus first" + place, {}});
-    figure.panels.back().scale = change;
+    const auto show = [&](const Image& image, const std::string& name, const ColourScale& scale) {
+      figure.panels.push_back({image, name + place, {}});
+      figure.panels.back().scale = scale;
+    };
+    for (std::size_t v = 0; v < seen.size(); ++v) show(seen[v][n], names[v], all);
+    for (std::size_t v = 0; v < differences.size(); ++v)
+      show(differences[v][n], others.size() == 1 ? "second minus first" : names[v + 1] + " minus first", change);
   }
-  figure.columns = 3;
+  figure.columns = count_of(seen) + count_of(differences);
+  if (target != nullptr) views::add_outlines(figure, *target, volume.grid(), options.plane, sections);
   views::set_section_axes(figure, volume.grid(), options);
-  figure.title = options.title.value_or(options.name + " and " + other_name + ": " + volume.name() +
+  figure.title = options.title.value_or(join(names, " and ") + ": " + volume.name() +
                                         views::sections_text(sections, options.plane));
   return figure;
 }

@@ -74,19 +74,11 @@ Columns lit_columns(const std::vector<Panel>& panels) {
 
 /// Cuts off the dark columns at both sides, but for a margin of a twentieth.
 void crop(ImageFigure& figure) {
-  const int width = figure.panels.front().values.width;
+  const Image& shape = figure.panels.front().values;
   const Columns lit = lit_columns(figure.panels);
   const int margin = 1 + (lit.last - lit.first) / 20;
   const int first = std::max(0, lit.first - margin);
-  const int last = std::min(width - 1, lit.last + margin);
-  for (Panel& panel : figure.panels) {
-    Image kept(last - first + 1, panel.values.height);
-    for (int y = 0; y < kept.height; ++y) std::copy_n(panel.values.row(y) + first, kept.width, kept.row(y));
-    panel.values = std::move(kept);
-  }
-  const double pitch = (figure.x.high - figure.x.low) / width;
-  figure.x.high = figure.x.low + pitch * (last + 1);
-  figure.x.low += pitch * first;
+  views::crop(figure, {first, 0, std::min(shape.width - 1, lit.last + margin) - first + 1, shape.height});
 }
 
 // Keeps what is to be shown while the stack goes by.

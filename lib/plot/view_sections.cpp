@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the sections of a volume are, and their axes.
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "io/vdb/covered.hpp"
+#include "model/dose/dose_metrics.hpp"
 #include "plot/private/view_parts.hpp"
 
 namespace vam::plot::views {
@@ -51,8 +54,41 @@ void set_section_axes(ImageFigure& figure, const model::Grid& grid, const ViewOp
 void add_outlines(ImageFigure& figure, const io::SparseVolume& target, const model::Grid& grid, Plane plane,
                   const Sections& sections) {
   const auto lines = outlines(target, grid, plane, sections.places_mm);
-  for (std::size_t n = 0; n < lines.size(); ++n) figure.panels[n].outline = lines[n];
+  const std::size_t each = figure.panels.size() / lines.size();
+  for (std::size_t n = 0; n < figure.panels.size(); ++n) figure.panels[n].outline = lines[n / each];
   figure.outline_name = "surface of the target";
+}
+
+void crop(ImageFigure& figure, const PixelRect& part) {
+  const Image shape = figure.panels.front().values;
+  const auto kept = [&](const auto& image) {
+    if (image.values.empty()) return image;
+    std::remove_cvref_t<decltype(image)> some(part.width, part.height);
+    for (int y = 0; y < part.height; ++y)
+      for (int x = 0; x < part.width; ++x) some(x, y) = image(part.left + x, part.top + y);
+    return some;
+  };
+  const auto is_in = [&](const Spot& spot) {
+    return spot.x >= part.left - 0.5 && spot.x <= part.left + part.width - 0.5 && spot.y >= part.top - 0.5 &&
+           spot.y <= part.top + part.height - 0.5;
+  };
+  for (Panel& panel : figure.panels) {
+    panel.values = kept(panel.values);
+    panel.hatched = kept(panel.hatched);
+    panel.shaded = kept(panel.shaded);
+    panel.picture = kept(panel.picture);
+    std::erase_if(panel.outline, [&](const ContourPiece& piece) { return !is_in(piece.from) || !is_in(piece.to); });
+    for (ContourPiece& piece : panel.outline) {
+      for (Spot* spot : {&piece.from, &piece.to}) *spot = {spot->x - part.left, spot->y - part.top};
+    }
+  }
+  const auto narrow = [](Axis& axis, int count, int below, int rest) {
+    const double pitch = (axis.high - axis.low) / count;
+    axis.high = axis.low + pitch * (below + rest);
+    axis.low += pitch * below;
+  };
+  narrow(figure.x, shape.width, part.left, part.width);
+  narrow(figure.y, shape.height, shape.height - part.top - part.height, part.height);
 }
 
 std::string sections_text(const Sections& sections, Plane plane) {
@@ -61,3 +97,18 @@ std::string sections_text(const Sections& sections, Plane plane) {
 }
 
 }  // namespace vam::plot::views
+
+namespace vam::plot {
+
+void crop_to_part(ImageFigure& figure, const io::SparseVolume& target, Plane plane) {
+  const model::VoxelBox box = io::covered_box(target, model::coverage_rounding);
+  const std::size_t right = plane == Plane::sagittal ? 1 : 0, up = plane == Plane::axial ? 1 : 2;
+  const Image& shape = figure.panels.front().values;
+  const int margin = 2 + std::max(box.high[right] - box.low[right], box.high[up] - box.low[up]) / 20;
+  const int left = std::max(0, box.low[right] - margin);
+  const int top = std::max(0, shape.height - 1 - box.high[up] - margin);
+  views::crop(figure, {left, top, std::min(shape.width, box.high[right] + margin + 1) - left,
+                       std::min(shape.height, shape.height - box.low[up] + margin) - top});
+}
+
+}  // namespace vam::plot

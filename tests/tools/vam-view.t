@@ -82,6 +82,8 @@ mkdir -p run1 run2; cp trace.csv run1/; cp trace.csv run2/
 vam-view run1/trace.csv --compare run2/trace.csv --title t -o apart.png
 vam-view trace.csv --compare trace.csv --title t -o alike.png
 ok 'two of one name are told apart by their folders' test "$($png sum apart.png)" != "$($png sum alike.png)"
+vam-view run1/trace.csv --compare run2/trace.csv --compare trace.csv --title t -o three.png
+ok 'a third one is drawn, too' test "$($png sum three.png)" != "$($png sum apart.png)"
 fails 65 'compare volumes of one grid' vam-view small.vdb --compare part.vdb -o x.png
 ok "a mesh without axes" vam-view blue.ply --plain --image-size 100 -o plain-blue.png
 is "as many pixels, in its colours" \

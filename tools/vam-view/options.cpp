@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-view/options.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "io/stream/stream.hpp"
@@ -12,11 +13,16 @@ std::string file_name(const std::string& path) {
   return path == "-" ? "stdin" : path.substr(path.find_last_of('/') + 1);
 }
 
-std::string file_name(const std::string& path, const std::string& other) {
-  std::string name = file_name(path);
-  if (other.empty() || name != file_name(other)) return name;
-  const std::string folder = std::filesystem::path(path).parent_path().filename().string();
-  return folder.empty() ? name : folder + "/" + name;
+std::vector<std::string> file_names(const Options& options) {
+  std::vector<std::string> paths{options.input}, names;
+  paths.insert(paths.end(), options.compare.begin(), options.compare.end());
+  for (const std::string& path : paths) {
+    const std::string name = file_name(path);
+    const std::string folder = std::filesystem::path(path).parent_path().filename().string();
+    const bool alone = std::ranges::count(paths, name, [](const auto& one) { return file_name(one); }) == 1;
+    names.push_back(alone || folder.empty() ? name : folder + "/" + name);
+  }
+  return names;
 }
 
 namespace {
@@ -49,7 +55,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.")
       .writes({".nrrd"})
       .excludes({"--output", "--plane", "--at", "--sheet", "--target", "--dose-histogram", "--cure-map", "--render",
-                 "--compare", "--colours", "--low", "--high", "--image-size", "--dpi", "--title", "--plain"})
+                 "--compare", "--crop", "--colours", "--low", "--high", "--image-size", "--dpi", "--title", "--plain"})
       .not_for({"images", "meshes", "traces"});
   app.group("Selection");
   app.option("--grid", "NAME", options.grid,
@@ -88,10 +94,14 @@ void declare(cli::App& app, Options& options) {
       .only_with({"--cure-map", "--render"});
   app.default_is("as by vam-score; 0.5 without a target");
   app.option("--compare", "FILE", options.compare,
-             "Second volume or trace, shown beside the first; of volumes also the difference.")
+             "Further volume or trace, shown beside the first; of volumes also the difference.")
       .reads()
-      .excludes({"--dose-histogram", "--cure-map", "--render", "--target"})
+      .excludes({"--dose-histogram", "--cure-map", "--render"})
       .not_for({"stacks", "images", "meshes"});
+  app.choice("--crop", options.crop, {"all", "part"},
+             "What of a section is shown: all, or the target (--target, or the grid of FILE) and a margin.")
+      .excludes({"--dose-histogram", "--render"}, "part")
+      .not_for(not_volumes);
   app.group("Appearance");
   app.choice("--colours", options.view.colours, {"auto", "grey", "viridis", "diverging"}, "Colour map.")
       .not_for(not_sections);
@@ -112,7 +122,7 @@ void declare(cli::App& app, Options& options) {
       .not_for({"traces"});
   cli::add_printer(app, options.printer);
   app.usual({"--output", "--export", "--grid", "--plane", "--at", "--sheet", "--target", "--dose-histogram",
-             "--cure-map", "--render", "--compare", "--title", "--printer", "--set"});
+             "--cure-map", "--render", "--compare", "--crop", "--title", "--printer", "--set"});
 }
 
 }  // namespace vam::view_tool

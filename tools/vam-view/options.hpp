@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
@@ -20,7 +21,8 @@ struct Options {
   std::string exported;
   std::string title;
   double dpi = plot::screen_dpi;
-  std::string compare;
+  std::vector<std::string> compare;
+  std::string crop = "all";
   std::optional<double> threshold;
   bool histogram = false;
   bool cure = false;
@@ -32,8 +34,8 @@ struct Options {
 
 /// Without folders; "stdin" for -.
 [[nodiscard]] std::string file_name(const std::string& path);
-/// With its folder where that of `other` is the same, as of two runs.
-[[nodiscard]] std::string file_name(const std::string& path, const std::string& other);
+/// FILE and those of --compare, each with its folder where another one is called the same, as of two runs.
+[[nodiscard]] std::vector<std::string> file_names(const Options& options);
 
 void declare(cli::App& app, Options& options);
 

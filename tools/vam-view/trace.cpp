@@ -22,9 +22,9 @@ plot::Trace read_trace(const std::string& path, const std::string& name) {
 }
 
 plot::Plot convergence_plot(const Options& options) {
-  const bool two = !options.compare.empty();
-  std::vector<plot::Trace> traces{read_trace(options.input, two ? file_name(options.input, options.compare) : "")};
-  if (two) traces.push_back(read_trace(options.compare, file_name(options.compare, options.input)));
+  const std::vector<std::string> names = file_names(options);
+  std::vector<plot::Trace> traces{read_trace(options.input, names.size() > 1 ? names[0] : "")};
+  for (const std::string& path : options.compare) traces.push_back(read_trace(path, names[traces.size()]));
   plot::Plot plot = plot::convergence(traces);
   plot.title = options.view.title.value_or(options.view.name + ": convergence");
   return plot;

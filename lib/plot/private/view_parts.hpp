@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "base/pixel_rect.hpp"
 #include "plot/view.hpp"
 
 namespace vam::plot::views {
@@ -42,9 +43,11 @@ struct Sections {
 [[nodiscard]] Sections sections_of(const model::Grid& grid, const ViewOptions& options);
 /// Once the panels are there.
 void set_section_axes(ImageFigure& figure, const model::Grid& grid, const ViewOptions& options);
-/// The target's surface on each of them.
+/// The target's surface on each of them, of as many panels as there are to a section.
 void add_outlines(ImageFigure& figure, const io::SparseVolume& target, const model::Grid& grid, Plane plane,
                   const Sections& sections);
+/// Leaves of all panels that part.
+void crop(ImageFigure& figure, const PixelRect& part);
 /// ", axial section at z = 1.5 mm", or ", axial sections".
 [[nodiscard]] std::string sections_text(const Sections& sections, Plane plane);
 

@@ -212,7 +212,7 @@ TEST_CASE("two volumes are seen in the same colours, their difference with zero 
   const std::vector<float> second{0, 1, 4, 2};
   one.write_slices(0, 1, first.data());
   two.write_slices(0, 1, second.data());
-  const ImageFigure figure = view_difference(one, two, "b.vdb", {});
+  const ImageFigure figure = view_difference(one, {{&two, "b.vdb"}}, nullptr, {});
   REQUIRE(figure.panels.size() == 3);
   CHECK(figure.panels[2].values.values == std::vector<float>{2, -1, 0, 0});  // the upper row first
   CHECK(figure.panels[0].scale->high == 4);
@@ -222,9 +222,40 @@ TEST_CASE("two volumes are seen in the same colours, their difference with zero 
   const SparseVolume moved("dose", vam::model::centred_grid(2, 2, 1, 1.0, 0.5));
   const SparseVolume finer("dose", vam::model::centred_grid(2, 2, 1, 0.5, 0));
   for (const SparseVolume* other : {&moved, &finer}) {
-    CHECK(has(error_of([&] { (void)view_difference(one, *other, "b.vdb", {}); }, vam::Fault::data),
+    CHECK(has(error_of(
+                  [&] {
+                    (void)view_difference(one, {{other, "b.vdb"}}, nullptr, {});
+                  },
+                  vam::Fault::data),
               "compare volumes of one grid"));
   }
+}
+
+TEST_CASE("of several volumes each stands beside the first, with the outline of a target, cropped to it") {
+  const auto grid = vam::model::centred_grid(40, 30, 1, 1.0, 0);
+  SparseVolume one("dose", grid);
+  SparseVolume two("dose", grid);
+  SparseVolume target("target", grid);
+  std::vector<float> part(40 * 30), dose(40 * 30, 1);
+  for (const int j : {20, 21, 22})
+    for (const int i : {10, 11, 12, 13}) part[static_cast<std::size_t>(j) * 40 + i] = 1;
+  target.write_slices(0, 1, part.data());
+  one.write_slices(0, 1, part.data());
+  two.write_slices(0, 1, dose.data());
+  ImageFigure figure = view_difference(one, {{&two, "b"}, {&one, "c"}}, &target, {});
+  REQUIRE(figure.panels.size() == 5);
+  CHECK(figure.panels[3].caption == "b minus first");
+  const std::size_t pieces = figure.panels[4].outline.size();
+  CHECK(pieces > 8);
+  crop_to_part(figure, target, vam::plot::Plane::axial);
+  CHECK(figure.panels[0].values.width == 4 + 2 * 2);
+  CHECK(figure.panels[2].values.height == 3 + 2 * 2);
+  CHECK(figure.panels[0].values(2, 2) == 1);  // the part begins behind a margin of 2
+  CHECK(figure.panels[0].values(1, 2) == 0);
+  CHECK(figure.panels[4].outline.size() == pieces);
+  CHECK(figure.x.low == doctest::Approx(-20 + 10 - 2));
+  CHECK(figure.y.low == doctest::Approx(-15 + 20 - 2));
+  CHECK(figure.y.high == doctest::Approx(-15 + 23 + 2));
 }
 
 TEST_CASE("a section far wider than high is drawn, a pixel high") {
