@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "io/vdb/covered.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "plot/private/view_parts.hpp"
 

@@ -57,7 +57,10 @@ mkdir folder && cp part.vdb dose.vdb score.json part.off folder
 ok 'a page of a folder' vam-report folder -o folder.html --title 'A box'
 is 'the page has its title' "$(grep -c '<title>A box</title>' folder.html)" 1
 ok 'a page of a part only' vam-report part.vdb -o alone.html
-is 'the page of a part has no verdict' "$(grep -c 'class="verdict' alone.html)" 0
+is 'the page of a part says that it is not judged' "$(grep -c '<p class="verdict">Not judged: ' alone.html)" 1
+vam-plan --shape box:x=3,y=2,z=1 --report plan.json >table.plan
+ok 'a page of a plan' vam-report plan.json -o plan.html
+is 'begins with its verdict' "$(sed -n 's/.*<p class="verdict good">plan.json: \(.*\)<.p>/\1/p' plan.html)" "$(sed -n 's/^verdict *//p' table.plan)"
 ok 'a page of frames' sh -c 'vam-project light.exr --set projector.fps=2.5 -o frames.exr && vam-report frames.exr -o frames.html'
 is 'frames can be played' "$(grep -c '>play<' frames.html)" 1
 vam-report part.vdb | head -c 100 >/dev/null; report 0 'to head'

@@ -85,6 +85,18 @@ std::string report_table(const std::string& path) {
          "</details>\n";
 }
 
+/// HTML: the verdict that one of the reports states, or how the page would have one. Throws as report_table().
+std::string stated_verdict(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    const Json report = parse_distinct(io::read_all(path), path);
+    if (!report.is_object() || !report.contains("verdict") || !report["verdict"].is_string()) continue;
+    const std::string words = text_of(report["verdict"]);
+    const bool good = words.starts_with("will print:") || words.starts_with("met:") || words == "go";
+    return verdict(good, file_name(path) + ": " + words);
+  }
+  return "<p class=\"verdict\">Not judged: that takes a dose and its target, or a report that states a verdict.</p>\n";
+}
+
 /// HTML: VER and process window over the iterations. Throws what read_csv throws.
 std::string convergence(const std::string& path) {
   const io::CsvTable table = io::read_csv(path, {"iteration", "ver", "pw"});
@@ -203,6 +215,7 @@ std::string content(const cli::App& app, const Sources& sources, const cli::Prin
   if (grey) made += report_tool::verdict(grey->is_met(), grey->verdict());
   const std::optional<InspectionViews> inspection = inspection_views(sources.reports);
   if (inspection) made += inspection->verdict;
+  if (!judged && !grey && (!inspection || inspection->verdict.empty())) made += stated_verdict(sources.reports);
   made += views(sources, volumes, judged, inspection, wanted);
   if (inspection) made += inspection->figures;
   if (judged || grey) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/pixel_rect.hpp"
+#include "base/pixels.hpp"
 #include "plot/view.hpp"
 
 namespace vam::plot::views {
