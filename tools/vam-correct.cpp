@@ -31,6 +31,7 @@ struct Options {
   std::string uncertainty;
   std::string before;
   std::optional<double> column_offset_px;
+  double axis_px = 0;
   double axis_sigma_px = 1;
   std::optional<double> resolution_mm;
   metrology::CorrectionLimits limits;
@@ -56,7 +57,10 @@ void declare(cli::App& app, Options& o) {
   app.option("--uncertainty", "FILE.vdb", o.uncertainty, "Standard deviations of SCATTER (vam-ost --uncertainties).")
       .reads();
   app.option("--column-offset", "PX", o.column_offset_px, cli::positive,
-             "Find the axis, too: each dose is given three times, by vam-dose with --column-offset -PX, 0 and PX.");
+             "Find the axis, too: each dose is given three times, by vam-dose with --column-offset AXIS - PX, AXIS and "
+             "AXIS + PX.");
+  app.option("--axis", "PX", o.axis_px, cli::any, "AXIS of these, where the axis is about.")
+      .only_with({"--column-offset"});
   app.option("--axis-sigma", "PX", o.axis_sigma_px, cli::positive,
              "Standard deviation of projector.axis_column, as its calibration states it.")
       .only_with({"--column-offset"});
@@ -88,7 +92,7 @@ Dose read_doses(const std::vector<std::string>& paths, const Options& options, c
                                                : ", not one; three require --column-offset")};
   }
   io::SparseVolume first = session::read_dose(paths.front());
-  metrology::PlannedDose planned{{io::dense_volume(first)}, options.column_offset_px.value_or(1)};
+  metrology::PlannedDose planned{{io::dense_volume(first)}, options.column_offset_px.value_or(1), options.axis_px};
   for (std::size_t n = 1; n < paths.size(); ++n) {
     planned.at.push_back(io::dense_volume(session::read_dose(paths[n])));
     if (planned.at.back().grid == planned.at.front().grid) continue;
@@ -117,7 +121,11 @@ metrology::SensitivityField field_before(const Options& options, const model::Vo
                                          const metrology::ScatterCurve& curve) {
   metrology::SensitivityPrior prior;
   prior.axis_px = options.column_offset_px.value_or(0) > 0 ? options.axis_sigma_px : 0;
-  if (options.before.empty()) return metrology::expected_sensitivity(dose, curve, prior);
+  if (options.before.empty()) {
+    auto expected = metrology::expected_sensitivity(dose, curve, prior);
+    expected.axis_px = options.axis_px;
+    return expected;
+  }
   const Json report = io::sealed_record(options.before, {"vam-correct"});
   return of_file(options.before, [&] {
     return carried_on(metrology::sensitivity_field(report.value("field", Json::object())), prior);

@@ -90,8 +90,7 @@ void run(const cli::App& app, Options& options) {
   const std::string subject = io::input_name(options.input);
   require_memory_for(scene, task, *light, optimize::method_entry(options.method), subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
-  beginning.begin(task, in, scene, *light, options);
-  if (device::interrupted()) return;
+  beginning.begin(task);
   auto outcome = optimize::optimise(task, *light);
   if (outcome.stop == optimize::StopReason::interrupted) {
     beginning.keep();

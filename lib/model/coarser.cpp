@@ -10,12 +10,6 @@ double coarser(double at) { return 0.5 * (at - 0.5); }
 
 }  // namespace
 
-Grid coarser(const Grid& grid) {
-  Grid coarse{(grid.nx + 1) / 2, (grid.ny + 1) / 2, (grid.nz + 1) / 2, 2 * grid.voxel_mm, grid.origin_mm};
-  for (double& mm : coarse.origin_mm) mm += 0.5 * grid.voxel_mm;
-  return coarse;
-}
-
 Printer coarser(const Printer& printer) {
   Printer coarse = printer;
   Projector& p = coarse.projector;

@@ -39,6 +39,8 @@ const std::vector<Score::Figure>& Score::figure_list() {
   using model::ThresholdMetrics;
   static const std::vector<Figure> all = [] {
     std::vector<Figure> list{
+        {"latitude", "minimum part dose - maximum void dose, of their middle: half of it is forgiven either way",
+         [](const Score& score) { return score.metrics().latitude; }},
         {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels",
          [](const Score& score) { return score.metrics().ver; }},
         {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)",

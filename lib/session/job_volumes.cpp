@@ -41,14 +41,6 @@ JobVolumes read(const JobOptions& options) {
   return in;
 }
 
-JobVolumes coarser(const JobVolumes& in) {
-  JobVolumes coarse;
-  for (const auto kind : {&JobVolumes::target, &JobVolumes::insert, &JobVolumes::weight, &JobVolumes::tolerance}) {
-    for (const io::SparseVolume& volume : in.*kind) (coarse.*kind).push_back(io::coarser(volume));
-  }
-  return coarse;
-}
-
 namespace {
 
 /// Slices of the volume, `outside` in the margin around it.

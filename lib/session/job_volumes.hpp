@@ -24,8 +24,6 @@ struct JobVolumes {
 /// that was delivered has. Throws Fault::data when there is no target, another of these is on another grid, or the dose
 /// is not in mJ/cm3.
 [[nodiscard]] JobVolumes read(const JobOptions& options);
-/// On voxels of twice the size (io::coarser).
-[[nodiscard]] JobVolumes coarser(const JobVolumes& in);
 
 /// Their slices in the grid of the scene, the dose that was delivered in the unit of the projections' dose: over their
 /// threshold as the dose is over the resin's. All are referred to. Throws Fault::usage when the resin's critical dose

@@ -15,6 +15,11 @@ std::string margin(const model::DoseMetrics& m) { return (m.pw > 0 ? "+" : "") +
 
 std::string percent(double share, int digits = 3) { return format_number(100 * share, digits) + " %"; }
 
+std::string latitude(const model::DoseMetrics& m) {
+  if (m.latitude > 0) return "forgives +-" + percent(m.latitude / 2, m.latitude < 0.2 ? 2 : 3) + " of dose";
+  return "latitude " + format_number(m.latitude, 2);
+}
+
 bool holds_threshold(const GivenPrint& print) {
   const auto& t = print.threshold;
   return !t || (print.whole.max_void < *t && *t <= print.whole.min_part);
@@ -114,14 +119,18 @@ std::string reasons(const Verdict& verdict) {
     line += " at the threshold of " + format_number(*print.threshold, 3) + " (void up to " +
             format_number(print.whole.max_void, 3) + ", part at least " + format_number(print.whole.min_part, 3) + ")";
   }
-  line += ": process window " + margin(print.whole) + " of the largest dose, VER " + format_number(print.whole.ver, 3) +
-          " (" + std::to_string(voxels(print.whole)) + " voxels)";
+  line += ": " + latitude(print.whole) + ", process window " + margin(print.whole) + " of the largest dose, VER " +
+          format_number(print.whole.ver, 3) + " (" + std::to_string(voxels(print.whole)) + " voxels)";
   if (const auto by = threshold_margin(print); by && may_print) line += margin_text(*by);
   if (cut > 0) {
     line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
             margin(print.with_cut) + ", VER " + format_number(print.with_cut.ver, 3);
   }
-  if (may_print && print.pieces) line += of_pieces(*print.pieces, print);
+  if (may_print && print.pieces) {
+    const std::string differences = of_pieces(*print.pieces, print);
+    line += differences.empty() ? "; its pieces are those of the part within +-" + percent(dose_margin) + " of dose"
+                                : differences;
+  }
   line += unjudged(verdict.unresolved);
   if (print.light != model::LightWidth{}) line += "; by " + model::words(print.light);
   if (print.seconds) line += "; duration " + format_number(*print.seconds, 4) + " s";

@@ -54,9 +54,10 @@ struct Verdict {
   Answer answer = Answer::not_judged;
   Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
   GivenPrint print = {};
-  /// E.g. "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
-  /// by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with the answer: "not judged", "will
-  /// not print", "will not print as designed", "may print" or "will print"; or with why it is left open.
+  /// E.g. "will print: forgives +-4.4 % of dose, process window +0.065 of the largest dose, VER 0 (412345 voxels);
+  /// including the 43492 voxels cut by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with
+  /// the answer: "not judged", "will not print", "will not print as designed", "may print" or "will print"; or with why
+  /// it is left open.
   std::string words = {};
 };
 

@@ -13,7 +13,7 @@ holds 'the thinnest wall is its height' "($(json plan.json thinnest_wall_voxels)
 holds 'in mm of the part, not of the stretched target' "($(json plan.json thinnest_wall_mm) - 4) ^ 2 < 0.0627 ^ 2"
 ok 'as the table says' grep -qE '^thinnest wall  *6[34][.0-9]* voxels \((3.9[4-9]|4|4.0[0-6])[0-9]* mm\)' plan
 ok 'and so are slices' grep -q '^slices .* of 0.0626 mm$' plan
-ok 'in words' sh -c 'grep -q "^fits  *yes: a cylinder of 16.6 mm diameter" plan && grep -q "^verdict  *will print: process window +" plan && grep -q "^  index +-0.005  *process window" plan'
+ok 'in words' sh -c 'grep -q "^fits  *yes: a cylinder of 16.6 mm diameter" plan && grep -q "^verdict  *will print: forgives +-[0-9.]* % of dose, process window +" plan && grep -q "^  index +-0.005  *process window" plan'
 ok 'without the resin no duration' grep -q '^duration  *not known; set resin.critical_dose_mj_cm3' plan
 
 # The scale that is said is the one that vam-slice takes, and hardly larger ones are refused.
@@ -105,7 +105,7 @@ ok 'a block with a fin' sh -c "vam-plan fin.off $few --report fin.json >fin"
 holds 'is judged on voxels that show it' "$(json fin.json estimate_voxel_mm) <= 0.2 / 1.5"
 block 11 11 3 0.1 3 >wide-fin.off
 ok 'on a large block' sh -c 'vam-plan wide-fin.off --report wide.json >wide'
-ok 'the answer is open' grep -qE '^verdict  *unknown at 0.[12][0-9]* mm, as what is cut or joined on these voxels may be whole on smaller ones; --voxel 0.0?[0-9]* tells: process window [+]' wide
+ok 'the answer is open' grep -qE '^verdict  *unknown at 0.[12][0-9]* mm, as what is cut or joined on these voxels may be whole on smaller ones; --voxel 0.0?[0-9]* tells: forgives [+]-[0-9.]* % of dose, process window [+]' wide
 ok 'with the reason' grep -qE '^  too coarse  *at 0.26 mm: 0.2[0-9]* % of the part is in walls too thin .* between z = -?0?[.0-9]+ and 3[.0-9]* mm' wide
 is 'in the report, too' "$(json wide.json prints) $(json fin.json prints)" 'None 1'
 holds 'with its share' "($(json wide.json unresolved_part) / (0.9 / 363.9) - 1) ^ 2 < 0.3 ^ 2"
@@ -142,7 +142,7 @@ hourglass() {  # hourglass RADIUS: of the neck, between ends of 1.5 mm
 coarse='--set projector.columns=96 --set projector.rows=96 --set projector.pixel_mm=0.2 --set projector.axis_column=47.5 --set projector.axis_row=47.5'
 hourglass 0.16 >neck.off
 ok 'an hourglass' sh -c "vam-plan neck.off $coarse --report neck.json >neck"
-ok 'may be cut' grep -q '^verdict  *[a-z].*: process window +.*; the print is in' neck
+ok 'may be cut' grep -q '^verdict  *[a-z].*: forgives +-.* of dose, process window +.*; the print is in' neck
 ok 'at its neck' grep -q '^  thinnest place  *1.*voxels (0.3.* mm) at x, y, z = -*0.1, -*0.1, -*0.*; it may not print' neck
 holds 'with the numbers' "$(json neck.json solids) == 1 && $(json neck.json print_pieces_most) > 1"
 hourglass 0.4 >waist.off
@@ -158,13 +158,14 @@ ok 'frames are held by the angles of the print, not of the estimate' grep -q '^v
 is 'a stage that stands asks for no more angles' "$(grep -c '^angles ' stepped)" 0
 ok 'one that turns for those that hardly blur' grep -qE '^angles  *--angles (120|180|240|360|720): process window [-+][0-9.]* with 120, .* with 720, as the stage turns' held
 holds 'of which more are no worse' "$(json held.json pw_by_angles.120) < $(json held.json pw_by_angles.360) && $(json held.json pw_by_angles.360) < $(json held.json pw_by_angles.720) + 0.002"
-holds 'which costs little' "($(json held.json pw) - $(json stepped.json pw)) ^ 2 < 0.002 ^ 2"
+# Of one light: that of a stage that stands ends an iteration later.
+holds 'which costs little' "$(json held.json pw) > $(json held.json pw_by_angles.720) - 0.002"
 printer="$printer --set stage.motion=stepped"
 vam-slice $gyroid $printer -o gyroid.vdb
 vam-optimize gyroid.vdb $printer -o gyroid.exr 2>.log/gyroid
 vam-dose gyroid.exr --like gyroid.vdb $printer | vam-score --target gyroid.vdb $printer >scored
 is 'a gyroid near the edge prints, as vam-score says' \
-  "$(grep -c '^verdict  *will print: process window +' stepped) $(grep -c 'will print: process window +' scored)" '1 1'
+  "$(grep -c '^verdict  *will print: forgives +-[0-9.]* % of dose, process window +' stepped) $(grep -c 'will print: forgives +-[0-9.]* % of dose, process window +' scored)" '1 1'
 vam-plan --shape hollow-cylinder:outer=6,inner=5.9,height=3 --voxel 0.05 --report foil.json >foil 2>.log/foil
 is 'walls too thin to be seen are no silent yes' "$(json foil.json prints)" None
 holds 'their share is reported' "$(json foil.json unresolved_part) > 0.9"
@@ -174,12 +175,12 @@ is 'nor are walls too thin for the voxels of the print' "$(json rungs.json print
 vam-plan --shape boat --voxel 0.2 --set resin.psf_mm=1 --report blurred.json >blurred
 is 'what the beam blurs away does not print' "$(json blurred.json prints)" 0
 ok 'and where' grep -q '^  wrong voxels  *z = ' blurred
-# An oblique wall of two voxels, which the dose pierces.
+# An oblique wall of two voxels, which a little less dose pierces.
 awk 'BEGIN { print "OFF\n8 12 0"; c = cos(0.6); s = sin(0.6)
   for (i = 0; i < 8; i++) { x = i % 2 ? 3 : -3; y = int(i / 2) % 2 ? 0.21 : -0.21; z = i > 3 ? 2 : -2; print c * x - s * y, s * x + c * y, z + 0.3 * x }
   print "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5" }' >wall.off
 vam-plan wall.off --set projector.pixel_mm=0.2 --report wall.json >wall
-is 'an oblique wall of two voxels is no silent yes' "$(json wall.json prints | sed 's/^None$/0/') $(grep -c '^verdict .*walls are ' wall)" '0 1'
+is 'an oblique wall of two voxels is no silent yes' "$(json wall.json prints) $(grep -c '^verdict  *unknown at 0.2 mm, as 2 % of the dose decide; ' wall)" 'None 1'
 vam-plan --shape box:x=2,y=2,z=8 --report tall.json >tall
 holds 'a thin part is judged on coarse voxels, where the resin around it is large' "$(json tall.json estimate_voxel_mm) >= 0.2"
 

@@ -13,8 +13,8 @@ ok "its own target, given by name" vam-score --grid target part.vdb --target par
 ok "stdin" sh -c 'vam-score --grid target --target part.vdb <part.vdb'
 ok "a report on stdout" sh -c 'vam-score --report - --grid target part.vdb >out.json'
 is "the report on stdout has the figures of the file" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
-is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 30
-ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0 [(][0-9]+ voxels[)]; including the [0-9]+ voxels cut by the surface: process window [-+0-9.e]+, VER "'
+is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 31
+ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: forgives [+]-99.8 % of dose, process window [+]0.99[0-9]* of the largest dose, VER 0 [(][0-9]+ voxels[)]; including the [0-9]+ voxels cut by the surface: process window [-+0-9.e]+, VER "'
 is "the verdict counts part and surface voxels" "$(json perfect.json with_surface.voxels)" \
   $(($(json perfect.json part_voxels) + $(json perfect.json void_voxels) + $(json perfect.json surface_voxels)))
 quiet "surface voxels as figures of their own" vam-score --grid target part.vdb --surface --report all.json
@@ -47,7 +47,7 @@ on_block 1.2 2.8 >foot.off
 for part in stand foot; do vam-slice $part.off --voxel 0.2 --stretch-z 1 -o $part.vdb 2>.log/$part; done
 vam-score --grid target foot.vdb --target stand.vdb --report foot.json >table
 json foot.json verdict >said
-ok "a wall without foot is no print as designed" grep -q '^will not print as designed: process window +1 .*; the print is in 2 pieces, the part in 1; walls are cut or missing: 40 voxels that the part fills by half or more do not cure, most at x, y, z = .* mm; ' said
+ok "a wall without foot is no print as designed" grep -q '^will not print as designed: forgives +-100 % of dose, process window +1 .*; the print is in 2 pieces, the part in 1; walls are cut or missing: 40 voxels that the part fills by half or more do not cure, most at x, y, z = .* mm; ' said
 is "with its pieces" "$(for key in part_pieces print_pieces broken_voxels; do json foot.json $key; done | tr '\n' ' ')" "1 2 40 "
 holds "at the threshold that is reported" "$(json foot.json print_threshold) > 0"
 vam-score --grid target foot.vdb --target stand.vdb --require 'pw>0,broken_voxels<=0' >table 2>why

@@ -93,7 +93,7 @@ NRRD|1|vam-convert new.part.nrrd --voxel 0.25 -o no.vdb
 printer file|1|vam-check new.printer.toml
 printer file|1|vam-optimize part.vdb --printer new.printer.toml -o no.exr
 printer file|1|vam-project light.exr --printer new.printer.toml -o no.mkv
-checkpoint|5|vam-optimize part.vdb $printer --angles 24 --iterations 100000 --patience 0 --checkpoint new.run.state -o no.exr
+checkpoint|6|vam-optimize part.vdb $printer --angles 24 --iterations 100000 --patience 0 --checkpoint new.run.state -o no.exr
 vam-slice|1|vam-check new.slice.json
 vam-slice|1|vam-report part.vdb new.slice.json -o no.html
 vam-sdf|1|vam-sdf trend new.run1.json run2.json run3.json

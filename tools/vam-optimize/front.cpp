@@ -38,15 +38,16 @@ Plans plans_of(const std::vector<FrontPoint>& front, const model::Printer& print
 
 std::string front_csv(const std::vector<FrontPoint>& front, const Plans& plans) {
   std::ostringstream csv;
-  csv << "max_intensity,duration_s,turns,pw,ver,iou,peak_intensity,efficiency,pw_tolerances\n";
+  csv << "max_intensity,duration_s,turns,latitude,pw,ver,iou,peak_intensity,efficiency,latitude_tolerances\n";
   for (std::size_t i = 0; i < front.size(); ++i) {
     const FrontPoint& point = front[i];
     csv << format_number(point.max_intensity) << ",";
     if (plans[i]) csv << format_number(plans[i]->seconds) << "," << plans[i]->turns;
     if (!plans[i]) csv << ",";
     const model::DoseMetrics& m = point.metrics;
-    for (const double figure : {m.pw, m.ver, m.iou, point.peak, point.efficiency}) csv << "," << format_number(figure);
-    csv << "," << (point.pw_tolerances ? format_number(*point.pw_tolerances) : "") << "\n";
+    for (const double figure : {m.latitude, m.pw, m.ver, m.iou, point.peak, point.efficiency})
+      csv << "," << format_number(figure);
+    csv << "," << (point.latitude_tolerances ? format_number(*point.latitude_tolerances) : "") << "\n";
   }
   return csv.str();
 }
@@ -58,30 +59,31 @@ void add_curve(plot::Plot& plot, const std::string& name, const std::vector<doub
   plot.series.push_back({"", x, y, colour, plot::SeriesStyle::points});
 }
 
-/// Window above, IoU below, over the same axis.
+/// Latitude above, IoU below, over the same axis.
 plot::Canvas front_figure(const std::vector<FrontPoint>& front, const Plans& plans) {
   const bool timed = std::all_of(plans.begin(), plans.end(), [](const auto& plan) { return plan.has_value(); });
-  std::vector<double> x, pw, iou, pw_tolerances;
+  std::vector<double> x, latitude, iou, latitude_tolerances;
   for (std::size_t i = 0; i < front.size(); ++i) {
     x.push_back(timed ? plans[i]->seconds : front[i].efficiency);
-    pw.push_back(front[i].metrics.pw);
+    latitude.push_back(front[i].metrics.latitude);
     iou.push_back(front[i].metrics.iou);
-    if (front[i].pw_tolerances) pw_tolerances.push_back(*front[i].pw_tolerances);
+    if (front[i].latitude_tolerances) latitude_tolerances.push_back(*front[i].latitude_tolerances);
   }
   plot::Plot windows;
-  windows.title = "Process window against print duration, in the projector's grey levels";
+  windows.title = "Latitude of dose against print duration, in the projector's grey levels";
   windows.x.label = timed ? "duration at full grey (s)" : "mean / peak intensity (higher: shorter)";
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
   windows.x.low = *least - 0.05 * std::abs(*most);
   windows.x.high = 1.05 * *most;
-  windows.y.label = "process window / largest dose";
+  windows.y.label = "latitude / threshold dose";
   windows.height = 460;
   plot::Plot overlaps;
   overlaps.x = windows.x;
   overlaps.y = {"IoU", std::min(0.99, *std::min_element(iou.begin(), iou.end()) - 0.01), 1.001};
   overlaps.height = 300;
-  add_curve(windows, pw_tolerances.empty() ? "" : "nominal printer", x, pw, plot::paint::blue);
-  if (!pw_tolerances.empty()) add_curve(windows, "with all tolerances", x, pw_tolerances, plot::paint::vermilion);
+  add_curve(windows, latitude_tolerances.empty() ? "" : "nominal printer", x, latitude, plot::paint::blue);
+  if (!latitude_tolerances.empty())
+    add_curve(windows, "with all tolerances", x, latitude_tolerances, plot::paint::vermilion);
   add_curve(overlaps, "", x, iou, plot::paint::blue);
   plot::Canvas canvas(windows.width, windows.height + overlaps.height);
   canvas.place(plot::draw(windows), {0, 0});

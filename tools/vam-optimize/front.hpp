@@ -15,10 +15,11 @@ namespace vam::optimize_tool {
 /// says otherwise. Throws Error when the response cannot be read.
 [[nodiscard]] optimize::Show make_show(const model::Printer& printer, const Options& options);
 
-/// A name that ends in .png: window and IoU of the limits against the duration, or against mean / peak intensity unless
-/// the resin is known. Else a table, the columns max_intensity,duration_s,turns,pw,ver,iou,peak_intensity,efficiency
-/// and pw_tolerances, a line for each limit; duration_s and turns are empty unless the resin is known, pw_tolerances is
-/// without --robust. Throws as io::write_text does.
+/// A name that ends in .png: latitude and IoU of the limits against the duration, or against mean / peak intensity
+/// unless the resin is known. Else a table, the columns
+/// max_intensity,duration_s,turns,latitude,pw,ver,iou,peak_intensity,efficiency,latitude_tolerances, a line for each
+/// limit; duration_s and turns are empty unless the resin is known, latitude_tolerances is without --robust. Throws as
+/// io::write_text does.
 void write_front(const std::string& path, const std::vector<optimize::FrontPoint>& front, const model::Printer& printer,
                  const model::StackInfo& info, const Options& options);
 

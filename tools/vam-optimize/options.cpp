@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-optimize/options.hpp"
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <vector>
@@ -111,15 +112,16 @@ void declare_stopping(cli::App& app, Options& options) {
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
                  join(optimize::SliceFigures::names(), ", ") + ".");
-  app.default_is(std::string(optimize::automatic_until) +
-                 " with --method auto, with --shortest or without --iterations; else no condition")
+  app.default_is(std::string(optimize::shortest_until) +
+                 " with --shortest; with --method auto without --iterations the knee (--method); else no condition")
       .excludes(at_once())
       .not_in_job()
       .brief("Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'.");
   app.option(
       "--patience", "N", options.limits.patience, {0, 1000000},
-      "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it. Where no goal is met, "
-      "the result is that of the iteration with the largest IoU + PW (with --robust, and with apg while its "
+      "Stop when IoU + latitude has not improved by 1e-4 in this number of iterations; 0 disables it. Where no goal is "
+      "met, "
+      "the result is that of the iteration with the largest IoU + latitude (with --robust, and with apg while its "
       "loss constrains the surface, that of the last one), with 0 that of the last one.");
   app.excludes(at_once()).not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
@@ -137,7 +139,7 @@ void declare_stopping(cli::App& app, Options& options) {
                  "--wobble-record"});
   app.option("--budget", "SECONDS", options.budget_s, cli::positive,
              "Time for the computation as a whole: no iteration begins that would not leave enough of it for the rest. "
-             "The coarser levels of auto take at most half. The result depends on the speed of the machine.")
+             "The result depends on the speed of the machine.")
       .excludes({"--checkpoint", "--tradeoff"})
       .excludes(at_once())
       .not_in_job();
@@ -161,7 +163,9 @@ void declare_parameters(cli::App& app, Options& options) {
       .only_with(readers("--max-intensity"));
   app.default_is(format_number(optimize::usual_of_even) +
                  " times the even intensity, at which the mean dose is the threshold dose if every pixel is lit at "
-                 "every angle; raised by half while the conditions of --until are not met");
+                 "every angle; raised by half while the conditions of --until are not met, without these while the "
+                 "latitude is below " +
+                 format_number(optimize::usual_raising.enough));
 }
 
 /// How long the print takes, which the brightest pixel determines.
@@ -178,18 +182,16 @@ void declare_duration(cli::App& app, Options& options) {
       .excludes({"--max-intensity"})
       .not_for({"poses that do not return"});
   app.brief("Turns in which the print must be complete.");
-  app.flag(
-      "--shortest", options.shortest,
-      "Find the shortest print that meets the conditions of --until: the maximum intensity begins at " +
-          format_number(optimize::shortest_of_even) + " times the even intensity and is raised by " +
-          format_number(100 * (optimize::shortest_raising.factor - 1)) + " % after every " +
-          std::to_string(optimize::shortest_raising.next) +
-          " iterations without success. auto searches on its coarsest voxels, which takes up to twice as long as a "
-          "run; other methods take several times as long.");
+  app.flag("--shortest", options.shortest,
+           "Find the shortest print that meets the conditions of --until: the maximum intensity begins at " +
+               format_number(optimize::shortest_of_even) + " times the even intensity and is raised by " +
+               format_number(100 * (optimize::shortest_raising.factor - 1)) + " % after every " +
+               std::to_string(optimize::shortest_raising.next) +
+               " iterations without success, which takes several times as long as a run.");
   app.only_with(readers("--max-intensity")).excludes({"--max-intensity", "--turns", "--grey-target"});
   app.brief("Find the shortest print that meets --until.");
   app.option("--tradeoff", "FILE", options.tradeoff,
-             "Write the Pareto front of print duration and process window, as CSV or as a figure (.png, .pdf or "
+             "Write the Pareto front of print duration and latitude, as CSV or as a figure (.png, .pdf or "
              ".svg), for "
              "at least " +
                  std::to_string(optimize::front_points) + " maximum intensities, from " +
@@ -249,11 +251,12 @@ void declare(cli::App& app, Options& options) {
   cli::add_output(app, options.output).writes_as({".exr", ".toml"});
   std::vector<std::string> methods = optimize::method_names();
   methods.insert(methods.begin(), "auto");
-  app.choice("--method", options.method, methods,
-             std::string("Optimisation method. auto: ") + optimize::automatic_method +
-                 " from coarse to fine, at least " + std::to_string(optimize::automatic_refinements) +
-                 " iterations at full resolution (" + std::to_string(optimize::early_refinements) +
-                 " where the print's surface is within tolerance by then), until " + optimize::automatic_until + ".");
+  app.choice(
+      "--method", options.method, methods,
+      std::string("Optimisation method. auto: ") + optimize::automatic_method + ", at least " +
+          std::to_string(optimize::automatic_iterations) + " iterations, until " + optimize::automatic_until +
+          " and on to the knee, where the last fifth of the cost in iterations widened the latitude by less than " +
+          format_number(100 * (std::pow(1.25, optimize::automatic_rate) - 1), 2) + " %.");
   app.choice("--geometry", options.geometry, {"vial", "parallel"},
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
              "beam, which gives a virtual sinogram for vam-resample in a third of the time.");

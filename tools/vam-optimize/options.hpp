@@ -26,7 +26,6 @@ struct Options : session::JobOptions {
   optimize::Limits limits;
   std::string until;
   std::string init;
-  bool coarse_start = false;  // from the same part at half of the resolution
   std::string checkpoint;
   std::string slices;  // of the stack, that are written; empty: all
   std::string trace;

@@ -101,6 +101,14 @@ void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, con
   warn_of(hard, remedy, place_mm, scale, io::input_name(options.input));
 }
 
+/// What more of the same would buy, by how the latitude grew last.
+std::string what_more_buys(const optimize::VolumeOutcome& outcome) {
+  if (!(outcome.growth < 1) || outcome.metrics.latitude <= 0 || outcome.iterations == 0) return "";
+  const std::string twice = format_number(50 * outcome.metrics.latitude * std::exp2(outcome.growth), 3);
+  return "; " + std::to_string(outcome.iterations) + " iterations, and twice the computing would make it at most +-" +
+         twice + " %";
+}
+
 void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
   session::warn_of_shadowed_voxels(options.input, outcome.dark_part_voxels);
   const model::DoseMetrics& m = outcome.metrics;
@@ -194,7 +202,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
   if (shown.full_scale > 0) report["full_scale"] = shown.full_scale;
   if (plan) add_to(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
-    for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
+    for (const char* key : {"latitude", "threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
       report.erase(key);
     report["verdict"] = verdict::grey_words(outcome.metrics);
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict::grey_words(outcome.metrics) +
@@ -207,7 +215,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
     add_to(report, verdict);
     const bool stated = options.in_vial() && info.piece.whole() && shown.planned;
-    note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words +
+    note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words + what_more_buys(outcome) +
          session::how_to_show(printer.resin, stated, options.output == "-" ? "SINOGRAM" : options.output,
                               options.printer));
     report["limited_by"] = optimize::limited_by(

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -29,13 +30,12 @@ namespace {
 void resolve_auto(const cli::App& app, Options& options) {
   if (options.method != "auto") return;
   options.method = optimize::automatic_method;
-  const bool still = options.poses.empty() && !options.helix_mm && options.wobble_record.empty();
-  options.coarse_start =
-      still && options.init.empty() && !options.demands.grey && options.robust.empty() && options.tradeoff.empty();
   if (!options.until.empty() || !options.robust.empty() || (app.given("--iterations") && !options.shortest)) return;
-  if (options.coarse_start) options.limits.early = optimize::early_refinements;
-  options.limits.at_least = options.coarse_start ? optimize::automatic_refinements : optimize::automatic_iterations;
-  options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
+  options.limits.at_least = optimize::automatic_iterations;
+  options.until = options.demands.grey ? "ver=0"
+                  : options.shortest   ? optimize::shortest_until
+                                       : optimize::automatic_until;
+  if (!options.demands.grey && !options.shortest) options.limits.least_rate = optimize::automatic_rate;
 }
 
 /// Parses --robust; its clause `calibration` means the records.
@@ -75,9 +75,10 @@ void resolve_tradeoff(Options& options) {
 
 /// Without a limit of the user's a low one is raised until the part prints.
 void resolve_raising(const cli::App& app, Options& options) {
-  if (options.shortest && options.until.empty()) options.until = optimize::automatic_until;
-  if (options.limit.of_even <= 0 || options.until.empty()) return;
+  if (options.shortest && options.until.empty()) options.until = optimize::shortest_until;
+  if (options.limit.of_even <= 0 || (!options.robust.empty() && options.until.empty())) return;
   options.raising = options.shortest ? optimize::shortest_raising : optimize::usual_raising;
+  if (app.given("--until")) options.raising.enough = std::numeric_limits<double>::infinity();
   if (!options.shortest) return;
   options.limit.of_even = optimize::shortest_of_even;
   if (!app.given("--iterations")) options.limits.iterations = 4 * options.limits.iterations;

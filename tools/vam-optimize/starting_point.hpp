@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The starting point of the iteration: a checkpoint, given projections, or those of coarser voxels.
+// The starting point of the iteration: a checkpoint, or given projections.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "base/image.hpp"
 #include "cli/app.hpp"
@@ -13,46 +12,10 @@
 #include "io/stream/stream.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
-#include "optimize/run/prolongation.hpp"
 #include "optimize/run/volume.hpp"
-#include "session/job_volumes.hpp"
-#include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
-
-/// Those of the same job on voxels of twice the size: half of the angles and bins, and nothing that is made of the
-/// result alone.
-[[nodiscard]] Options coarser(const Options& options);
-
-struct CoarseStart {
-  optimize::Prolongation images;  // of the finer problem's slices
-  double half_width = 0;          // of the window that it reached about the threshold, in doses; 0: it did not print
-  optimize::EvenDose even;        // these two do not depend on the voxels
-  double eigenvalue = 0;
-  double max_intensity = 0;  // the limit, as raised; 0: none
-};
-
-/// For the projections of `scene`, from `in`; a line for each level on a terminal. None where the coarser part is too
-/// small to be of use, or has no light that prints it, nearly; and after an interruption, for which
-/// device::interrupted() is to be asked.
-[[nodiscard]] std::optional<CoarseStart> coarse_start(const session::JobVolumes& in, const session::Scene& scene,
-                                                      const Options& options);
-
-/// A problem solved, with its projections.
-struct SolvedLevel {
-  optimize::VolumeOutcome outcome;
-  std::vector<Image> images;
-};
-[[nodiscard]] SolvedLevel solved(optimize::VolumeTask& task, const session::Scene& scene, const Options& options);
-
-/// The start of a finer level from one that is solved; none where that has no light that prints the part, nearly.
-[[nodiscard]] std::optional<CoarseStart> start_of(SolvedLevel level, const session::Scene& scene,
-                                                  const Options& options, const session::Scene& finer,
-                                                  const Options& finer_options);
-
-/// The task starts from it.
-void continue_from(CoarseStart start, optimize::VolumeTask& task, Options& options);
 
 /// Reads a stack slice after slice, the last 64 of which may be read again; slices in between are skipped.
 class Initial {
@@ -97,11 +60,8 @@ class StartingPoint {
   /// Opens --checkpoint and --init. Throws Error: no_input, no_output, data.
   StartingPoint(const cli::App& app, const model::Printer& printer, const model::StackInfo& info,
                 const Options& options);
-  /// The task starts there and refers to this. Without --init the coarser levels are solved, which takes time: call it
-  /// after all that may refuse the task, and ask device::interrupted() then. A checkpoint has the iterate of the pass
-  /// that was interrupted; where passes may follow, these start from the coarser levels, too.
-  void begin(optimize::VolumeTask& task, const session::JobVolumes& in, const session::Scene& scene,
-             const light::Operator& light, Options& options);
+  /// The task starts there and refers to this. A checkpoint has the iterate of the pass that was interrupted.
+  void begin(optimize::VolumeTask& task);
   /// The run was interrupted: the checkpoint appears.
   void keep() { checkpoint_->keep(); }
   /// The run is complete.

@@ -89,6 +89,7 @@ void add_to(Json& json, const Estimate& estimate) {
   if (estimate.iterations > 0) {
     json["iterations"] = estimate.iterations;
     json["angles"] = estimate.angles;
+    json["latitude"] = estimate.verdict.print.whole.latitude;
     json["ver"] = estimate.verdict.print.whole.ver;
     json["pw"] = estimate.verdict.print.whole.pw;
   }

@@ -18,7 +18,7 @@ inline constexpr FormatVersion format_versions[] = {
     {"video", 1},
     {"NRRD", 1},
     {"printer file", 1},
-    {"checkpoint", 5},
+    {"checkpoint", 6},
     {"vam-angles", 1},
     {"vam-bench", 1},
     {"vam-calibration", 1},

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"

@@ -106,10 +106,6 @@ void read_blocks(const std::string& path, const std::string& name,
 void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes);
 void write_volume(const std::string& path, SparseVolume& volume);
 
-/// The means of 2 x 2 x 2 voxels, on model::coarser(grid); beyond the finer grid there is the background. Name, units,
-/// history and other metadata are the finer volume's.
-[[nodiscard]] SparseVolume coarser(const SparseVolume& volume);
-
 /// The smallest box of the volume's grid that holds all voxels whose value is above that.
 [[nodiscard]] model::VoxelBox covered_box(const SparseVolume& volume, float above);
 

@@ -47,7 +47,7 @@ double SensitivityField::sigma_at(double x_mm, double y_mm, double z_mm) const {
 double SensitivityField::axis_sigma_px() const { return std::sqrt(covariance.back()); }
 
 std::array<double, 3> PlannedDose::weights(double axis_px) const {
-  const double t = axis_px / offset_px;
+  const double t = (axis_px - middle_px) / offset_px;
   return {0.5 * t * (t - 1), 1 - t * t, 0.5 * t * (t + 1)};
 }
 

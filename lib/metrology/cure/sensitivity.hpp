@@ -65,10 +65,11 @@ struct SensitivityPrior {
 [[nodiscard]] SensitivityField carried_on(SensitivityField field, const SensitivityPrior& prior);
 
 /// A planned dose, mJ/cm3, in the stretched frame. Of three it is the parabola through them: with the axis at
-/// -offset_px, 0 and offset_px.
+/// middle_px - offset_px, middle_px and middle_px + offset_px.
 struct PlannedDose {
   std::vector<model::Volume> at;  // one, or three of one grid
   double offset_px = 1;
+  double middle_px = 0;
 
   /// Weights of the three.
   [[nodiscard]] std::array<double, 3> weights(double axis_px) const;

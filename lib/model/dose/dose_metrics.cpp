@@ -55,6 +55,8 @@ void DoseStatistics::fill(DoseMetrics& m, bool relative) const {
   const double variance = part_ > 0 ? sum_squares_ / static_cast<double>(part_) - m.mean_part * m.mean_part : 0.0;
   m.cv = m.mean_part > 0 ? std::sqrt(std::max(0.0, variance)) / m.mean_part : 0.0;
   const double unit = relative && m.max_dose > 0 ? m.max_dose : 1.0;
+  const double middle = 0.5 * (m.min_part + m.max_void);
+  m.latitude = middle > 0 ? (m.min_part - m.max_void) / middle : 0.0;
   m.pw = (m.min_part - m.max_void) / unit;
   m.ipdr = (m.max_part - m.min_part) / unit;
   const bool apart = part_ == 0 || void_ == 0 || max_void_ < m.min_part;

@@ -27,8 +27,8 @@ inline constexpr double half_surface = 0.5 - 1e-6;
   return coverage <= coverage_rounding ? Label::void_ : Label::surface;
 }
 
-/// Process window, voxel error rate and their kin [OSMO21; physics §7]. G = part, V = void inside the writable circle,
-/// x = dose. Doses keep the unit they came in; pw and ipdr are divided by max_dose when relative.
+/// Latitude, process window, voxel error rate and their kin [OSMO21; physics §7]. G = part, V = void inside the
+/// writable circle, x = dose. Doses keep the unit they came in; pw and ipdr are divided by max_dose when relative.
 struct DoseMetrics {
   std::int64_t part = 0;   // #G
   std::int64_t void_ = 0;  // #V
@@ -38,6 +38,7 @@ struct DoseMetrics {
   double max_void = 0;       // max_V x
   double max_dose = 0;       // over G and V
   double ver = 0;            // #{V: x >= min_G x} / (#G + #V)
+  double latitude = 0;       // (min_G x - max_V x) / their middle: a print forgives half of it of dose either way
   double pw = 0;             // min_G x - max_V x, positive is good
   double ipdr = 0;           // max_G x - min_G x
   double cv = 0;             // sigma_G / mean_G

@@ -9,7 +9,8 @@ namespace vam::model {
 namespace {
 using Entry = std::pair<std::string, double DoseMetrics::*>;
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{{"ver", &DoseMetrics::ver},
+  static const std::vector<Entry> all{{"latitude", &DoseMetrics::latitude},
+                                      {"ver", &DoseMetrics::ver},
                                       {"pw", &DoseMetrics::pw},
                                       {"ipdr", &DoseMetrics::ipdr},
                                       {"cv", &DoseMetrics::cv},

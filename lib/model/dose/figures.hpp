@@ -9,7 +9,7 @@
 
 namespace vam::model {
 
-/// ver, pw, ipdr, cv, iou, threshold, min_part, max_part, mean_part, max_void, max_dose
+/// latitude, ver, pw, ipdr, cv, iou, threshold, min_part, max_part, mean_part, max_void, max_dose
 [[nodiscard]] const std::vector<std::string>& figure_names();
 
 /// NaN for a name that is not there.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Accelerated projected gradient: FISTA [BT09] on the one-sided quadratic loss, with the ramp filter as preconditioner
-// and restarts [OC15], from the better of two quick answers.
+// and restarts [OC15], from the better of two quick answers. Multipliers [NW06] carry the loss, a sum, towards the
+// widest window, which the extreme voxels decide.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -23,9 +24,14 @@ constexpr float momentum = 4;  // at the start, which is near the end: saves two
 
 constexpr float shorter = 0.7F;  // measured on a 512 x 512 resolution target; 0.5 and 0.9 do a little worse
 
-constexpr float close_enough = 0.2F;  // of the half width of a slice's window
-constexpr float wider = 1.1F;
-constexpr float widest = 0.3F;  // half width, in doses
+constexpr float ambition = 1.3F;  // of the window asked for, where it prints, and of that which is reached
+constexpr float widest = 0.3F;    // half width, in doses
+constexpr float missing = 0.01F;  // of the part's voxels, that may miss the window by all of its half width
+constexpr float multiplier_rate = 0.5F;
+
+constexpr float close_enough = 0.2F;  // of the band of a grey voxel
+constexpr float narrower = 0.9F;
+constexpr float narrowest = 0.1F;
 
 class Apg final : public Method {
  public:
@@ -75,7 +81,9 @@ class Apg final : public Method {
     archive(before_.dose);
     archive(momentum_);
     archive(length_);
+    archive(multipliers_);
     archive(loss_);
+    archive(allowed_);
     archive(half_width_);
   }
 
@@ -85,7 +93,6 @@ class Apg final : public Method {
     if (!surface_ || surface_->points().empty()) return std::nullopt;
     return surface_->miss(dose);
   }
-  [[nodiscard]] double eigenvalue() const override { return options_.eigenvalue; }
 
  private:
   /// Slices that dose normalisation prints better than filtered back-projection start from it.
@@ -113,14 +120,18 @@ class Apg final : public Method {
     enter_bounds(problem, light, largest_light(options_, light), iterate);
     before_ = iterate;
     const DoseWindow& window = problem.demands.window;
-    const double half_width = options_.half_width > 0 ? options_.half_width : 0.5 * (window.high - window.low);
-    if (options_.eigenvalue <= 0) options_.eigenvalue = largest_eigenvalue(light, problem);
-    length_ = filled(iterate.g.size(), static_cast<float>(1.0 / options_.eigenvalue));
+    const bool grey = problem.demands.grey;
+    const double half_width = grey ? static_cast<double>(aimed_share) : 0.5 * (window.high - window.low);
+    length_ = filled(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));
     momentum_ = filled(iterate.g.size(), momentum);
     half_width_ = filled(iterate.g.size(), static_cast<float>(half_width));
     surface_.emplace(problem);
-    loss_ = losses(problem, light, iterate);
-    widen(problem, light, iterate);
+    allowed_ = pooled(
+        summed(iterate.dose,
+               [&](std::size_t s, std::size_t i) { return problem.labels[s][i] == Label::part ? missing : 0.0F; }),
+        light);
+    multipliers_.clear();
+    ask_more(problem, light, iterate);
   }
 
   /// t_{k+1} = (1 + sqrt(1 + 4 t_k^2)) / 2, beta = (t_k - 1) / t_{k+1}.
@@ -147,7 +158,7 @@ class Apg final : public Method {
     for_values(iterate.dose, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         float& ahead = before_.dose[s].values[i];
-        ahead = slope(problem, window(problem, s, i % lanes), s, i, ahead);
+        ahead = problem.weight_at(s, i) * miss(problem, s, i, ahead);
       }
     });
     surface_->add_slopes(misses, before_.dose);
@@ -161,7 +172,17 @@ class Apg final : public Method {
       momentum_[s][lane] = 1.0F;
       length_[s][lane] *= shorter;
     });
-    widen(problem, light, iterate);
+    ask_more(problem, light, iterate);
+  }
+
+  /// Distance of a dose from the doses allowed, moved by the multipliers.
+  [[nodiscard]] float miss(const Problem& problem, std::size_t s, std::size_t i, float dose) const {
+    DoseRange allowed = bounds(problem, window(problem, s, i % lanes), s, i, half_width_[s][i % lanes]);
+    if (!multipliers_.empty()) {
+      allowed.low += multipliers_[s].values[i];
+      allowed.high -= multipliers_[s].values[i];
+    }
+    return allowed.miss(dose);
   }
 
   /// The losses of the voxels.
@@ -169,7 +190,8 @@ class Apg final : public Method {
                                       const Iterate& iterate) const {
     return pooled(summed(iterate.dose,
                          [&](std::size_t s, std::size_t i) {
-                           return loss(problem, window(problem, s, i % lanes), s, i, iterate.dose[s].values[i]);
+                           const float by = miss(problem, s, i, iterate.dose[s].values[i]);
+                           return 0.5F * problem.weight_at(s, i) * by * by;
                          }),
                   light);
   }
@@ -188,31 +210,89 @@ class Apg final : public Method {
     return {middle - half, middle + half};
   }
 
-  /// A slice that has nearly met its thresholds is given wider ones: its window grows about the threshold, so that
-  /// easy parts reach the widest process window they can and hard ones are not given thresholds they cannot reach.
-  void widen(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
-    if (problem.demands.grey) return;
-    bool widened = false;
-    for (bool any = true; any; widened = widened || any) {
-      any = false;
-      const PerSlice losses_now = voxel_losses(problem, light, iterate);
-      for_slices(half_width_, [&](std::size_t s, std::size_t lane) {
-        float& half = half_width_[s][lane];
-        // One voxel that misses by a fifth of the half width costs so much.
-        const bool close = losses_now[s][lane] <= 0.5F * close_enough * close_enough * half * half;
-        if (!close || half * wider > widest) return;
-        half *= wider;
-        any = true;
-      });
+  /// What the next step is asked for.
+  void ask_more(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
+    if (problem.demands.grey) {
+      narrow(problem, light, iterate);
+    } else {
+      const PerSlice wrong = largest_wrong(problem, light, iterate.dose);
+      widen(problem, light, iterate.dose, wrong);
+      multiply(problem, iterate.dose, wrong);
     }
-    if (widened) loss_ = losses(problem, light, iterate);
+    loss_ = losses(problem, light, iterate);
+  }
+
+  /// By how much a dose is beyond the threshold on the wrong side; negative: it is on the right one.
+  static float wrong_by(const Problem& problem, std::size_t s, std::size_t i, float dose) {
+    const float above = dose - static_cast<float>(problem.demands.window.threshold());
+    return problem.labels[s][i] == Label::part ? -above : above;
+  }
+
+  /// The largest of a slice; negative: it prints.
+  [[nodiscard]] static PerSlice largest_wrong(const Problem& problem, const light::Operator& light,
+                                              std::span<const Slab> dose) {
+    return largest_pooled(reduce(
+                              dose, -1.0F,
+                              [&](float& a, std::size_t s, std::size_t i) {
+                                if (is_constrained(problem.labels[s][i]))
+                                  a = std::max(a, wrong_by(problem, s, i, dose[s].values[i]));
+                              },
+                              larger),
+                          light);
+  }
+
+  /// The window of a slice, about the threshold, is as wide as leaves the misses that are allowed: easy parts reach the
+  /// widest one they can, and hard ones are not given thresholds they cannot reach. A step of Newton's method; the sum
+  /// of misses is convex in the half width.
+  void widen(const Problem& problem, const light::Operator& light, std::span<const Slab> dose, const PerSlice& wrong) {
+    constexpr float most = 1.3F;
+    const auto asked = static_cast<float>(0.5 * (problem.demands.window.high - problem.demands.window.low));
+    const auto by = [&](std::size_t s, std::size_t i) {
+      return std::abs(bounds(problem, window(problem, s, i % lanes), s, i).miss(dose[s].values[i]));
+    };
+    const PerSlice sum = pooled(summed(dose, by), light);
+    const PerSlice count =
+        pooled(summed(dose, [&](std::size_t s, std::size_t i) { return by(s, i) > 0 ? 1.0F : 0.0F; }), light);
+    for_slices(half_width_, [&](std::size_t s, std::size_t lane) {
+      float& half = half_width_[s][lane];
+      const float more = count[s][lane] - allowed_[s][lane];
+      const float next = more > 0 ? half - (sum[s][lane] - allowed_[s][lane] * half) / more : most * half;
+      const float least = wrong[s][lane] < 0 ? ambition * asked : asked;
+      half = std::clamp(next, least, std::max(least, widest));
+    });
+  }
+
+  /// Voxels of a slice that prints count for more where they are within `ambition` of the window that it reaches, else
+  /// for less: the method of multipliers. Of thresholds out of reach, and of a slice that cannot print, they would grow
+  /// without end and take the surface out of its place.
+  void multiply(const Problem& problem, std::span<const Slab> dose, const PerSlice& wrong) {
+    if (multipliers_.empty()) multipliers_ = slabs(dose.size(), dose[0].width, dose[0].height);
+    fill(multipliers_, [&](std::size_t s, std::size_t i) {
+      const float now = multipliers_[s].values[i];
+      if (!is_constrained(problem.labels[s][i]) || wrong[s][i % lanes] >= 0) return now;
+      const float half = std::min(half_width_[s][i % lanes], -ambition * wrong[s][i % lanes]);
+      return std::max(0.0F, now + multiplier_rate * (wrong_by(problem, s, i, dose[s].values[i]) + half));
+    });
+  }
+
+  /// A grey slice that is nearly within its bands is given narrower ones, so that doses do not stay at their edges.
+  void narrow(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
+    const PerSlice losses_now = voxel_losses(problem, light, iterate);
+    for_slices(half_width_, [&](std::size_t s, std::size_t lane) {
+      float& share = half_width_[s][lane];
+      // One voxel that misses by a fifth of the share costs so much.
+      const float close = close_enough * share * static_cast<float>(problem.demands.band);
+      if (losses_now[s][lane] <= 0.5F * close * close) share = std::max(narrowest, narrower * share);
+    });
   }
 
   Iterate before_;
   std::vector<Slab> update_;
   PerSlice momentum_, length_, loss_;
   std::optional<SurfacePoints> surface_;
-  PerSlice half_width_;  // of each slice's window about the threshold
+  PerSlice half_width_;            // of each slice's window about the threshold; of a grey one the share of its band
+  PerSlice allowed_;               // sum of the misses of a slice, in half widths
+  std::vector<Slab> multipliers_;  // doses by which thresholds are moved; empty: not yet
   TwoMetric bounds_;
 };
 
@@ -221,12 +301,14 @@ class Apg final : public Method {
 MethodEntry apg_method() {
   return {"apg",
           "Accelerated projected gradient: the void below LOW, the part above HIGH, the surface at the threshold; "
-          "then it widens the window.",
+          "then it widens the window as far as hardly any voxel misses it.",
           60,
           true,
           {"--max-intensity", "--robust", "optimize.surface", "--delivered"},
           make<Apg>,
-          make_robust};
+          make_robust,
+          usual_softness,
+          1};
 }
 
 }  // namespace vam::optimize

@@ -36,8 +36,6 @@ struct MethodOptions {
   bool offset = false;       // raise all projections by the lowest value instead of clipping
   double max_intensity = 0;  // upper bound on projected intensity; 0: none
   double power = 2;          // p of the norm, at least 1
-  double half_width = 0;     // of the window about the threshold to begin with, in doses; 0: that of the demands
-  double eigenvalue = 0;     // the largest one of P A A*, which determines the step length; 0: computed
 };
 
 class Method {
@@ -69,8 +67,6 @@ class Method {
   }
   /// Whether it asks for more than the nominal doses show: for the print's surface, for other printers.
   [[nodiscard]] virtual bool asks_more(const Problem& /*problem*/) const { return false; }
-  /// MethodOptions::eigenvalue of a method that has computed it; of coarser voxels it is the same within 5 %.
-  [[nodiscard]] virtual double eigenvalue() const { return 0; }
   /// max_V x / min_G x of no light within the limit is less, with the threshold in the middle; 0: not known.
   [[nodiscard]] virtual double provable_ratio() const { return 0; }
 

@@ -41,7 +41,7 @@ model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& probl
   const auto count = static_cast<double>(m.part);
   m.ver = outside / count;
   m.iou = 1 - m.ver;
-  m.pw = -worst;
+  m.latitude = m.pw = -worst;
   m.cv = std::sqrt(squares / count);
   m.mean_part /= count;
   m.max_dose = m.max_part;
@@ -168,7 +168,7 @@ model::DoseMetrics body_metrics(std::span<const Slab> dose, const Problem& probl
       if (slice.part == 0) continue;
       const double before = static_cast<double>(body.part) / static_cast<double>(body.part + slice.part);
       const auto mean = [&](double a, double b) { return before * a + (1 - before) * b; };
-      body.pw = body.part == 0 ? slice.pw : std::min(body.pw, slice.pw);
+      body.latitude = body.pw = body.part == 0 ? slice.pw : std::min(body.pw, slice.pw);
       body.ver = mean(body.ver, slice.ver);
       body.iou = 1 - body.ver;
       body.cv = std::sqrt(mean(body.cv * body.cv, slice.cv * slice.cv));

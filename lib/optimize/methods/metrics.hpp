@@ -23,12 +23,12 @@ namespace vam::optimize {
 [[nodiscard]] std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem);
 
 /// Figures of each slice in use. Of a grey target: ver = share of the voxels whose response is outside its tolerance,
-/// pw = the least margin that any has to the edge of it, negative when outside, ipdr = largest error, cv = root mean
-/// square error, iou = 1 - ver.
+/// pw, and latitude, = the least margin that any has to the edge of it, negative when outside, ipdr = largest error, cv
+/// = root mean square error, iou = 1 - ver.
 [[nodiscard]] std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Problem& problem);
 
-/// IoU + PW: IoU moves while part and void overlap, PW when they have come apart.
-[[nodiscard]] inline double merit(const model::DoseMetrics& slice) { return slice.iou + slice.pw; }
+/// IoU + latitude: IoU moves while part and void overlap, latitude when they have come apart.
+[[nodiscard]] inline double merit(const model::DoseMetrics& slice) { return slice.iou + slice.latitude; }
 
 /// The factor for each slice that puts window.threshold() in the middle of the slice's own process window or, where
 /// that window is wider than needed, its least part dose on window.high; 0 for a slice without part. This is what makes

@@ -63,29 +63,29 @@ class Minimax final : public Method {
 
   void exchange(Archive& archive) override {
     state_.exchange(archive);
-    archive(options_.eigenvalue);
+    archive(eigenvalue_);
     archive(margin_);
     archive(threshold_);
     archive(peak_);
   }
 
   [[nodiscard]] bool keeps_scale() const override { return true; }
-  [[nodiscard]] double eigenvalue() const override { return options_.eigenvalue; }
   [[nodiscard]] double provable_ratio() const override {
     return peak_ > 0 && margin_ < threshold_ ? (threshold_ - margin_) / (threshold_ + margin_) : 0;
   }
 
  private:
   void begin(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
-    if (options_.eigenvalue <= 0) options_.eigenvalue = largest_eigenvalue(light, problem);
+    eigenvalue_ = largest_eigenvalue(light, problem);
     make_saddle(problem, light);
     state_ = saddle_->begin(iterate.g);
   }
 
   void make_saddle(const Problem& problem, const light::Operator& light) {
-    saddle_.emplace(light, signs(problem), options_.eigenvalue);
+    saddle_.emplace(light, signs(problem), eigenvalue_);
   }
 
+  double eigenvalue_ = 0;  // the largest one of P A A*
   std::optional<Saddle> saddle_;
   SaddleState state_;
   // The largest margin that light of this peak can have, by the best proof so far; peak 0: no proof.

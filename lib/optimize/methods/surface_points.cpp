@@ -12,7 +12,6 @@ namespace vam::optimize {
 namespace {
 
 constexpr float half = 0.5F;
-constexpr float cost = 0.25F;  // of a point or a cut voxel, relative to another voxel
 
 /// Coverage by voxel, in the order of the slices: a volume where they are stacked, else slices that have no neighbours.
 class TargetVolume {
@@ -193,7 +192,7 @@ std::vector<float> SurfacePoints::misses(std::span<const Slab> dose) const {
 PerSlice SurfacePoints::losses(std::span<const float> misses, std::size_t slabs) const {
   std::vector<double> sums(slabs * lanes, 0.0);
   const auto add = [&](SurfacePoint::Voxel v, float weight, float miss) {
-    sums[v.slab * lanes + v.i % lanes] += 0.5F * cost * weight * miss * miss;
+    sums[v.slab * lanes + v.i % lanes] += 0.5F * weight * miss * miss;
   };
   for (std::size_t i = 0; i < points_.size(); ++i) add(points_[i].from, points_[i].weight, misses[i]);
   for (std::size_t i = 0; i < cut_.size(); ++i) add(cut_[i].at, cut_[i].weight, misses[points_.size() + i]);
@@ -222,13 +221,13 @@ SurfaceMiss SurfacePoints::miss(std::span<const Slab> dose) const {
 void SurfacePoints::add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share) const {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const SurfacePoint& p = points_[i];
-    const float slope = share * cost * p.weight * misses[i];
+    const float slope = share * p.weight * misses[i];
     slopes[p.from.slab].values[p.from.i] += (1.0F - p.share) * slope;
     slopes[p.to.slab].values[p.to.i] += p.share * slope;
   }
   for (std::size_t i = 0; i < cut_.size(); ++i) {
     const CutVoxel& cut = cut_[i];
-    slopes[cut.at.slab].values[cut.at.i] += share * cost * cut.weight * misses[points_.size() + i];
+    slopes[cut.at.slab].values[cut.at.i] += share * cut.weight * misses[points_.size() + i];
   }
 }
 

@@ -12,14 +12,14 @@ namespace vam::optimize {
 void exchange(Archive& archive, std::vector<FrontPoint>& front) {
   archive.list(front, [&](FrontPoint& p) {
     model::DoseMetrics& m = p.metrics;
-    for (double* field :
-         {&p.max_intensity, &p.peak, &p.efficiency, &m.ver, &m.pw, &m.iou, &m.min_part, &m.max_void, &m.iou_threshold})
+    for (double* field : {&p.max_intensity, &p.peak, &p.efficiency, &m.latitude, &m.ver, &m.pw, &m.iou, &m.min_part,
+                          &m.max_void, &m.iou_threshold})
       archive(*field);
-    auto faced = static_cast<int>(p.pw_tolerances.has_value());
+    auto faced = static_cast<int>(p.latitude_tolerances.has_value());
     archive(faced);
     if (faced == 0) return;
-    if (!p.pw_tolerances) p.pw_tolerances = 0;
-    archive(*p.pw_tolerances);
+    if (!p.latitude_tolerances) p.latitude_tolerances = 0;
+    archive(*p.latitude_tolerances);
   });
 }
 
@@ -34,7 +34,8 @@ FrontPoint front_point(const Problem& problem, const light::Operator& light, dou
   model::LightEfficiency seen;
   for (const Image& image : shown) seen.add(image.values);
   FrontPoint point{max_intensity, seen.max, seen.value(), body_metrics(state.dose, problem), std::nullopt};
-  if (scenarios != nullptr) point.pw_tolerances = statistics_of_all(*scenarios, problem, state).metrics().pw;
+  if (scenarios != nullptr)
+    point.latitude_tolerances = statistics_of_all(*scenarios, problem, state).metrics().latitude;
   return point;
 }
 

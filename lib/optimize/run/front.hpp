@@ -19,7 +19,7 @@ struct FrontPoint {
   double peak = 0;           // largest intensity shown
   double efficiency = 0;     // mean over largest intensity
   model::DoseMetrics metrics;
-  std::optional<double> pw_tolerances;  // window of all scenarios and the nominal light together, if there are any
+  std::optional<double> latitude_tolerances;  // of all scenarios and the nominal light together, if there are any
 };
 /// Frames as the projector shows them.
 using Show = std::function<std::vector<Image>(std::vector<Image>)>;

@@ -111,7 +111,6 @@ void finish(RunState& run, const Pass& pass, const PassPrinters& printers, PassS
   const bool whole = run.jobs.division.whole;
   const double most = work.search.max_intensity;
   VolumeOutcome& outcome = run.outcome;
-  outcome.eigenvalue = work.method->eigenvalue();
   outcome.least_ratio = std::max(outcome.least_ratio, work.method->provable_ratio());
   outcome.max_intensity = std::max(outcome.max_intensity, most);  // the brightest pass sets the duration
   Iterate& state = work.state;

@@ -46,6 +46,7 @@ Preview preview(const PreviewTask& wanted) {
   task.limits.iterations = std::clamp(static_cast<int>(most_updates / updates), wanted.iterations,
                                       std::max(wanted.iterations, most_iterations));
   task.limits.until = model::parse_conditions(automatic_until, SliceFigures::names());
+  task.limits.least_rate = automatic_rate;
   task.limits.patience = 0;
   task.count_pieces = true;
   task.limit.of_even = usual_of_even;

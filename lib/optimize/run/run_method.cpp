@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.hpp"
 #include "model/dose/figures.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/slice_figures.hpp"
@@ -25,12 +26,14 @@ double mean_merit(const std::vector<model::DoseMetrics>& slices) {
   return count > 0 ? sum / count : 0.0;
 }
 
-bool reached(const std::vector<model::Condition>& until, const std::vector<model::DoseMetrics>& slices) {
-  if (until.empty()) return false;
+model::DoseMetrics mean_of(const std::vector<model::DoseMetrics>& slices) {
   SliceFigures all;
   for (const auto& slice : slices) all.add(slice);
-  const auto m = all.mean();
-  return model::unmet(until, [&](const std::string& name) { return model::figure(m, name); }).empty();
+  return all.mean();
+}
+
+bool reached(const std::vector<model::Condition>& until, const model::DoseMetrics& m) {
+  return !until.empty() && model::unmet(until, [&](const std::string& name) { return model::figure(m, name); }).empty();
 }
 
 /// Nothing has improved for `patience` iterations.
@@ -43,17 +46,20 @@ bool lost_patience(IterationState& run, const Limits& limits, double merit_now, 
   return limits.patience > 0 && run.iteration - run.best_at >= limits.patience;
 }
 
-// Deviations of a true surface, in voxels: vam-sdf finds up to 0.06 more than the dose at the surface tells.
-constexpr double true_mean = 0.05, true_rms = 0.2;
-
-bool is_true(const std::optional<SurfaceMiss>& surface) {
-  return surface && std::abs(surface->mean) <= true_mean && surface->rms <= true_rms;
+/// Notes the latitude after this iteration.
+void note(IterationState& run, double latitude) {
+  run.latitude.resize(run.iteration, run.latitude.empty() ? latitude : run.latitude.back());
+  run.latitude.push_back(run.latitude.empty() ? latitude : std::max(latitude, run.latitude.back()));
 }
 
-/// Whether the goal counts at this iterate.
-bool enough(const Method& method, const Limits& limits, const Iterate& state, int iteration) {
-  if (iteration >= limits.at_least) return true;
-  return limits.early > 0 && iteration >= limits.early && is_true(method.surface_miss(state.dose));
+/// Outcome::growth so far.
+double growth(const IterationState& run) {
+  constexpr double begun = 10;  // what comes before the first iteration and after the last takes, in iterations
+  constexpr double share = 0.8;
+  const double cost = run.iteration + begun;
+  const int before = static_cast<int>(share * cost - begun);
+  if (before < 0 || run.iteration >= count_of(run.latitude) || !(run.latitude[before] > 0)) return no_growth_known;
+  return std::log(run.latitude.back() / run.latitude[before]) / std::log(cost / (before + begun));
 }
 
 /// Whether another iteration as long as the mean of those before it, and the rest, fit in.
@@ -65,17 +71,19 @@ bool in_time(const std::optional<Deadline>& deadline, const IterationState& run)
 }
 
 /// Whether to stop at this iterate, and why.
-std::optional<StopReason> look(const Method& method, const Problem& problem, const light::Operator& light,
-                               const Limits& limits, const Iterate& state, IterationState& run, bool keeps,
-                               const Watch& watch) {
+std::optional<StopReason> look(const Problem& problem, const light::Operator& light, const Limits& limits,
+                               const Iterate& state, IterationState& run, bool keeps, const Watch& watch) {
   const bool last = run.iteration == limits.iterations;
-  if (limits.watch_last || !last || keeps) {  // looking costs little, but a plain fbp need not be evaluated
+  if (limits.watch_last || limits.iterations > 0) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
     if (watch) watch(run.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
-    if (reached(limits.until, slices) && enough(method, limits, state, run.iteration)) return StopReason::goal;
+    const model::DoseMetrics mean = mean_of(slices);
+    note(run, mean.latitude);
+    const bool counts = run.iteration >= limits.at_least && (limits.least_rate <= 0 || growth(run) < limits.least_rate);
+    if (counts && reached(limits.until, mean)) return StopReason::goal;
     const bool lost = lost_patience(run, limits, mean_merit(slices), keeps ? &state.g : nullptr);
-    if (!last && lost) return StopReason::no_progress;
+    if (!last && lost && run.iteration >= limits.at_least) return StopReason::no_progress;
   }
   if (!last && !in_time(limits.deadline, run)) return StopReason::time;
   return last ? std::optional(StopReason::iterations) : std::nullopt;
@@ -120,8 +128,8 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
   }
   const bool keeps = limits.patience > 0 && limits.iterations > 1 && !method.asks_more(problem);
   for (;; ++run.iteration) {
-    const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, run, keeps, watch);
-    if (stop) return {run.iteration, *stop};
+    const auto stop = looked ? std::nullopt : look(problem, light, limits, state, run, keeps, watch);
+    if (stop) return {run.iteration, *stop, growth(run)};
     if (pause && pause()) return {run.iteration, StopReason::interrupted};
     method.step(problem, light, state);
     looked = false;

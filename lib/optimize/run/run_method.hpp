@@ -26,10 +26,11 @@ struct Deadline {
 struct Limits {
   int iterations = 0;
   std::vector<model::Condition> until;    // stop when all hold; names as in SliceFigures::names()
-  int at_least = 0;                       // iterations before they count
-  int early = 0;                          // so many do where the print's surface is true by then; 0: none
+  int at_least = 0;                       // iterations before they count, or patience ends
+  double least_rate = 0;                  // and growth of the latitude per growth of the cost, in logarithms, above
+                                          // which the run goes on; 0: none
   int patience = 10;                      // stop when nothing improved in so many iterations; 0 = never
-  double least_gain = 1e-4;               // an improvement of the mean of IoU + PW smaller than this is none
+  double least_gain = 1e-4;               // an improvement of the mean of IoU + latitude smaller than this is none
   bool watch_last = false;                // evaluate the last iterate, too, on which nothing depends
   std::optional<Deadline> deadline = {};  // no iteration begins that might end after it
 };
@@ -41,9 +42,13 @@ enum class StopReason : int { iterations, goal, no_progress, interrupted, time }
 /// As reports have it: "iterations", "goal", "no progress", "interrupted", "time".
 [[nodiscard]] std::string reason_name(StopReason stop);
 
+/// Of the latitude: that of a run that did not print before.
+inline constexpr double no_growth_known = 1e6;
+
 struct Outcome {
   int iterations = 0;
   StopReason stop = StopReason::iterations;
+  double growth = no_growth_known;  // of the latitude in the last fifth of the cost, in logarithms of both
 };
 
 /// Called with iteration 0 (the start) and after every step that is evaluated; one entry per slice of the pass.
@@ -57,6 +62,7 @@ struct IterationState {
   double best = std::numeric_limits<double>::lowest();
   int best_at = 0;
   std::vector<Slab> best_light;  // empty: not kept
+  std::vector<double> latitude;  // after each iteration, the largest so far
   double began_s = 0;            // with iteration 0; known where there is a deadline
 };
 

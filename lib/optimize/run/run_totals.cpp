@@ -24,6 +24,7 @@ void RunTotals::end(const Outcome& outcome) {
   if (outcome.iterations < iterations_) return;
   iterations_ = outcome.iterations;
   stop_ = outcome.stop;
+  growth_ = outcome.growth;
 }
 
 void RunTotals::add(std::span<const Slab> dose, const Problem& problem, const Pass& pass, const Jobs& jobs,
@@ -75,6 +76,7 @@ void RunTotals::exchange(Archive& archive) {
   archive(min_part_);
   archive(max_void_);
   archive(stop_);
+  archive(growth_);
   archive(iterations_);
   archive(dark_part_voxels_);
 }
@@ -101,6 +103,7 @@ void RunTotals::complete(VolumeOutcome& outcome, bool grey, std::span<const int>
   }
   outcome.iterations = iterations_;
   outcome.stop = stop_;
+  outcome.growth = growth_;
   outcome.dark_part_voxels = dark_part_voxels_;
 }
 

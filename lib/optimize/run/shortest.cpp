@@ -10,6 +10,7 @@ void Search::exchange(Archive& archive) {
   archive(run.best);
   archive(run.best_at);
   archive(run.best_light);
+  archive(run.latitude);
   archive(max_intensity);
   archive(best_max_intensity);
   archive(until);
@@ -33,8 +34,11 @@ Outcome run_shortest(Method& method, const Problem& problem, const light::Operat
         outcome.stop == StopReason::goal || outcome.stop == StopReason::interrupted || outcome.stop == StopReason::time;
     if (at_limit && outcome.stop != StopReason::interrupted) at_limit(search.max_intensity);
     if (ended || outcome.iterations >= limits.iterations) return outcome;
-    search.max_intensity *= raising.factor;
+    const bool stays = !search.run.latitude.empty() && search.run.latitude.back() >= raising.enough;
+    if (stays && outcome.stop == StopReason::no_progress) return outcome;
     search.until = outcome.iterations + raising.next;
+    if (stays) continue;
+    search.max_intensity *= raising.factor;
     search.run.best_at = outcome.iterations;
     method.allow(search.max_intensity);
   }

@@ -16,6 +16,7 @@ void SliceFigures::add(const model::DoseMetrics& slice, int times) {
   part_ += part;
   iou_ += part * slice.iou;
   cv_squared_ += part * slice.cv * slice.cv;
+  latitude_ = std::min(latitude_, slice.latitude);
   pw_ = std::min(pw_, slice.pw);
   ipdr_ = std::max(ipdr_, slice.ipdr);
 }
@@ -26,6 +27,7 @@ void SliceFigures::add(const SliceFigures& other) {
   errors_ += other.errors_;
   iou_ += other.iou_;
   cv_squared_ += other.cv_squared_;
+  latitude_ = std::min(latitude_, other.latitude_);
   pw_ = std::min(pw_, other.pw_);
   ipdr_ = std::max(ipdr_, other.ipdr_);
 }
@@ -38,13 +40,14 @@ model::DoseMetrics SliceFigures::mean() const {
   if (part_ <= 0) return m;
   m.iou = iou_ / part_;
   m.cv = std::sqrt(cv_squared_ / part_);
+  m.latitude = latitude_;
   m.pw = pw_;
   m.ipdr = ipdr_;
   return m;
 }
 
 const std::vector<std::string>& SliceFigures::names() {
-  static const std::vector<std::string> all{"ver", "pw", "ipdr", "cv", "iou"};
+  static const std::vector<std::string> all{"latitude", "ver", "pw", "ipdr", "cv", "iou"};
   return all;
 }
 

@@ -103,9 +103,7 @@ void limit_intensity(RunState& run) {
   VolumeOutcome& outcome = run.outcome;
   const IntensityLimit& limit = task.limit;
   if (limit.most <= 0 && limit.of_even <= 0) return;
-  outcome.even = task.even.mean > 0
-                     ? task.even
-                     : even_dose(run.light, task.circle, run.jobs.division.whole ? task.source.slices : lanes);
+  outcome.even = even_dose(run.light, task.circle, run.jobs.division.whole ? task.source.slices : lanes);
   if (!(outcome.even.mean > 0)) return;  // dark: nothing to limit
   const double threshold = task.demands.window.threshold();
   outcome.max_intensity = limit.most > 0 ? limit.most : limit.of_even * threshold / outcome.even.mean;

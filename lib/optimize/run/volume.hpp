@@ -41,7 +41,6 @@ struct VolumeTask {
   Demands demands;
   Limits limits;
   IntensityLimit limit;
-  EvenDose even;       // as coarser voxels have it; 0: computed where the limit asks for it
   Raising raising;     // of the limit, while the goal is not met
   double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
   bool watch = false;  // fill the trace
@@ -72,6 +71,7 @@ struct VolumeOutcome {
   int jobs = 0;                              // distinct slices computed
   int iterations = 0;                        // most of any pass
   StopReason stop = StopReason::iterations;  // of the pass with most iterations; interrupted: there is no result
+  double growth = no_growth_known;           // Outcome::growth of that pass
   std::vector<model::DoseMetrics> trace;     // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;                // of the result, at the common threshold
   bool all_cut = false;                      // no voxel is wholly inside the part, and these are as with_cut
@@ -81,7 +81,6 @@ struct VolumeOutcome {
   std::optional<verdict::PrintPieces> pieces;  // when asked for; none of a grey target, nor of a part of the slices
   std::vector<SliceDemand> demands;            // by each slice; empty of a grey target
   std::optional<SurfaceMiss> surface;          // where slices share light
-  double eigenvalue = 0;                       // Method::eigenvalue() of the last pass
   double least_ratio = 0;                      // Method::provable_ratio(), the largest of all passes
   double efficiency = 0;
   double max_intensity = 0;                // the limit, as raised; 0: none

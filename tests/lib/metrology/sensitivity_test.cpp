@@ -138,6 +138,12 @@ TEST_CASE("The axis is found by the doses with the axis to either side, on its s
   }
   CHECK(dose.with(2).values == dose.at[2].values);
   CHECK(dose.with(0).values == dose.at[1].values);
+  // Closer together, about another place, the parabola is that of the ripples.
+  const PlannedDose near{{ripples(0.5 * px_mm), ripples(px_mm), ripples(1.5 * px_mm)}, 0.5, 1};
+  const SensitivityFit fit =
+      fit_sensitivity(densities(1.2 * px_mm, some_truth(before), 1, 0.02), nullptr, {near}, curve, before, 0);
+  CHECK(std::abs(fit.field.axis_px - 1.2) < 2 * fit.field.axis_sigma_px());
+  CHECK(near.with(1).values == near.at[1].values);
 }
 
 TEST_CASE("Before anything scatters, and where nothing fits, there is doubt") {

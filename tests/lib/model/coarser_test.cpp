@@ -5,18 +5,6 @@
 
 using namespace vam::model;
 
-TEST_CASE("a coarser voxel is where the eight that it covers are") {
-  const Grid fine{5, 4, 3, 0.1, {-0.2, -0.15, 0.7}};
-  const Grid coarse = coarser(fine);
-  CHECK(coarse.nx == 3);
-  CHECK(coarse.ny == 2);
-  CHECK(coarse.nz == 2);
-  CHECK(coarse.voxel_mm == doctest::Approx(0.2));
-  CHECK(coarse.x_mm(1) == doctest::Approx(0.5 * (fine.x_mm(2) + fine.x_mm(3))));
-  CHECK(coarse.y_mm(1) == doctest::Approx(0.5 * (fine.y_mm(2) + fine.y_mm(3))));
-  CHECK(coarse.z_mm(0) == doctest::Approx(0.5 * (fine.z_mm(0) + fine.z_mm(1))));
-}
-
 TEST_CASE("coarser pixels are where the finer ones are, and the lens stays") {
   Printer fine{.projector = {.columns = 1025, .rows = 769, .axis_column = 500}};
   const Printer coarse = coarser(fine);

@@ -49,6 +49,7 @@ TEST_CASE("figures of an overlapping dose against their definitions") {
   const double most_void = *std::max_element(sample.void_.begin(), sample.void_.end());
   const double top = std::max(most, most_void);
   CHECK(m.pw == doctest::Approx((least - most_void) / top));
+  CHECK(m.latitude == doctest::Approx(2 * (least - most_void) / (least + most_void)));
   CHECK(m.ipdr == doctest::Approx((most - least) / top));
   const auto wrong = std::count_if(sample.void_.begin(), sample.void_.end(), [&](double v) { return v >= least; });
   CHECK(m.ver == doctest::Approx(static_cast<double>(wrong) / 8000).epsilon(0.01));  // bins of 2^-12

@@ -21,7 +21,8 @@ std::vector<std::vector<float>> some_parts() {
 
 PerSlice losses(const std::vector<Slab>& dose, const Problem& problem) {
   return summed(dose, [&](std::size_t s, std::size_t i) {
-    return loss(problem, problem.demands.window, s, i, dose[s].values[i]);
+    const float by = bounds(problem, problem.demands.window, s, i).miss(dose[s].values[i]);
+    return 0.5F * problem.weight_at(s, i) * by * by;
   });
 }
 
@@ -74,7 +75,7 @@ TEST_CASE("apg: a binary resolution target prints exactly within 120 projections
   CHECK(m.pw >= 0.05);
 }
 
-TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps within its bounds") {
+TEST_CASE("apg never makes the loss worse until a slice prints, and then it stays printed, within its bounds") {
   const auto parts = some_parts();
   const auto all = parts::stacked(parts);
   const auto made = parts::parallel_light(size, 360);
@@ -86,11 +87,16 @@ TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps wi
   Iterate state;
   method->start(problem, light, state);
   PerSlice before = losses(state.dose, problem);
+  auto slices = metrics(state.dose, problem);
+  CHECK(std::count_if(slices.begin(), slices.end(), [](const auto& slice) { return slice.latitude <= 0; }) > 1);
   for (int i = 0; i < 20; ++i) {
     method->step(problem, light, state);
     const PerSlice now = losses(state.dose, problem);
-    for (std::size_t s = 0; s < 4; ++s) CHECK(now[0][s] <= before[0][s]);
+    const auto next = metrics(state.dose, problem);
+    for (std::size_t s = 0; s < 4; ++s)
+      CHECK((slices[s].latitude > 0 ? next[s].latitude > 0 : now[0][s] <= before[0][s]));
     before = now;
+    slices = next;
   }
   const float largest = *std::max_element(state.g[0].values.begin(), state.g[0].values.end());
   CHECK(largest <= static_cast<float>(3 * light.row_angle_rad()));

@@ -98,6 +98,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
   if (automatic) {
     task.limits.until = vam::model::parse_conditions(automatic_until, SliceFigures::names());
     task.limits.at_least = automatic_iterations;
+    task.limits.least_rate = automatic_rate;
   }
   task.source.target = [&](int k, int count, float* out) {
     const std::size_t slice = part.grid.slice_size();

@@ -209,13 +209,13 @@ TEST_CASE("slopes are the transpose of misses, and the derivative of the losses"
   }
   double expected = 0;
   double loss = 0;
-  for (const float miss : misses) expected += 0.25 * (static_cast<double>(miss) + 0.8) * static_cast<double>(miss);
+  for (const float miss : misses) expected += (static_cast<double>(miss) + 0.8) * static_cast<double>(miss);
   for (const auto& lane : surface.losses(misses, dose.size())) {
     for (const float v : lane) loss += static_cast<double>(v);
   }
   CHECK(along == doctest::Approx(expected).epsilon(1e-5));
   double half_squares = 0;
-  for (const float miss : misses) half_squares += 0.125 * static_cast<double>(miss) * static_cast<double>(miss);
+  for (const float miss : misses) half_squares += 0.5 * static_cast<double>(miss) * static_cast<double>(miss);
   CHECK(loss == doctest::Approx(half_squares).epsilon(1e-5));
 }
 

@@ -202,10 +202,21 @@ TEST_CASE("the loop stops at its goal, and when it stagnates") {
   CHECK(goal.outcome.stop == StopReason::goal);
   CHECK(goal.outcome.trace.back().iou >= 0.9);
   CHECK(static_cast<int>(goal.outcome.trace.size()) == goal.outcome.iterations + 1);
+  task.limits.least_rate = 0.6;  // and on while a fifth of the cost widens the latitude by so much
+  const auto knee = run(slices, task);
+  const auto& trace = knee.outcome.trace;
+  CHECK(knee.outcome.stop == StopReason::goal);
+  CHECK(knee.outcome.iterations > goal.outcome.iterations);
+  CHECK(knee.outcome.growth < 0.6);
+  const int before = static_cast<int>(0.8 * (knee.outcome.iterations + 10) - 10);
+  CHECK(trace.back().latitude < 1.15 * trace[before].latitude);
+  task.limits.least_rate = 0;
   task.limits.until.clear();
   const auto stalled = run(slices, task);
   CHECK(stalled.outcome.stop == StopReason::no_progress);
   CHECK(stalled.outcome.iterations < 500);
+  task.limits.at_least = stalled.outcome.iterations + 5;  // before which patience does not end
+  CHECK(run(slices, task).outcome.iterations >= task.limits.at_least);
 }
 
 TEST_CASE("without a goal the best iterate is the result, whatever comes after it") {
@@ -219,9 +230,9 @@ TEST_CASE("without a goal the best iterate is the result, whatever comes after i
     task.limits = {.iterations = 25, .until = {}, .patience = 25, .least_gain = 0};
     const auto best = run(slices, task);
     const auto& trace = best.outcome.trace;
-    const auto at = std::max_element(trace.begin(), trace.end(),
-                                     [](const auto& a, const auto& b) { return a.iou + a.pw < b.iou + b.pw; });
-    CHECK(best.outcome.metrics.iou + best.outcome.metrics.pw == doctest::Approx(at->iou + at->pw).epsilon(2e-4));
+    const auto at =
+        std::max_element(trace.begin(), trace.end(), [](const auto& a, const auto& b) { return merit(a) < merit(b); });
+    CHECK(merit(best.outcome.metrics) == doctest::Approx(merit(*at)).epsilon(2e-4));
     later += static_cast<int>(trace.end() - at) - 1;
     // The same as ending there.
     task.limits = {.iterations = static_cast<int>(at - trace.begin()), .until = {}, .patience = 0};

@@ -18,10 +18,13 @@ struct Given : GivenPrint {
 std::string words(const Given& given) { return given.judged().words; }
 Answer answer(const Given& given) { return given.judged().answer; }
 
+const std::string same_pieces = "; its pieces are those of the part within +-2 % of dose";
+
 Given printable() {
   Given made;
   made.whole.part = 100;
   made.whole.void_ = 900;
+  made.whole.latitude = 0.088;
   made.whole.pw = 0.0653;
   made.with_cut = made.whole;
   made.with_cut.part = 150;
@@ -35,15 +38,17 @@ Given printable() {
 
 TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that are known") {
   CHECK(words(printable()) ==
-        "will print: process window +0.0653 of the largest dose, VER 0 (1000 voxels); including the 110 voxels cut by "
-        "the surface: process window -0.312, VER 0.0041");
+        "will print: forgives +-4.4 % of dose, process window +0.0653 of the largest dose, VER 0 (1000 voxels); "
+        "including "
+        "the 110 voxels cut by the surface: process window -0.312, VER 0.0041");
   Given hollow = printable();
   hollow.with_cut = hollow.whole;
+  hollow.whole.latitude = -0.0254;
   hollow.whole.pw = hollow.with_cut.pw = -0.02;
   hollow.whole.ver = 0.003;
   hollow.seconds = 360.04;
   CHECK(words(hollow) ==
-        "will not print: process window -0.02 of the largest dose, VER 0.003 (1000 voxels); "
+        "will not print: latitude -0.025, process window -0.02 of the largest dose, VER 0.003 (1000 voxels); "
         "duration 360 s");
 }
 
@@ -54,8 +59,9 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
   fixed.threshold = 0.772;
   CHECK(answer(fixed) == Answer::yes);
   CHECK(
-      words(fixed).find("will print: process window +0.0653 of the largest dose, VER 0 (1000 voxels); the threshold is "
-                        "3.5 % below its least dose in the part and 10 % above its largest in the void; including the "
+      words(fixed).find("will print: forgives +-4.4 % of dose, process window +0.0653 of the largest dose, VER 0 (1000 "
+                        "voxels); the threshold is 3.5 % below its least dose in the part and 10 % above its largest "
+                        "in the void; including the "
                         "110 voxels") == 0);
   Json figures;
   add_to(figures, fixed.judged());
@@ -67,7 +73,8 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
     fixed.threshold = beside;
     CHECK(answer(fixed) == Answer::no);
     CHECK(words(fixed).find("will not print at the threshold of " + vam::format_number(beside) +
-                            " (void up to 0.7, part at least 0.8): process window +0.0653") == 0);
+                            " (void up to 0.7, part at least 0.8): forgives +-4.4 % of dose, process window +0.0653") ==
+          0);
   }
 }
 
@@ -123,7 +130,7 @@ TEST_CASE("a part without a voxel wholly inside is not judged") {
 TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   Given cut = printable();
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1};
-  CHECK(words(cut) == words(printable()));
+  CHECK(words(cut) == words(printable()) + same_pieces);
   CHECK(answer(cut) == Answer::yes);
   cut.pieces->print = 2;
   CHECK(answer(cut) == Answer::not_as_designed);
@@ -138,7 +145,7 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
   cut.pieces = {.part = 2, .part_at_half = 2, .print = 2, .print_fewer = 1};
   CHECK(answer(cut) == Answer::unsure);
   cut.pieces->part = 1;  // which the voxels are too coarse to tell
-  CHECK_FALSE(has(words(cut), "2 %"));
+  CHECK_FALSE(has(words(cut), "2 % less or more"));
   cut.pieces = {.part = 1, .part_at_half = 1, .print = 1, .broken = {.voxels = 4}};
   CHECK(answer(cut) == Answer::not_as_designed);
   CHECK(words(cut).ends_with("; walls are cut or missing: 4 voxels that the part fills by half or more do not cure"));
@@ -169,7 +176,8 @@ TEST_CASE("pieces, cut walls and shut gaps are told of what prints") {
 TEST_CASE("an estimate that cannot tell is left open, for a reason, and reports no answer") {
   const Verdict open = leave_open(printable().judged(), "unknown at 0.26 mm; --voxel 0.1 tells");
   CHECK(open.answer == Answer::left_open);
-  CHECK(open.words.starts_with("unknown at 0.26 mm; --voxel 0.1 tells: process window +0.0653 of the largest dose"));
+  CHECK(open.words.starts_with(
+      "unknown at 0.26 mm; --voxel 0.1 tells: forgives +-4.4 % of dose, process window +0.0653 of the largest dose"));
   Json figures;
   add_to(figures, open);
   CHECK(figures["prints"].is_null());
@@ -224,7 +232,7 @@ TEST_CASE("the part's own surface tells its pieces and what is thin, and overrul
   made.unresolved.surface = surface;
   made.pieces = counted;
   CHECK(answer(made) == Answer::yes);
-  CHECK(words(made) == words(printable()));
+  CHECK(words(made) == words(printable()) + same_pieces);
   // Voxels that only a rough surface leaves uncovered.
   made.unresolved.lost_walls.voxels = 5;
   CHECK(answer(made) == Answer::yes);

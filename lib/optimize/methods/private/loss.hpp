@@ -9,17 +9,19 @@
 
 namespace vam::optimize {
 
-/// The fraction of its band that a grey voxel is constrained to: a penalty leaves most misses just outside its bounds.
+/// The fraction of its band that a grey voxel is constrained to at first: a penalty leaves most misses just outside its
+/// bounds.
 inline constexpr float aimed_share = 0.8F;
 
 /// The doses that a voxel may have: void at most window.low, part at least window.high, a grey voxel those whose
-/// response is well within its tolerance of the target.
-inline DoseRange bounds(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i) {
+/// response is within that share of its tolerance of the target.
+inline DoseRange bounds(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i,
+                        float share = aimed_share) {
   constexpr float without_limit = std::numeric_limits<float>::infinity();
   const Label label = problem.labels[s][i];
   if (!is_constrained(label)) return {-without_limit, without_limit};
   if (problem.demands.grey) {
-    return problem.demands.curve.doses(problem.target[s].values[i], aimed_share * problem.tolerance_at(s, i));
+    return problem.demands.curve.doses(problem.target[s].values[i], share * problem.tolerance_at(s, i));
   }
   if (label == Label::void_) return {-without_limit, static_cast<float>(window.low)};
   return {static_cast<float>(window.high), without_limit};
@@ -28,12 +30,6 @@ inline DoseRange bounds(const Problem& problem, const DoseWindow& window, std::s
 /// Slope of (w/2) miss(D)^2, w the voxel's weight.
 inline float slope(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i, float dose) {
   return problem.weight_at(s, i) * bounds(problem, window, s, i).miss(dose);
-}
-
-/// The loss of a voxel, (w/2) miss(D)^2.
-inline float loss(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i, float dose) {
-  const float miss = bounds(problem, window, s, i).miss(dose);
-  return 0.5F * problem.weight_at(s, i) * miss * miss;
 }
 
 /// The loss w |excess|^p of a voxel, excess what its dose (or response) is beyond its bounds, signed [PM21; BCLP24].

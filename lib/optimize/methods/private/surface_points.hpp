@@ -43,7 +43,7 @@ class SurfacePoints {
 
   /// Dose - threshold at every point, then by how much the dose of every cut voxel is beyond the threshold.
   [[nodiscard]] std::vector<float> misses(std::span<const Slab> dose) const;
-  /// Sum of (1/4) (w/2) miss^2, by the slice of the cut voxel, or that the point begins in.
+  /// Sum of (1/2) (w/2) miss^2, by the slice of the cut voxel, or that the point begins in.
   [[nodiscard]] PerSlice losses(std::span<const float> misses, std::size_t slabs) const;
   /// Adds `share` of the derivatives of these losses by the doses: the transpose of misses().
   void add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share = 1) const;

@@ -39,6 +39,7 @@ class RunTotals {
   SliceFigures figures_;
   std::vector<double> min_part_, max_void_;  // of each job; -1: none
   StopReason stop_ = StopReason::iterations;
+  double growth_ = no_growth_known;
   int iterations_ = 0;
   std::int64_t dark_part_voxels_ = 0;
 };
