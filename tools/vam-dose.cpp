@@ -141,7 +141,7 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
   report["full_scale"] = options.full_scale.value_or(seen.peak);
   report["efficiency"] = seen.efficiency.value();
   if (unit.plan) {
-    score::add_to(report, *unit.plan);
+    score::append_json(report, *unit.plan);
     report["planned_full_scale"] = options.full_scale.value_or(seen.peak) / unit.plan->multiplier;
   } else {
     report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
@@ -158,11 +158,11 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
   if (exposed.outside) {
     const bool of_print = unit.absolute && unit.print_turns > 0 && !unit.plan;
     const double whole = unit.turn * (of_print ? unit.showings : 1.0);
-    model::Outside outside =
+    model::StrayCure outside =
         exposed.outside->at(of_print ? *printer.resin.critical_dose_mj_cm3 / whole
                                      : score::aimed_dose(exposed.metrics, model::threshold_dose(light.extra)));
     outside.max_dose *= whole;
-    add_to(report, outside);
+    append_json(report, outside);
   }
   report["blur_sigma_mm"] = exposed.blur_mm;
   report["absorption_per_mm"] = printer.resin.absorption_per_mm;

@@ -125,7 +125,7 @@ void run(const cli::App& app, const Options& options) {
   if (session::print_printer(options.printer, printer, options.output)) return;
   session::require_settings(app, printer);
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);
-  io::require_usable(options.input, volume);
+  io::check_values(options.input, volume);
   if (volume.name() == "target" && io::farthest_mm(volume, 0) < 0) {
     throw Error{Fault::data, io::input_name(options.input) +
                                  ": the target is empty (no coverage anywhere); there is nothing to project"};

@@ -51,7 +51,7 @@ constexpr const char* grey_remedy = "a target that is the dose of every voxel is
 
 /// How the volume is judged as a dose, on whose grid the target is from now on.
 score::ScoreOptions judged(const Options& options, Companions& shown) {
-  io::require_usable(shown.file(), shown.target());  // doses below 0 are looked at
+  io::check_values(shown.file(), shown.target());  // doses below 0 are looked at
   const io::SparseVolume& target = shown.target_around();
   session::warn_of_grey(target, shown.file(), grey_remedy);
   score::ScoreOptions how;

@@ -99,7 +99,7 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
   return plan;
 }
 
-void add_to(Json& figures, const ExposurePlan& plan) {
+void append_json(Json& figures, const ExposurePlan& plan) {
   figures["turns"] = plan.turns;
   if (plan.turns == std::floor(plan.turns)) figures["turns"] = round_int(plan.turns);
   figures["duration_s"] = plan.seconds;

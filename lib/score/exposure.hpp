@@ -64,6 +64,6 @@ struct ExposurePlan {
                                          double turns_of_frames = 1, std::optional<double> threshold = {});
 
 /// turns, duration_s, multiplier and peak_intensity_mw_cm2, into a report.
-void add_to(Json& figures, const ExposurePlan& plan);
+void append_json(Json& figures, const ExposurePlan& plan);
 
 }  // namespace vam::score

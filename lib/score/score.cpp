@@ -35,7 +35,7 @@ struct Score::Figure {
 };
 
 const std::vector<Score::Figure>& Score::figure_list() {
-  using model::Outside;
+  using model::StrayCure;
   using model::ThresholdMetrics;
   static const std::vector<Figure> all = [] {
     std::vector<Figure> list{
@@ -57,11 +57,11 @@ const std::vector<Score::Figure>& Score::figure_list() {
         {"max_void", "maximum dose in the void", [](const Score& score) { return score.metrics().max_void; }},
         {"max_dose", "maximum dose", [](const Score& score) { return score.metrics().max_dose; }},
         {"outside_voxels", "void voxels outside the box around the part",
-         [](const Score& score) { return of(score.outside(), &Outside::voxels); }},
+         [](const Score& score) { return of(score.outside(), &StrayCure::voxels); }},
         {"outside_gelled_voxels", "void voxels outside the box that gel in the print",
-         [](const Score& score) { return of(score.outside(), &Outside::gelled_voxels); }},
+         [](const Score& score) { return of(score.outside(), &StrayCure::gelled_voxels); }},
         {"outside_max_dose", "maximum dose of void voxels outside the box",
-         [](const Score& score) { return of(score.outside(), &Outside::max_dose); }}};
+         [](const Score& score) { return of(score.outside(), &StrayCure::max_dose); }}};
     for (const verdict::Figure& of : verdict::figures())
       list.push_back({of.name, of.meaning, [value = of.value](const Score& score) { return value(score.verdict()); }});
     list.insert(
@@ -112,7 +112,7 @@ void Score::add(const float* dose, const float* target, int count) {
     slices.emplace_back(options_.threshold);
     cut.emplace_back(options_.threshold);
   }
-  std::vector<model::OutsideDoses> outside(slices.size());
+  std::vector<model::StrayDoses> outside(slices.size());
   std::vector<std::int64_t> surface(count, 0);
   parallel_for(count, [&](int s) {
     const std::size_t first = product(s, region_.pixels());
@@ -140,7 +140,7 @@ void Score::add(const float* dose, const float* target, int count) {
   slices_ += count;
 }
 
-std::optional<model::Outside> Score::outside() const {
+std::optional<model::StrayCure> Score::outside() const {
   if (!options_.part) return std::nullopt;
   return outside_.at(print_threshold());
 }

@@ -9,7 +9,7 @@
 #include "base/text/json_fwd.hpp"
 #include "model/circle.hpp"
 #include "model/dose/dose_metrics.hpp"
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "model/grid.hpp"
 #include "model/light_width.hpp"
 #include "model/printer.hpp"
@@ -26,20 +26,20 @@ struct Exposure {
 };
 
 struct ScoreOptions {
-  std::string target = "target";        // begins the messages on it
-  model::Circle circle;                 // void outside it is not judged: the writable one,
-  double writable_mm = 0;               // of this radius, or what the light was made for
-  model::Grid grid;                     // of dose and target; voxel_mm 0: not known
-  double stretch_z = 1;                 // of that grid
-  bool surface = false;                 // surface voxels count too: part when at least half covered, else void
-  bool absolute = false;                // PW and IPDR in the dose's unit instead of fractions of the largest dose
-  double trim = 0.02;                   // alpha: extremes are also given at the alpha/2 percentiles
-  std::optional<double> threshold;      // the critical dose, in the dose's unit; none: that of the planned exposure
-  std::optional<double> aimed_at;       // the threshold that its light was made for, in the dose's unit
-  model::LightWidth light;              // of the dose, as it states it
-  std::optional<Exposure> exposure;     // known when the dose is in mJ/cm3
-  std::optional<model::VoxelBox> part;  // its box; none: what lies outside it is not told
-  verdict::Unresolved unresolved;       // of the target
+  std::string target = "target";         // begins the messages on it
+  model::Circle circle;                  // void outside it is not judged: the writable one,
+  double writable_mm = 0;                // of this radius, or what the light was made for
+  model::Grid grid;                      // of dose and target; voxel_mm 0: not known
+  double stretch_z = 1;                  // of that grid
+  bool surface = false;                  // surface voxels count too: part when at least half covered, else void
+  bool absolute = false;                 // PW and IPDR in the dose's unit instead of fractions of the largest dose
+  double trim = 0.02;                    // alpha: extremes are also given at the alpha/2 percentiles
+  std::optional<double> threshold;       // the critical dose, in the dose's unit; none: that of the planned exposure
+  std::optional<double> aimed_at;        // the threshold that its light was made for, in the dose's unit
+  model::LightWidth light;               // of the dose, as it states it
+  std::optional<Exposure> exposure;      // known when the dose is in mJ/cm3
+  std::optional<model::VoxelBox> part;   // its box; none: what lies outside it is not told
+  verdict::SubVoxelFeatures unresolved;  // of the target
 };
 
 /// Of the figures by name those that only an exposure has.
@@ -53,7 +53,7 @@ class Score {
   /// `count` row-major slices of dose and of target coverage. Throws Fault::data for a dose that is not finite.
   void add(const float* dose, const float* target, int count);
   /// Counted by the caller, as the print is known once all slices have been added.
-  void set_pieces(const verdict::PrintPieces& pieces) { pieces_ = pieces; }
+  void attach_topology(const verdict::PrintPieces& pieces) { pieces_ = pieces; }
   /// The projections that gave the dose, for the efficiency of light.
   void add_projection(std::span<const float> values) { light_.add(values); }
 
@@ -88,7 +88,7 @@ class Score {
     const auto width = static_cast<std::size_t>(width_);
     return options_.part->contains(static_cast<int>(pixel % width), static_cast<int>(pixel / width), slice);
   }
-  [[nodiscard]] std::optional<model::Outside> outside() const;
+  [[nodiscard]] std::optional<model::StrayCure> outside() const;
   /// That of the circle in which all void was judged, where the volume ends within the writable one.
   [[nodiscard]] std::optional<double> judged_radius_mm() const;
 
@@ -100,8 +100,8 @@ class Score {
   model::LightEfficiency light_;
   std::optional<verdict::PrintPieces> pieces_;
   std::int64_t surface_ = 0;
-  int slices_ = 0;               // seen
-  model::OutsideDoses outside_;  // void outside the part's box
+  int slices_ = 0;             // seen
+  model::StrayDoses outside_;  // void outside the part's box
 };
 
 }  // namespace vam::score

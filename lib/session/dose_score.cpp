@@ -50,18 +50,18 @@ double judged_radius_mm(const io::SparseVolume& target, const model::Printer& pr
   return std::min(most, model::stated_number(light, "vam:judged_radius_mm").value_or(most));
 }
 
-verdict::Unresolved unresolved(const io::SparseVolume& target) {
+verdict::SubVoxelFeatures unresolved(const io::SparseVolume& target) {
   constexpr std::size_t million = 1'000'000;  // voxels at a time
   const model::Grid& grid = target.grid();
   const int most = static_cast<int>(std::clamp<std::size_t>(million / grid.slice_size(), 1, slab));
-  verdict::UnresolvedFinder finder(grid);
+  verdict::SubVoxelFinder finder(grid);
   std::vector<float> slices(product(most, grid.slice_size()));
   for (int k = 0; k < grid.nz; k += most) {
     const int count = std::min(most, grid.nz - k);
     target.read_slices(k, count, slices.data());
     finder.add(count, slices.data());
   }
-  verdict::Unresolved found = finder.found();
+  verdict::SubVoxelFeatures found = finder.found();
   if (const auto places = model::stated_surface(target.metadata)) found.surface = {*places, grid.voxel_mm};
   return found;
 }
@@ -98,7 +98,7 @@ score::Score score_print(const io::SparseVolume& dose, const io::SparseVolume& t
   verdict::PrintPieceCounter counter(how.grid.nx, how.grid.ny, threshold, how.circle);
   for_each_slab(dose, target, "counting pieces",
                 [&](int, int count, const float* x, const float* f) { counter.add(x, f, count); });
-  result.set_pieces(counter.found());
+  result.attach_topology(counter.found());
   return result;
 }
 

@@ -10,12 +10,12 @@
 #include "score/grey_score.hpp"
 #include "score/score.hpp"
 #include "session/grey_target.hpp"
-#include "verdict/unresolved.hpp"
+#include "verdict/sub_voxel_features.hpp"
 
 namespace vam::session {
 
 /// Features of a target that are too fine for its voxels, with what it states of its own surface.
-[[nodiscard]] verdict::Unresolved unresolved(const io::SparseVolume& target);
+[[nodiscard]] verdict::SubVoxelFeatures unresolved(const io::SparseVolume& target);
 
 /// How far from the axis void is judged: optics::judged_radius_mm, but not farther than `light` states (of the
 /// projections, or their dose) that vam-optimize did [formats: Attributes of volumes and prints].

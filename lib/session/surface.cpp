@@ -92,7 +92,7 @@ model::TriangleSoup read_surface(const std::string& path, std::optional<double> 
     throw Error{Fault::usage, name + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
   }
   const io::SparseVolume sparse = io::read_volume(path, "");
-  io::require_usable(path, sparse, *isovalue > 1 ? io::TargetKind::grey : io::TargetKind::coverage);
+  io::check_values(path, sparse, *isovalue > 1 ? io::TargetKind::grey : io::TargetKind::coverage);
   model::Volume volume = io::dense_volume(sparse);
   if (prepare) prepare(volume);
   model::TriangleSoup mesh = solid::isosurface(volume, *isovalue);

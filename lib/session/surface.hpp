@@ -37,7 +37,7 @@ void add_array(cli::App& app, ArrayOptions& options, const std::vector<std::stri
 
 /// In mm of the part, whose stretch is undone; `prepare` changes a volume before, `measure` takes it with its surface
 /// before that is unstretched. Throws Fault::usage for a volume without an isovalue, Fault::data where it does not
-/// cross it, otherwise as io::read_volume() and io::require_usable(): a target whose surface is beyond 1 is grey.
+/// cross it, otherwise as io::read_volume() and io::check_values(): a target whose surface is beyond 1 is grey.
 using MeasureSurface = std::function<void(const model::Volume& volume, const model::TriangleSoup& surface)>;
 [[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue,
                                                const std::function<void(model::Volume&)>& prepare = {},

@@ -14,7 +14,7 @@ namespace vam::session {
 
 std::vector<io::SparseVolume> read_grids(const std::string& path, std::optional<io::TargetKind> kind) {
   std::vector<io::SparseVolume> grids = io::read_volumes(path);
-  if (kind) io::require_usable(path, grids, *kind);
+  if (kind) io::check_values(path, grids, *kind);
   return grids;
 }
 
@@ -22,7 +22,7 @@ std::vector<io::SparseVolume> read_like(const std::string& path) {
   std::vector<io::SparseVolume> grids = io::read_volumes(path);
   const io::SparseVolume* target = find_grid(grids, "target");
   const bool states_unit = target != nullptr && target->units != "relative";
-  io::require_usable(path, grids, states_unit ? io::TargetKind::grey : io::TargetKind::coverage);
+  io::check_values(path, grids, states_unit ? io::TargetKind::grey : io::TargetKind::coverage);
   return grids;
 }
 
@@ -58,7 +58,7 @@ model::StretchedVolume read_target(const std::string& path) {
 
 io::SparseVolume read_dose(const std::string& path) {
   io::SparseVolume dose = io::read_volume(path, "dose");
-  io::require_usable(path, dose);
+  io::check_values(path, dose);
   if (dose.units == "mJ/cm3") return dose;
   throw Error{Fault::data, path + ": the dose is in units of " + excerpt(dose.units) +
                                ", not mJ/cm3; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm in "

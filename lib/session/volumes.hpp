@@ -16,7 +16,7 @@
 namespace vam::session {
 
 /// All grids of a file. Throws as io::read_volumes(), and unless they are only looked at, without a kind of the target,
-/// as io::require_usable().
+/// as io::check_values().
 [[nodiscard]] std::vector<io::SparseVolume> read_grids(const std::string& path, std::optional<io::TargetKind> kind);
 /// The first of that name; null: none.
 template <class Grids>

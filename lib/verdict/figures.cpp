@@ -74,7 +74,7 @@ void add_findings(Json& report, const Verdict& verdict) {
   if (const auto at = print.place_mm(print.pieces->shut)) report["shut_at_mm"] = *at;
 }
 
-void add_to(Json& report, const Verdict& verdict) {
+void append_json(Json& report, const Verdict& verdict) {
   for (const Figure& figure : figures()) {
     Json value = figure.value(verdict);
     if (!value.is_null() || figure.name == "prints") report[figure.name] = std::move(value);

@@ -48,7 +48,7 @@ struct PrintPieces {
   int specks = 0;               // of these, so small that they may not count
 
   [[nodiscard]] bool loses_walls() const { return broken.voxels > 0; }
-  [[nodiscard]] bool shuts_gaps() const { return shut.voxels > 0; }
+  [[nodiscard]] bool bridges_gaps() const { return shut.voxels > 0; }
   [[nodiscard]] bool has_holes() const { return firm_holes > 0; }
   [[nodiscard]] bool may_have_holes() const { return holes > 0; }
   /// In how many pieces the part is, as far as its surface or the two numbers tell.
@@ -61,7 +61,7 @@ struct PrintPieces {
   [[nodiscard]] bool may_be_in_other_pieces() const { return print_least() < fewest() || print_most() > most(); }
   [[nodiscard]] bool is_certain() const { return knows_pieces() && !may_have_holes() && !may_be_in_other_pieces(); }
   [[nodiscard]] bool is_as_part() const {
-    return !is_in_other_pieces() && !loses_walls() && !shuts_gaps() && !has_holes();
+    return !is_in_other_pieces() && !loses_walls() && !bridges_gaps() && !has_holes();
   }
 };
 

@@ -61,7 +61,7 @@ std::string of_pieces(const PrintPieces& pieces, const GivenPrint& print) {
   std::string text = number_of_pieces(pieces);
   if (pieces.loses_walls())
     text += of_defects("walls are cut or missing", "half or more do not cure", pieces.broken, print);
-  if (pieces.shuts_gaps()) text += of_defects("gaps are shut", "less than a quarter cure", pieces.shut, print);
+  if (pieces.bridges_gaps()) text += of_defects("gaps are shut", "less than a quarter cure", pieces.shut, print);
   if (!pieces.may_have_holes()) return text;
   return text + "; walls " + (pieces.has_holes() ? "are" : "may be") + " pierced or gaps bridged: the print has " +
          std::to_string(pieces.holes) + (pieces.holes == 1 ? " hole" : " holes") + " that the part has not" +
@@ -85,14 +85,14 @@ const char* beginning(Answer answer) {
   return "will print";
 }
 
-std::string unjudged(const Unresolved& un) {
+std::string unjudged(const SubVoxelFeatures& un) {
   std::string text;
   if (un.loses_walls() && un.loses_much()) {
     text += "; " + percent(un.lost_share()) + " of the part is in walls too thin for the voxels and will be missing";
   } else if (un.loses_walls()) {
     text += "; walls or rods too thin for the voxels will be missing";
   }
-  if (un.shuts_gaps()) text += "; gaps too narrow for the voxels will be shut";
+  if (un.bridges_gaps()) text += "; gaps too narrow for the voxels will be shut";
   const std::string thin = un.thin_places();
   if (!thin.empty()) text += "; " + thin + " are not judged; smaller voxels resolve them";
   if (un.is_most() || (!un.surface && un.is_much()))
@@ -101,11 +101,11 @@ std::string unjudged(const Unresolved& un) {
   return text;
 }
 
-Answer answer_of(const Unresolved& un, const GivenPrint& print) {
+Answer answer_of(const SubVoxelFeatures& un, const GivenPrint& print) {
   const auto& pieces = print.pieces;
   if (print.whole.part == 0) return Answer::not_judged;
   if (!(print.whole.pw > 0) || !holds_threshold(print)) return Answer::no;
-  if (un.loses_walls() || un.shuts_gaps() || (pieces && !pieces->is_as_part())) return Answer::not_as_designed;
+  if (un.loses_walls() || un.bridges_gaps() || (pieces && !pieces->is_as_part())) return Answer::not_as_designed;
   return un.leaves_doubt() || (pieces && !pieces->is_certain()) ? Answer::unsure : Answer::yes;
 }
 
@@ -139,7 +139,7 @@ std::string reasons(const Verdict& verdict) {
 
 }  // namespace
 
-Verdict judge(const Unresolved& of_part, const GivenPrint& print) {
+Verdict judge(const SubVoxelFeatures& of_part, const GivenPrint& print) {
   Verdict verdict{.unresolved = of_part, .print = print};
   if (auto& pieces = verdict.print.pieces; pieces && of_part.surface) {
     pieces->solids = of_part.surface->places.solids;

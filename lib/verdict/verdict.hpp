@@ -12,7 +12,7 @@
 #include "model/grid.hpp"
 #include "model/light_width.hpp"
 #include "verdict/print_pieces.hpp"
-#include "verdict/unresolved.hpp"
+#include "verdict/sub_voxel_features.hpp"
 
 namespace vam::verdict {
 
@@ -52,7 +52,7 @@ enum class Answer {
 
 struct Verdict {
   Answer answer = Answer::not_judged;
-  Unresolved unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
+  SubVoxelFeatures unresolved = {};  // walls and gaps that the voxels are too coarse for, and no figure judges
   GivenPrint print = {};
   /// E.g. "will print: forgives +-4.4 % of dose, process window +0.065 of the largest dose, VER 0 (412345 voxels);
   /// including the 43492 voxels cut by the surface: process window -0.31, VER 0.004; duration 360 s". It begins with
@@ -63,7 +63,7 @@ struct Verdict {
 
 /// of_part: what its voxels do not resolve. It must hang together at the threshold and within dose_margin of it; where
 /// the part's own surface is known, that tells the number of pieces.
-[[nodiscard]] Verdict judge(const Unresolved& of_part, const GivenPrint& print);
+[[nodiscard]] Verdict judge(const SubVoxelFeatures& of_part, const GivenPrint& print);
 /// why: "unknown at 0.26 mm; --voxel 0.1 tells".
 [[nodiscard]] Verdict leave_open(Verdict verdict, const std::string& why);
 
@@ -83,6 +83,6 @@ struct Figure {
 /// above_void); of the pieces solids, broken_at_mm and shut_at_mm.
 void add_findings(Json& report, const Verdict& verdict);
 /// All. What is not known is left out, but for prints, which is null.
-void add_to(Json& report, const Verdict& verdict);
+void append_json(Json& report, const Verdict& verdict);
 
 }  // namespace vam::verdict

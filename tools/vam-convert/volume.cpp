@@ -110,7 +110,7 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
     progress.tick(count);
   }
   slices.left_out();
-  io::require_usable(options.input, volume, io::TargetKind::grey);
+  io::check_values(options.input, volume, io::TargetKind::grey);
   volume.units = options.units;
   volume.history = {app.history()};
   if (options.stretch_z) volume.metadata["vam:stretch_z"] = format_number(stretch_z, 9);

@@ -54,14 +54,14 @@ void add_part(cli::App& app, PartOptions& options, const std::vector<std::string
 PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
     : options_(options), name_(io::input_name(options.path)), least_(static_cast<float>(options.threshold)) {
   io::read_blocks(options.path, "target", [&](const io::VolumeFacts& facts) {
-    io::require_usable(options.path, facts);
+    io::check_values(options.path, facts);
     facts_ = facts;
     columns_.emplace(grid().nx, grid().ny, grid().nz, exposure);
     if (facts.background >= least_) {
       for (std::size_t p = 0; p < columns_->columns(); ++p) columns_->fill(p, 0, grid().nz, true);
     }
     return [this](const io::VoxelBlock& block) {
-      io::require_usable(options_.path, facts_, block);
+      io::check_values(options_.path, facts_, block);
       block.values != nullptr ? take_values(block) : fill(block);
     };
   });

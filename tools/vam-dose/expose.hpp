@@ -8,7 +8,7 @@
 #include "io/vdb/vdb.hpp"
 #include "light/simulation/display_range.hpp"
 #include "model/dose/dose_metrics.hpp"
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "model/printer.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/light.hpp"
@@ -26,7 +26,7 @@ struct Exposed {
   double blur_mm = 0;      // standard deviation of the blur by beam and resin; 0 if neglected
   score::TurnDoses doses;
   model::DoseMetrics metrics;                    // of part and void, with a target
-  std::optional<model::OutsideDoses> outside;    // of the part's box, with a target
+  std::optional<model::StrayDoses> outside;      // of the part's box, with a target
   std::optional<std::int64_t> dark_part_voxels;  // that the insert shadows from all stage angles
 };
 

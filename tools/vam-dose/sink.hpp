@@ -9,7 +9,7 @@
 #include "io/vdb/vdb.hpp"
 #include "model/circle.hpp"
 #include "model/dose/dose_metrics.hpp"
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/place.hpp"
@@ -28,7 +28,7 @@ class Sink {
   void flush();
   [[nodiscard]] const score::TurnDoses& range() const { return range_; }
   [[nodiscard]] model::DoseMetrics judged() const { return statistics_.metrics(false); }
-  [[nodiscard]] model::OutsideDoses outside() { return std::move(outside_); }
+  [[nodiscard]] model::StrayDoses outside() { return std::move(outside_); }
 
  private:
   void judge(const Image& dose, const Image& part);
@@ -43,7 +43,7 @@ class Sink {
   std::optional<model::Circle> judged_;
   model::DoseStatistics statistics_;
   model::VoxelBox part_;
-  model::OutsideDoses outside_;  // void outside the part's box
+  model::StrayDoses outside_;  // void outside the part's box
 };
 
 /// Multiplies the whole volume.

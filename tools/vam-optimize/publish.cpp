@@ -200,7 +200,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
   report_delivered(report, task.source, scene, options);
   const session::Exposure shown = session::exposure_of(options.output, info, printer, 0);
   if (shown.full_scale > 0) report["full_scale"] = shown.full_scale;
-  if (plan) add_to(report, *plan);
+  if (plan) append_json(report, *plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
     for (const char* key : {"latitude", "threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
       report.erase(key);
@@ -213,7 +213,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     if (plan) print.seconds = plan->seconds;
     print.threshold = threshold;
     const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
-    add_to(report, verdict);
+    append_json(report, verdict);
     const bool stated = options.in_vial() && info.piece.whole() && shown.planned;
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words + what_more_buys(outcome) +
          session::how_to_show(printer.resin, stated, options.output == "-" ? "SINOGRAM" : options.output,

@@ -7,7 +7,7 @@
 #include "base/text/text.hpp"
 #include "model/coarser.hpp"
 #include "model/dose/dose_spread.hpp"
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "model/light_width.hpp"
 #include "optics/writable_radius.hpp"
 #include "optimize/run/preview.hpp"
@@ -25,7 +25,7 @@ constexpr double most_finer_voxels = 0.7e6;  // on those that are taken where co
 constexpr double sure_window = 0.03;         // of the largest dose: what finer voxels and more iterations may cost
 constexpr double hopeless = -0.1;            // a window that neither will open
 
-bool is_lost(const verdict::Unresolved& some) { return some.loses_walls() || some.shuts_gaps(); }
+bool is_lost(const verdict::SubVoxelFeatures& some) { return some.loses_walls() || some.bridges_gaps(); }
 
 /// The part on voxels of some size, and the bench with pixels as large.
 struct Level {
@@ -33,7 +33,7 @@ struct Level {
   Filled part;
   int coarseness = 1;  // of the print's voxels, for one of these
 
-  [[nodiscard]] const verdict::Unresolved& unresolved() const { return part.content.unresolved; }
+  [[nodiscard]] const verdict::SubVoxelFeatures& unresolved() const { return part.content.unresolved; }
   [[nodiscard]] double voxel_mm() const { return part.volume.grid.voxel_mm; }
   [[nodiscard]] bool is_final() const { return coarseness == 1; }
   [[nodiscard]] bool is_judged() const { return part.content.solid_voxels > 0; }
@@ -41,7 +41,7 @@ struct Level {
   /// lost, little is not resolved.
   [[nodiscard]] bool shows_all() const {
     constexpr double most_lost = 0.001;
-    const verdict::Unresolved& un = unresolved();
+    const verdict::SubVoxelFeatures& un = unresolved();
     return is_judged() && !un.leaves_doubt() && !un.is_much() &&
            un.lost_walls.voxels + un.lost_gaps.voxels <= most_lost * un.whole;
   }
@@ -105,7 +105,7 @@ struct Told {
   std::string why_not{};
 };
 Told prints(const Level& level, const verdict::Verdict& verdict, const EstimateTask& task) {
-  const verdict::Unresolved& final = task.unresolved;
+  const verdict::SubVoxelFeatures& final = task.unresolved;
   const std::string fine = hidden(level, task);
   if (final.leaves_doubt() && verdict.answer >= verdict::Answer::unsure)
     return {{}, "walls or gaps are too thin for the voxels of the print"};

@@ -40,10 +40,10 @@ struct Estimate {
 struct EstimateTask {
   const solid::Part& part;
   const model::Printer& printer;
-  model::Grid grid;                // of the final print
-  verdict::Unresolved unresolved;  // of its voxels
-  double thinnest_voxels = 0;      // the thinnest wall or place of it; 0: less than what is measured
-  bool sharp_edges = false;        // thinner than what prints
+  model::Grid grid;                      // of the final print
+  verdict::SubVoxelFeatures unresolved;  // of its voxels
+  double thinnest_voxels = 0;            // the thinnest wall or place of it; 0: less than what is measured
+  bool sharp_edges = false;              // thinner than what prints
   double stretch_z = 1;
   bool on_these_voxels = false;  // however long it takes
 };

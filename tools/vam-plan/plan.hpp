@@ -38,9 +38,10 @@ struct Plan {
   double wall_mm = 0;                 // of the print
   std::optional<solid::Walls::Place> thinnest_place;  // or a neck, thinner than that
   verdict::Cavities cavities;                         // closed ones, in voxels of the walls' resolution
-  verdict::Unresolved unresolved;  // of the print's voxels; of many of them only what the part's own surface shows
-  bool sharp_edges = false;        // thinner than what prints
-  int wall_resolution = 1;         // in voxels
+  verdict::SubVoxelFeatures
+      unresolved;            // of the print's voxels; of many of them only what the part's own surface shows
+  bool sharp_edges = false;  // thinner than what prints
+  int wall_resolution = 1;   // in voxels
   [[nodiscard]] double thinnest_voxels() const {
     const double wall = wall_voxels.value_or(0);
     return thinnest_place ? std::min(wall, thinnest_place->voxels) : wall;

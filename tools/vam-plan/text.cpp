@@ -84,7 +84,7 @@ std::string estimate_rows(const Estimate& estimate) {
   return text + row("duration", duration_words(estimate));
 }
 
-void add_to(Json& json, const Estimate& estimate) {
+void append_json(Json& json, const Estimate& estimate) {
   json["estimate_voxel_mm"] = estimate.voxel_mm;
   if (estimate.iterations > 0) {
     json["iterations"] = estimate.iterations;
@@ -93,7 +93,7 @@ void add_to(Json& json, const Estimate& estimate) {
     json["ver"] = estimate.verdict.print.whole.ver;
     json["pw"] = estimate.verdict.print.whole.pw;
   }
-  add_to(json, estimate.verdict);
+  append_json(json, estimate.verdict);
   if (const auto& wrong = estimate.wrong)
     json["wrong"] = {{"low_mm", wrong->low_mm}, {"high_mm", wrong->high_mm}, {"worst_mm", wrong->worst_mm}};
   for (const auto& single : estimate.trials.singles) {
@@ -102,7 +102,7 @@ void add_to(Json& json, const Estimate& estimate) {
   }
   for (const auto& [angles, pw] : estimate.by_angles) json["pw_by_angles"][std::to_string(angles)] = pw;
   if (!estimate.by_angles.empty()) json["angles_needed"] = angles_needed(estimate);
-  if (estimate.exposure) score::add_to(json, *estimate.exposure);
+  if (estimate.exposure) score::append_json(json, *estimate.exposure);
 }
 
 std::string wall_words(const Plan& plan) {
@@ -182,7 +182,7 @@ Json report(const Plan& plan) {
   }
   json["sharp_edges"] = plan.sharp_edges;
   json["trapped_resin"] = solid::trapped_resin_figures(plan.cavities, cavity_voxel_mm(plan), plan.stretch_z);
-  if (plan.estimate) add_to(json, *plan.estimate);
+  if (plan.estimate) append_json(json, *plan.estimate);
   return json;
 }
 

@@ -21,7 +21,7 @@ void warn_of_resolution(const std::string& subject, const Filled& fine, double s
 }
 
 /// Which half-covered voxels either leave out or show as thick as a voxel.
-bool has_walls_below_a_voxel(const verdict::Unresolved& unresolved, const solid::Walls& walls) {
+bool has_walls_below_a_voxel(const verdict::SubVoxelFeatures& unresolved, const solid::Walls& walls) {
   const bool thin = walls.thinnest_voxels && *walls.thinnest_voxels < model::thin_voxels;
   return unresolved.loses_walls() || (thin && unresolved.is_much());
 }
@@ -32,9 +32,9 @@ solid::Walls::Place place_of(const model::ThinPlaces& walls, const Plan& plan) {
 }
 
 /// Where walls are measured on larger voxels, what the part's own surface tells.
-verdict::Unresolved of_prints_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
+verdict::SubVoxelFeatures of_prints_voxels(const Plan& plan, const solid::Part& part, const Filled& fine) {
   if (plan.wall_resolution == 1) return fine.content.unresolved;
-  verdict::Unresolved told;
+  verdict::SubVoxelFeatures told;
   if (part.surface) told.surface = {part.surface(plan.grid), plan.grid.voxel_mm};
   return told;
 }

@@ -114,7 +114,7 @@ void require_values(const std::string& path, const SparseVolume& volume, const V
 
 }  // namespace
 
-void require_usable(const std::string& path, const SparseVolume& volume, TargetKind target) {
+void check_values(const std::string& path, const SparseVolume& volume, TargetKind target) {
   VolumeFacts facts;
   facts.name = volume.name();
   facts.grid = volume.grid();
@@ -124,19 +124,19 @@ void require_usable(const std::string& path, const SparseVolume& volume, TargetK
   if (const auto promise = promise_of(volume.name(), target)) require_values(path, volume, *promise);
 }
 
-void require_usable(const std::string& path, const std::vector<SparseVolume>& volumes, TargetKind target) {
+void check_values(const std::string& path, const std::vector<SparseVolume>& volumes, TargetKind target) {
   std::set<std::string> names;
   for (const SparseVolume& volume : volumes) {
     if (promise_of(volume.name(), target) && !names.insert(volume.name()).second) {
       throw Error{Fault::data, input_name(path) + ": " + occurs_twice(volume.name())};
     }
-    require_usable(path, volume, target);
+    check_values(path, volume, target);
   }
 }
 
-void require_usable(const std::string& path, const VolumeFacts& facts) { require_facts(path, facts); }
+void check_values(const std::string& path, const VolumeFacts& facts) { require_facts(path, facts); }
 
-void require_usable(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block) {
+void check_values(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block) {
   const auto promise = promise_of(facts.name, TargetKind::coverage);
   if (!promise) return;
   const openvdb::Coord corner(block.i, block.j, block.k);

@@ -17,12 +17,12 @@ enum class TargetKind { coverage, grey };
 /// background of these other than 0, a size that is none in mm (below 0.1 mm or above 2 m), a value outside what the
 /// grid can have: target and insert 0 to 1, a grey target 0 to 1e9 (to 1e-4), weight, tolerance and dose 0 to 1e9.
 /// Grids of other names may be anything. `path` begins the message, "-" is stdin.
-void require_usable(const std::string& path, const std::vector<SparseVolume>& volumes,
-                    TargetKind target = TargetKind::coverage);
-void require_usable(const std::string& path, const SparseVolume& volume, TargetKind target = TargetKind::coverage);
+void check_values(const std::string& path, const std::vector<SparseVolume>& volumes,
+                  TargetKind target = TargetKind::coverage);
+void check_values(const std::string& path, const SparseVolume& volume, TargetKind target = TargetKind::coverage);
 
 /// The same for a volume read in passing: its facts at the begin, then each block.
-void require_usable(const std::string& path, const VolumeFacts& facts);
-void require_usable(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block);
+void check_values(const std::string& path, const VolumeFacts& facts);
+void check_values(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block);
 
 }  // namespace vam::io

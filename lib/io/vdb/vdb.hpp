@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "model/grid.hpp"
 
 namespace vam::io {

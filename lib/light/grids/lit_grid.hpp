@@ -2,7 +2,7 @@
 // The grid of all resin that the light of a part reaches: the voxels around it that are constrained and judged.
 #pragma once
 
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "model/grid.hpp"
 #include "model/pose.hpp"
 #include "model/printer.hpp"

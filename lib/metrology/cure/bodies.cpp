@@ -10,7 +10,7 @@
 #include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/text/json.hpp"
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 
 namespace vam::metrology {
 

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "metrology/cure/sensitivity.hpp"
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "model/value_at.hpp"
 
 namespace vam::metrology {

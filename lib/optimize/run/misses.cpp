@@ -23,9 +23,9 @@ void for_each_voxel(std::span<const Slab> dose, const Problem& problem, const Vi
 
 }  // namespace
 
-OutsideSlices outside_part(std::span<const Slab> dose, const Problem& problem, const model::VoxelBox& box) {
+StraySlices outside_part(std::span<const Slab> dose, const Problem& problem, const model::VoxelBox& box) {
   const auto count = static_cast<std::size_t>(problem.slices);
-  OutsideSlices slices{std::vector<model::Outside>(count), std::vector<model::Outside>(count)};
+  StraySlices slices{std::vector<model::StrayCure>(count), std::vector<model::StrayCure>(count)};
   const double threshold = problem.demands.window.threshold();
   const auto width = static_cast<std::size_t>(dose.empty() ? 1 : dose[0].width);
   for_each_voxel(dose, problem, [&](std::size_t slice, std::size_t pixel, float value, Label label) {

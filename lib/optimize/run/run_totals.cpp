@@ -52,7 +52,7 @@ void RunTotals::add(std::span<const Slab> dose, const Problem& problem, const Pa
 /// Identical slices share a job, but some may be level with the part and others above or below it.
 void RunTotals::add_outside(std::span<const Slab> dose, const Problem& problem, const Pass& pass, const Jobs& jobs,
                             const model::VoxelBox& part) {
-  const OutsideSlices found = outside_part(dose, problem, part);
+  const StraySlices found = outside_part(dose, problem, part);
   for (int k = jobs.selection.from; k < jobs.selection.to; ++k) {
     const int job = jobs.schedule.job_of_slice[k];
     if (job < pass.first || job >= pass.last) continue;

@@ -11,7 +11,7 @@
 
 #include "base/image.hpp"
 #include "base/text/json_fwd.hpp"
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "model/piece.hpp"
 #include "optimize/run/certify.hpp"
 #include "optimize/run/checkpoint_state.hpp"
@@ -76,7 +76,7 @@ struct VolumeOutcome {
   model::DoseMetrics metrics;                // of the result, at the common threshold
   bool all_cut = false;                      // no voxel is wholly inside the part, and these are as with_cut
   model::DoseMetrics with_cut;               // with the voxels that the surface cuts: part from half coverage on
-  std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
+  std::optional<model::StrayCure> outside;   // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
   std::optional<verdict::PrintPieces> pieces;  // when asked for; none of a grey target, nor of a part of the slices
   std::vector<SliceDemand> demands;            // by each slice; empty of a grey target

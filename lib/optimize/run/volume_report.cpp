@@ -20,7 +20,7 @@ Json report(const VolumeOutcome& outcome) {
   if (outcome.max_intensity > 0) json["max_intensity"] = outcome.max_intensity;
   if (outcome.even_intensity > 0) json["even_intensity"] = outcome.even_intensity;
   if (outcome.least_ratio > 0) json["least_void_over_part"] = outcome.least_ratio;
-  if (outcome.outside) add_to(json, *outcome.outside);
+  if (outcome.outside) append_json(json, *outcome.outside);
   if (outcome.certificate) {
     const double ratio = outcome.metrics.min_part > 0 ? outcome.metrics.max_void / outcome.metrics.min_part : 0;
     json["certificate"] = {{"void_over_part", ratio},

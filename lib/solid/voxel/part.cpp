@@ -135,7 +135,7 @@ void count_row(const model::Grid& grid, double y, const float* row, FillSummary&
 FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   FillSummary content;
   double voxels = 0;
-  verdict::UnresolvedFinder finder(grid);
+  verdict::SubVoxelFinder finder(grid);
   verdict::CavityFinder cavities(grid);
   content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
     std::vector<FillSummary> of_slice(static_cast<std::size_t>(count));

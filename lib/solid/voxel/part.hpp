@@ -15,7 +15,7 @@
 #include "solid/voxel/placement.hpp"
 #include "solid/voxel/voxelize.hpp"
 #include "verdict/cavities.hpp"
-#include "verdict/unresolved.hpp"
+#include "verdict/sub_voxel_features.hpp"
 
 namespace vam::solid {
 
@@ -67,7 +67,7 @@ struct FillSummary {
   long surface_voxels = 0;  // partly
   float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
-  verdict::Unresolved unresolved;
+  verdict::SubVoxelFeatures unresolved;
   verdict::Cavities cavities;
   Vote vote;
 };

@@ -39,7 +39,8 @@ double resolving_mm(const model::ThinPlaces& places, double voxels = model::narr
 }
 
 /// Of what voxels lose: such places of the part's own surface, or its relief; null where the surface does not tell.
-const model::ThinPlaces* cause_of(const verdict::Unresolved& unresolved, model::ThinPlaces model::PartSurface::*kind) {
+const model::ThinPlaces* cause_of(const verdict::SubVoxelFeatures& unresolved,
+                                  model::ThinPlaces model::PartSurface::*kind) {
   const auto& surface = unresolved.surface;
   if (!surface) return nullptr;
   const model::ThinPlaces& places = surface->places.*kind;
@@ -61,7 +62,7 @@ std::string place_doubt(const std::string& subject, const std::string& kind, con
 }
 
 /// Of walls that are lost, if they are a thousandth of the part or more, and of rods.
-std::string wall_doubt(const std::string& subject, const verdict::Unresolved& unresolved, const model::Grid& grid,
+std::string wall_doubt(const std::string& subject, const verdict::SubVoxelFeatures& unresolved, const model::Grid& grid,
                        double stretch_z) {
   const verdict::LostWalls& lost = unresolved.lost_walls;
   const std::string what = unresolved.loses_much()
@@ -76,7 +77,7 @@ std::string wall_doubt(const std::string& subject, const verdict::Unresolved& un
          " mm or thicker walls may help";
 }
 
-std::string thin_doubt(const std::string& subject, const verdict::Unresolved& thin, const model::Grid& grid,
+std::string thin_doubt(const std::string& subject, const verdict::SubVoxelFeatures& thin, const model::Grid& grid,
                        double stretch_z) {
   return subject + ": " + format_number(100 * thin.share(), 3) +
          " % of the part is in walls or gaps too thin for the voxels: " +
@@ -85,7 +86,7 @@ std::string thin_doubt(const std::string& subject, const verdict::Unresolved& th
          "resolve them";
 }
 
-std::string gap_doubt(const std::string& subject, const verdict::Unresolved& unresolved, const model::Grid& grid,
+std::string gap_doubt(const std::string& subject, const verdict::SubVoxelFeatures& unresolved, const model::Grid& grid,
                       double stretch_z) {
   const verdict::LostGaps& lost = unresolved.lost_gaps;
   const model::ThinPlaces* cause = cause_of(unresolved, &model::PartSurface::gaps);
@@ -127,7 +128,7 @@ std::string finer_unit(double largest_mm, const Writable& room) {
   return "";
 }
 
-std::vector<std::string> resolution_doubts(const std::string& subject, const verdict::Unresolved& unresolved,
+std::vector<std::string> resolution_doubts(const std::string& subject, const verdict::SubVoxelFeatures& unresolved,
                                            const model::Grid& grid, double stretch_z) {
   std::vector<std::string> doubts;
   const auto& surface = unresolved.surface;
@@ -138,7 +139,7 @@ std::vector<std::string> resolution_doubts(const std::string& subject, const ver
                                  surface->has_thin_walls() ? unknown : "may not print, as vam-score tells",
                                  surface->places.walls, model::narrow_voxels, grid, stretch_z));
   }
-  if (unresolved.shuts_gaps()) {
+  if (unresolved.bridges_gaps()) {
     doubts.push_back(gap_doubt(subject, unresolved, grid, stretch_z));
   } else if (surface && surface->has_thin_gaps()) {
     doubts.push_back(place_doubt(subject, "gaps", unknown, surface->thin_gaps(), model::free_voxels, grid, stretch_z));
@@ -157,7 +158,7 @@ double resolving_voxel_mm(const FillSummary& content, const model::Grid& grid) {
   return 0.5 * grid.voxel_mm * static_cast<double>(content.most);
 }
 
-double telling_voxel_mm(const verdict::Unresolved& unresolved, double voxel_mm) {
+double telling_voxel_mm(const verdict::SubVoxelFeatures& unresolved, double voxel_mm) {
   double telling = 0.5 * voxel_mm;
   if (!unresolved.surface) return telling;
   const model::PartSurface& places = unresolved.surface->places;

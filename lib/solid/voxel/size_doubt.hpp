@@ -29,7 +29,7 @@ namespace vam::solid {
 
 /// Voxels, in two digits, that show whether all thin places of the part's own surface print; where it has or states
 /// none, half as large.
-[[nodiscard]] double telling_voxel_mm(const verdict::Unresolved& unresolved, double voxel_mm);
+[[nodiscard]] double telling_voxel_mm(const verdict::SubVoxelFeatures& unresolved, double voxel_mm);
 
 /// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
 /// is less than a tenth as large as the writable width. `unit_known`: the user has stated what a unit of the file is,
@@ -42,7 +42,7 @@ namespace vam::solid {
 /// volume of a voxel, a tenth of one a slice and a width of 0.05 voxels on; else of thin places, or where the part's
 /// surface is not known of much that is not judged.
 [[nodiscard]] std::vector<std::string> resolution_doubts(const std::string& subject,
-                                                         const verdict::Unresolved& unresolved, const model::Grid& grid,
-                                                         double stretch_z);
+                                                         const verdict::SubVoxelFeatures& unresolved,
+                                                         const model::Grid& grid, double stretch_z);
 
 }  // namespace vam::solid

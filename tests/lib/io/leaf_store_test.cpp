@@ -62,7 +62,7 @@ TEST_CASE("a volume beyond the leaves that stay in memory is read, changed and w
   CHECK(holds(again, 3, 2, 1));
   CHECK(holds(again, 128, 16, 0));
   CHECK(holds(again, 264, 8, 3));
-  CHECK_NOTHROW(vam::io::require_usable(path, again));
+  CHECK_NOTHROW(vam::io::check_values(path, again));
   CHECK(vam::io::farthest_mm(again, 0.5F) == doctest::Approx(vam::io::farthest_mm(volume, 0.5F)));
 }
 

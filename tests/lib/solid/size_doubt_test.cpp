@@ -18,41 +18,41 @@ const model::Grid grid = model::centred_grid(size, size, size, voxel_mm, 0);  //
 using Coverage = std::function<double(int x, int y, int z)>;
 
 /// A block of 20^3 voxels in the low corner, a voxel from the border, and beside it what is asked for.
-verdict::Unresolved beside_block(const Coverage& coverage) {
+verdict::SubVoxelFeatures beside_block(const Coverage& coverage) {
   std::vector<float> values;
   for (const auto [z, y, x] : indices(size, size, size)) {
     const auto in = [](int i) { return i >= 1 && i <= 20; };
     values.push_back(in(x) && in(y) && in(z) ? 1.0F : static_cast<float>(coverage(x, y, z)));
   }
-  verdict::UnresolvedFinder finder(grid);
+  verdict::SubVoxelFinder finder(grid);
   finder.add(size, values.data());
   return finder.found();
 }
 
-std::vector<std::string> doubts(const verdict::Unresolved& unresolved, double stretch_z = 1) {
+std::vector<std::string> doubts(const verdict::SubVoxelFeatures& unresolved, double stretch_z = 1) {
   return resolution_doubts("a.stl", unresolved, grid, stretch_z);
 }
 
-bool tells_gaps(const verdict::Unresolved& unresolved) {
+bool tells_gaps(const verdict::SubVoxelFeatures& unresolved) {
   const std::vector<std::string> all = doubts(unresolved);
   return std::any_of(all.begin(), all.end(), [](const std::string& doubt) { return has(doubt, "too narrow"); });
 }
 
 /// A wall of that thickness in voxels, five slices high, free of the block.
-verdict::Unresolved wall(double thick, int long_voxels) {
+verdict::SubVoxelFeatures wall(double thick, int long_voxels) {
   return beside_block(
       [=](int x, int y, int z) { return x == 30 && y < long_voxels && z >= 10 && z < 15 ? thick : 0.0; });
 }
 
 /// A rod along z of that area in voxels, so many slices high.
-verdict::Unresolved rod(double area, int from, int slices) {
+verdict::SubVoxelFeatures rod(double area, int from, int slices) {
   return beside_block(
       [=](int x, int y, int z) { return x == 30 && y == 30 && z >= from && z < from + slices ? area : 0.0; });
 }
 
 /// A second block beside the first, across a gap of that width along x in one column of voxels, `high` voxels along y
 /// and z.
-verdict::Unresolved gap(double wide, int high) {
+verdict::SubVoxelFeatures gap(double wide, int high) {
   return beside_block([=](int x, int y, int z) {
     const auto in = [](int i) { return i >= 1 && i <= 20; };
     if (!in(y) || !in(z) || x < 21 || x > 30) return 0.0;
@@ -101,7 +101,7 @@ TEST_CASE("rods are told from two voxels that are far from all half covered ones
 
 TEST_CASE("the part's own surface names thickness and place, and keeps silent of what is only rough") {
   model::PartSurface places;
-  const auto told = [&](verdict::Unresolved unresolved) {
+  const auto told = [&](verdict::SubVoxelFeatures unresolved) {
     unresolved.surface = {places, grid.voxel_mm};
     return doubts(unresolved, 1.25);
   };
@@ -161,7 +161,7 @@ TEST_CASE("gaps are told from a voxel, a tenth of one a slice and a twentieth of
 
 TEST_CASE(
     "lost walls and shut gaps are told one after the other, and much that is not judged where there are neither") {
-  verdict::Unresolved both = wall(0.4, 6);
+  verdict::SubVoxelFeatures both = wall(0.4, 6);
   both.lost_gaps = gap(0.2, 3).lost_gaps;
   const std::vector<std::string> two = doubts(both);
   REQUIRE(two.size() == 2);

@@ -2,7 +2,7 @@
 #include "base/index.hpp"
 #include "testing.hpp"
 #include "verdict/defect_voxels.hpp"
-#include "verdict/unresolved.hpp"
+#include "verdict/sub_voxel_features.hpp"
 
 using namespace vam;
 using namespace vam::model;
@@ -13,9 +13,9 @@ namespace {
 constexpr int n = 6;
 
 /// Slices handed over `a_pass` at a time.
-Unresolved found(const std::vector<float>& values, int a_pass) {
+SubVoxelFeatures found(const std::vector<float>& values, int a_pass) {
   const int nz = static_cast<int>(values.size()) / (n * n);
-  UnresolvedFinder finder(model::centred_grid(n, n, nz, 0.1));
+  SubVoxelFinder finder(model::centred_grid(n, n, nz, 0.1));
   for (int k = 0; k < nz; k += a_pass) finder.add(std::min(a_pass, nz - k), values.data() + product(k, n * n));
   return finder.found();
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// A print, and what of the part its voxels do not resolve.
 struct Given : GivenPrint {
-  Unresolved unresolved;
+  SubVoxelFeatures unresolved;
   [[nodiscard]] Verdict judged() const { return judge(unresolved, *this); }
 };
 std::string words(const Given& given) { return given.judged().words; }
@@ -64,7 +64,7 @@ TEST_CASE("where the threshold is fixed, a window beside it does not print") {
                         "in the void; including the "
                         "110 voxels") == 0);
   Json figures;
-  add_to(figures, fixed.judged());
+  append_json(figures, fixed.judged());
   CHECK(figures["threshold_margin"]["below_part"].get<double>() == doctest::Approx(0.028 / 0.8));
   CHECK(figures["threshold_margin"]["above_void"].get<double>() == doctest::Approx(0.072 / 0.7));
   fixed.threshold = 0.8;
@@ -179,7 +179,7 @@ TEST_CASE("an estimate that cannot tell is left open, for a reason, and reports 
   CHECK(open.words.starts_with(
       "unknown at 0.26 mm; --voxel 0.1 tells: forgives +-4.4 % of dose, process window +0.0653 of the largest dose"));
   Json figures;
-  add_to(figures, open);
+  append_json(figures, open);
   CHECK(figures["prints"].is_null());
   CHECK(leave_open(judge({}, {}), "unknown").words == "unknown: no voxel is wholly inside the part");
 }
@@ -190,7 +190,7 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   edge.whole.pw = 0;
   CHECK(answer(edge) == Answer::no);
   Json figures;
-  add_to(figures, edge.judged());
+  append_json(figures, edge.judged());
   CHECK(figures["verdict"] == words(edge));
   CHECK(figures["prints"] == 0);
   CHECK(figures["with_surface"]["voxels"] == 1110);
@@ -198,7 +198,7 @@ TEST_CASE("a window of width 0 does not print, and report and message agree") {
   edge.whole.pw = 0.1;
   edge.pieces = {.part = 1, .part_at_half = 1, .print = 1};
   Json good;
-  add_to(good, edge.judged());
+  append_json(good, edge.judged());
   CHECK(good["prints"] == 1);
   CHECK(good["print_pieces"] == 1);
 }

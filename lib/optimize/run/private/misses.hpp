@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 #include "optimize/target/problem.hpp"
 #include "optimize/target/slice_reader.hpp"
 #include "verdict/print_pieces.hpp"
@@ -15,11 +15,10 @@
 namespace vam::optimize {
 
 /// For each slice in use: all its void voxels, if it lies above or below the box; else those beside the box.
-struct OutsideSlices {
-  std::vector<model::Outside> whole, beside;
+struct StraySlices {
+  std::vector<model::StrayCure> whole, beside;
 };
-[[nodiscard]] OutsideSlices outside_part(std::span<const Slab> dose, const Problem& problem,
-                                         const model::VoxelBox& box);
+[[nodiscard]] StraySlices outside_part(std::span<const Slab> dose, const Problem& problem, const model::VoxelBox& box);
 
 /// How many voxels of each slice in use are on the wrong side of the threshold.
 [[nodiscard]] std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem);

@@ -35,7 +35,7 @@ class RunTotals {
   SliceFigures last_;
   int seen_ = -1;
   model::DoseStatistics total_, cut_;
-  model::Outside outside_;
+  model::StrayCure outside_;
   SliceFigures figures_;
   std::vector<double> min_part_, max_void_;  // of each job; -1: none
   StopReason stop_ = StopReason::iterations;

@@ -22,7 +22,7 @@ SparseVolume one_voxel(const std::string& name, float value, double voxel_mm = 0
 }
 
 std::string refusal(const SparseVolume& volume, TargetKind target = TargetKind::coverage) {
-  return error_of([&] { require_usable("a.vdb", volume, target); }, Fault::data);
+  return error_of([&] { check_values("a.vdb", volume, target); }, Fault::data);
 }
 
 std::string refusal_in_passing(SparseVolume& volume) {
@@ -32,8 +32,8 @@ std::string refusal_in_passing(SparseVolume& volume) {
   return error_of(
       [&] {
         read_blocks(path, "target", [&](const VolumeFacts& facts) {
-          require_usable("a.vdb", facts);
-          return [facts](const VoxelBlock& block) { require_usable("a.vdb", facts, block); };
+          check_values("a.vdb", facts);
+          return [facts](const VoxelBlock& block) { check_values("a.vdb", facts, block); };
         });
       },
       Fault::data);
@@ -94,9 +94,9 @@ TEST_CASE("level sets, solid backgrounds, metres and micrometres, two grids of o
   std::vector<SparseVolume> two;
   two.push_back(one_voxel("target", 1));
   two.push_back(one_voxel("insert", 1));
-  require_usable("-", two);
+  check_values("-", two);
   two.push_back(one_voxel("target", 0.5F));
-  CHECK(has(error_of([&] { require_usable("-", two); }, Fault::data), "stdin: grid 'target' occurs twice"));
+  CHECK(has(error_of([&] { check_values("-", two); }, Fault::data), "stdin: grid 'target' occurs twice"));
 }
 
 TEST_CASE("data read in passing is checked in the same way") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 
 #include "base/text/json.hpp"
 
@@ -21,7 +21,7 @@ VoxelBox covered_box(const Volume& volume, float above) {
   return box;
 }
 
-void add_to(Json& report, const Outside& outside) {
+void append_json(Json& report, const StrayCure& outside) {
   report["outside_voxels"] = outside.voxels;
   report["outside_gelled_voxels"] = outside.gelled_voxels;
   report["outside_max_dose"] = outside.max_dose;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verdict/unresolved.hpp"
+#include "verdict/sub_voxel_features.hpp"
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
@@ -79,21 +79,21 @@ void add_slice(Sums& sums, const Sums& slice, float Sums::*size, int number) {
 
 }  // namespace
 
-std::string Unresolved::thin_places() const {
+std::string SubVoxelFeatures::thin_places() const {
   if (!surface) return "";
   const auto voxels_of = [&](const char* kind, const model::ThinPlaces& places) {
     return std::string(kind) + " of " + format_number(places.mm / surface->voxel_mm, 2) + " voxels";
   };
   std::string text;
   if (surface->has_thin_walls() && !loses_walls()) text = voxels_of("walls", surface->places.walls);
-  if (surface->has_thin_gaps() && !shuts_gaps())
+  if (surface->has_thin_gaps() && !bridges_gaps())
     text += (text.empty() ? "" : " and ") + voxels_of("gaps", surface->thin_gaps());
-  if (text.empty() && surface->has_relief() && !loses_walls() && !shuts_gaps())
+  if (text.empty() && surface->has_relief() && !loses_walls() && !bridges_gaps())
     text = voxels_of("ridges and grooves", surface->places.relief);
   return text;
 }
 
-bool Unresolved::shuts_gaps() const {
+bool SubVoxelFeatures::bridges_gaps() const {
   constexpr double least = 1;  // voxels
   constexpr double least_a_slice = 0.1;
   constexpr float least_width = 0.05F;  // voxels
@@ -116,7 +116,7 @@ std::vector<std::size_t> lost_walls(int width, int height, const float* const* s
 }
 
 /// Of the middle one of 2 reach + 1 slices.
-UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) const {
+SubVoxelFinder::Slice SubVoxelFinder::of_slice(const float* const* slices) const {
   Slice sums;
   const float* coverage = slices[reach];
   for (int j = 0; j < height_; ++j) {
@@ -146,14 +146,14 @@ UnresolvedFinder::Slice UnresolvedFinder::of_slice(const float* const* slices) c
 }
 
 /// All but the first and the last, which are neighbours only.
-std::vector<UnresolvedFinder::Slice> UnresolvedFinder::judged(const std::vector<const float*>& slices) const {
+std::vector<SubVoxelFinder::Slice> SubVoxelFinder::judged(const std::vector<const float*>& slices) const {
   std::vector<Slice> found(std::max(count_of(slices) - 2 * reach, 0));
   parallel_for(count_of(found), [&](int k) { found[k] = of_slice(&slices[k]); });
   return found;
 }
 
 /// Those of which neighbours above are still to come, and their neighbours below.
-std::vector<const float*> UnresolvedFinder::open() const {
+std::vector<const float*> SubVoxelFinder::open() const {
   const int open = std::min(added_, reach);
   const int kept = std::min(added_, 2 * reach);
   std::vector<const float*> slices(reach - (kept - open), nullptr);
@@ -161,7 +161,7 @@ std::vector<const float*> UnresolvedFinder::open() const {
   return slices;
 }
 
-void UnresolvedFinder::add(int count, const float* slices) {
+void SubVoxelFinder::add(int count, const float* slices) {
   const std::size_t size = product(width_, height_);
   std::vector<const float*> all = open();
   for (int k = 0; k < count; ++k) all.push_back(slices + product(k, size));
@@ -174,14 +174,14 @@ void UnresolvedFinder::add(int count, const float* slices) {
   kept_ = std::move(last);
 }
 
-Unresolved UnresolvedFinder::found() const {
+SubVoxelFeatures SubVoxelFinder::found() const {
   std::vector<const float*> last = open();
   last.insert(last.end(), reach, nullptr);
   std::vector<Slice> slices = slices_;
   const std::vector<Slice> top = judged(last);
   slices.insert(slices.end(), top.begin(), top.end());
   constexpr double much = 0.1;
-  Unresolved all;
+  SubVoxelFeatures all;
   double most = 0;
   for (int k = 0; k < count_of(slices); ++k) {
     const Slice& one = slices[k];

@@ -25,7 +25,7 @@ struct VoxelBox {
 [[nodiscard]] VoxelBox covered_box(const Volume& volume, float above);
 
 /// Void voxels within the lit resin that the part's box does not contain.
-struct Outside {
+struct StrayCure {
   std::int64_t voxels = 0;
   std::int64_t gelled_voxels = 0;  // with at least the threshold dose
   double max_dose = 0;
@@ -35,7 +35,7 @@ struct Outside {
     gelled_voxels += static_cast<double>(dose) >= threshold ? 1 : 0;
     max_dose = std::max(max_dose, static_cast<double>(dose));
   }
-  void merge(const Outside& other) {
+  void merge(const StrayCure& other) {
     voxels += other.voxels;
     gelled_voxels += other.gelled_voxels;
     max_dose = std::max(max_dose, other.max_dose);
@@ -43,18 +43,18 @@ struct Outside {
 };
 
 /// Gathers the doses of these voxels where the threshold is not known yet.
-class OutsideDoses {
+class StrayDoses {
  public:
   void add(float dose) {
     doses_.add(dose);
     most_ = std::max(most_, static_cast<double>(dose));
   }
-  void merge(const OutsideDoses& other) {
+  void merge(const StrayDoses& other) {
     doses_.merge(other.doses_);
     most_ = std::max(most_, other.most_);
   }
   /// Counts are to 2^-12 of the threshold; none gels where the largest dose is below it.
-  [[nodiscard]] Outside at(double threshold) const {
+  [[nodiscard]] StrayCure at(double threshold) const {
     return {doses_.total(), most_ >= threshold ? doses_.count_from(threshold) : 0, most_};
   }
 
@@ -64,6 +64,6 @@ class OutsideDoses {
 };
 
 /// The fields outside_voxels, outside_gelled_voxels and outside_max_dose.
-void add_to(Json& report, const Outside& outside);
+void append_json(Json& report, const StrayCure& outside);
 
 }  // namespace vam::model

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Walls and gaps that voxels are too coarse for.
-#include "verdict/unresolved.hpp"
+#include "verdict/sub_voxel_features.hpp"
 
 #include "testing.hpp"
 
@@ -26,8 +26,8 @@ model::Volume walls(double thick, double apart, double from) {
   return volume;
 }
 
-verdict::Unresolved found(const model::Volume& volume) {
-  verdict::UnresolvedFinder finder(volume.grid);
+verdict::SubVoxelFeatures found(const model::Volume& volume) {
+  verdict::SubVoxelFinder finder(volume.grid);
   finder.add(volume.grid.nz, volume.values.data());
   return finder.found();
 }
@@ -39,13 +39,13 @@ TEST_CASE("thick walls with wide gaps are resolved wherever they lie") {
 }
 
 TEST_CASE("walls thinner than a voxel are not, and all of them count") {
-  const verdict::Unresolved thin = found(walls(0.5, 4, 0.2));
+  const verdict::SubVoxelFeatures thin = found(walls(0.5, 4, 0.2));
   CHECK(thin.part == doctest::Approx(thin.whole));
   CHECK(thin.gaps == 0);
 }
 
 TEST_CASE("nor are gaps thinner than a voxel") {
-  const verdict::Unresolved narrow = found(walls(5, 0.5, 0.2));
+  const verdict::SubVoxelFeatures narrow = found(walls(5, 0.5, 0.2));
   CHECK(narrow.part == 0);
   // Three gaps of 0.5 voxels wholly within the walls; the part's outer faces beside them are open.
   CHECK(narrow.gaps > 0.5 * 3 * 22 * 22);
@@ -58,7 +58,7 @@ TEST_CASE("the slice with most of it is found") {
   volume.slice(2)[1 * 30 + 5] = 0.5F;                               // two voxels of fifteen
   volume.slice(2)[1 * 30 + 6] = 0.5F;
   volume.slice(28)[1 * 30 + 5] = 0.5F;  // less than a tenth
-  const verdict::Unresolved most = found(volume);
+  const verdict::SubVoxelFeatures most = found(volume);
   CHECK(most.slice == 1);
   CHECK(most.first == 1);
   CHECK(most.end == 3);

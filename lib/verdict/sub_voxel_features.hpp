@@ -33,7 +33,7 @@ struct LostGaps {
 };
 
 /// In voxels of volume. Voxels beyond the grid are void.
-struct Unresolved {
+struct SubVoxelFeatures {
   double part = 0;   // of the part, in voxels without one wholly inside the part among their 26 neighbours
   double gaps = 0;   // of the void, in voxels without one wholly outside
   double whole = 0;  // of the part, all of it
@@ -68,18 +68,18 @@ struct Unresolved {
   /// surface shows to be thin, and is not known to be lost. Empty: nothing.
   [[nodiscard]] std::string thin_places() const;
   /// Gaps will be shut in the print: more than tips of grooves and corners between struts.
-  [[nodiscard]] bool shuts_gaps() const;
+  [[nodiscard]] bool bridges_gaps() const;
 };
 
 /// Finds it slice by slice, from the lowest up.
-class UnresolvedFinder {
+class SubVoxelFinder {
  public:
-  explicit UnresolvedFinder(const model::Grid& grid) : UnresolvedFinder(grid.nx, grid.ny) {}
-  UnresolvedFinder(int width, int height) : width_(width), height_(height) {}
+  explicit SubVoxelFinder(const model::Grid& grid) : SubVoxelFinder(grid.nx, grid.ny) {}
+  SubVoxelFinder(int width, int height) : width_(width), height_(height) {}
   /// The next slices of coverage 0...1, row-major.
   void add(int count, const float* slices);
   /// Of the slices so far, beyond which is nothing.
-  [[nodiscard]] Unresolved found() const;
+  [[nodiscard]] SubVoxelFeatures found() const;
 
  private:
   struct Slice {

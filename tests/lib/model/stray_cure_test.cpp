@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/dose/outside.hpp"
+#include "model/dose/stray_cure.hpp"
 
 #include "base/text/json.hpp"
 #include "testing.hpp"
@@ -18,19 +18,19 @@ TEST_CASE("the covered box holds all voxels above a value, and no more") {
 }
 
 TEST_CASE("what lies outside the box is counted against the threshold") {
-  OutsideDoses doses;
+  StrayDoses doses;
   for (const float dose : {0.1F, 0.5F, 0.79F, 0.81F, 0.9F}) doses.add(dose);
-  const Outside all = doses.at(0.8);
+  const StrayCure all = doses.at(0.8);
   CHECK(all.voxels == 5);
   CHECK(all.gelled_voxels == 2);
   CHECK(all.max_dose == doctest::Approx(0.9));
   CHECK(doses.at(0.9001).gelled_voxels == 0);  // above the largest: none, although in its bin
-  CHECK(OutsideDoses{}.at(0.8).gelled_voxels == 0);
-  OutsideDoses twice;
+  CHECK(StrayDoses{}.at(0.8).gelled_voxels == 0);
+  StrayDoses twice;
   twice.merge(doses);
   twice.merge(doses);
   CHECK(twice.at(0.8).gelled_voxels == 4);
-  Outside known;  // the threshold is
+  StrayCure known;  // the threshold is
   known.add(0.7F, 0.8);
   known.add(0.9F, 0.8);
   known.merge(all);
@@ -38,7 +38,7 @@ TEST_CASE("what lies outside the box is counted against the threshold") {
   CHECK(known.gelled_voxels == 3);
   CHECK(known.max_dose == doctest::Approx(0.9));
   vam::Json report;
-  add_to(report, all);
+  append_json(report, all);
   CHECK(report["outside_gelled_voxels"] == 2);
 }
 
