@@ -75,14 +75,16 @@ void EventLog::line(const Json& facts) {
 
 void EventLog::write(const std::vector<std::string>& objects) {
   if (!shared_) catch_up();
-  std::string text;
-  for (const std::string& object : objects) text += (chained_ ? chained(object, chain_) : object) + "\n";
+  std::string text = std::exchange(torn_, false) ? "\n" : "";
+  std::string chain = chain_;  // which is that of the last line that was written
+  for (const std::string& object : objects) text += (chained_ ? chained(object, chain) : object) + "\n";
   for (std::size_t at = 0; at < text.size();) {  // a disk that is just full takes a part, and says why at the rest
     const ssize_t count = ::write(fd_, text.data() + at, text.size() - at);
     if (count < 0) throw Error{Fault::io, path_ + ": write failed (" + std::strerror(errno) + ")"};
     at += static_cast<std::size_t>(count);
   }
   size_ += static_cast<std::int64_t>(text.size());
+  chain_ = chain;
 }
 
 // With what others have added, as a part of this process that ended, or one that was killed.
@@ -97,13 +99,15 @@ void EventLog::catch_up() {
   const int problem = errno;
   if (reader >= 0) close(reader);
   if (count != std::ssize(tail)) throw system_error(Fault::io, path_ + ": cannot be read on", problem);
-  tail.resize(tail.rfind('\n') + 1);  // npos + 1: none
-  size_ = from + std::ssize(tail);
-  if (size_ < about.st_size && ftruncate(fd_, size_) != 0)
-    throw system_error(Fault::io, path_ + ": cannot be written", errno);
-  if (!tail.empty()) tail.pop_back();
-  chain_ = chain_of(tail.substr(tail.rfind('\n') + 1));
-  chained_ = size_ == 0 || !chain_.empty();
+  const std::size_t whole = tail.rfind('\n') + 1;  // npos + 1: none
+  const std::string lines = tail.substr(0, whole > 0 ? whole - 1 : 0);
+  chain_ = chain_of(lines.substr(lines.rfind('\n') + 1));
+  chained_ = about.st_size == 0 || !chain_.empty();
+  size_ = about.st_size;
+  torn_ = whole < tail.size() && chain_.empty();
+  if (whole == tail.size() || torn_) return;  // what is not such a log is only added to
+  size_ = from + static_cast<std::int64_t>(whole);
+  if (ftruncate(fd_, size_) != 0) throw system_error(Fault::io, path_ + ": cannot be written", errno);
 }
 
 void EventLog::write_aside() {

@@ -17,7 +17,7 @@ namespace vam::device {
 
 /// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file; the first line that each log adds
 /// has the schema, too. A file that is new, or of such lines, is chained (base/log/chain.hpp), by one writer at a time;
-/// what a writer that was killed has begun of a line is cut off. "-" is standard error; an empty path logs nothing.
+/// what a writer that was killed has begun of its line is cut off. "-" is standard error; an empty path logs nothing.
 /// Throws Fault::no_output, Fault::io.
 class EventLog {
  public:
@@ -52,6 +52,7 @@ class EventLog {
   int fd_ = -1;
   bool made_ = false, versioned_ = false;  // the schema is stated
   bool shared_ = false, chained_ = false;
+  bool torn_ = false;       // the file ends within a line, which is none of such a log
   std::int64_t size_ = -1;  // of the file, as this has left it
   std::string chain_;       // of its last line
 

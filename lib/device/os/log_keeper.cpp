@@ -82,14 +82,21 @@ void LogKeeper::run() {
 // What is stated comes after the lines: they are on the disk.
 void LogKeeper::keep() {
   Json stated = Json::object();
+  std::string problem;
   for (Log& log : logs_) {
     if (log.fd < 0) log.fd = open_regular(log.path);
-    if (log.fd < 0 || !read_on(log)) continue;
-    if (fdatasync(log.fd) != 0 && errno != EINVAL && errno != EROFS)
-      throw Error{Fault::io, log.path + ": cannot be brought to the disk (" + std::strerror(errno) + ")"};
+    if (log.fd < 0) continue;
+    log.grown |= read_on(log);
+    if (!log.grown) continue;
+    if (fdatasync(log.fd) != 0 && errno != EINVAL && errno != EROFS) {
+      problem = log.path + ": cannot be brought to the disk (" + std::strerror(errno) + ")";
+      continue;
+    }
+    log.grown = false;
     stated[std::filesystem::path(log.path).filename().string()] = {{"bytes", log.bytes}, {"chain", log.chain}};
   }
   if (state_ && !stated.empty()) state_(stated);
+  if (!problem.empty()) throw Error{Fault::io, problem};
 }
 
 // Whether there are more whole lines.

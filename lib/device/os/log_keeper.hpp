@@ -32,6 +32,7 @@ class LogKeeper {
     int fd = -1;
     std::int64_t bytes = 0;  // of whole lines
     std::string chain = {};  // of the last one
+    bool grown = false;      // since they were stated
   };
   void run();
   void keep();
