@@ -58,6 +58,7 @@ class Print {
       made_ = true;
       arm(run_);
       drive_.emplace(run_);
+      drive_->lock();
       claim_.take(run_);
       drive_->start();
       status = drive_->watch();
@@ -69,6 +70,9 @@ class Print {
     } catch (const device::Interrupted& interrupted) {
       signal = interrupted.signal;
       status = 128 + signal;
+    } catch (const std::exception& error) {  // of the standard library: no memory, a folder that cannot be used
+      say(error.what());
+      status = static_cast<int>(Fault::io);
     }
     for (const int one : ending) (void)std::signal(one, SIG_IGN);
     if (made_) status = leave(status);
@@ -82,7 +86,7 @@ class Print {
     if (!drive_) drive_.emplace(run_);
     drive_->end_all();
     run_.look();
-    claim_.release(run_, run_.is_lit());
+    claim_.release(run_, run_.may_be_lit());
     if (!is_used(run_)) {  // refused before any device was in use: nothing to tell
       drive_->end_watching();
       std::error_code ignored;

@@ -35,7 +35,7 @@ struct Manner {
   bool on_terminal = false;  // standard error is this process's
 };
 
-/// A child of this process, which hears no INT of the terminal: this process orders its end.
+/// A child of this process, which orders its end.
 class Child {
  public:
   /// standard error is appended to the file `said`. Throws Fault::memory where no process can be made.

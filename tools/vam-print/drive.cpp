@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -14,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/system_error.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
@@ -32,20 +34,31 @@ constexpr int judged = static_cast<int>(Fault::judged);
 
 bool is_of_views(const std::string& name) { return name == "capture" || name == "ost"; }
 
+// It ends with this process also before it can say so itself.
+bool ends_with_parent(const Command& command) {
+  return std::find(command.words.begin(), command.words.end(), "--die-with-parent") != command.words.end();
+}
+
 bool is_order(int status) { return status == 128 + SIGHUP || status == 128 + SIGINT || status == 128 + SIGTERM; }
 
 }  // namespace
 
-void Drive::start() {
+void Drive::lock() {
   constexpr int beyond_redirections = 10;
-  if (const int events = open(run_.file("events.jsonl").c_str(), O_RDONLY | O_CLOEXEC); events >= 0) {
-    lock_ = fcntl(events, F_DUPFD_CLOEXEC, beyond_redirections);
-    close(events);
-    (void)flock(lock_, LOCK_EX | LOCK_NB);
-  }
+  const std::string path = run_.file("events.jsonl");
+  const int events = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (events < 0) throw system_error(Fault::io, path + ": cannot be locked", errno);
+  lock_ = fcntl(events, F_DUPFD_CLOEXEC, beyond_redirections);
+  close(events);
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw Error{Fault::busy, path + ": is in use by another print; give another --run"};
+}
+
+void Drive::start() {
   std::ofstream(run_.file("angles.jsonl")) << std::flush;
   for (const Command& command : tools_of(run_))
-    tools_.emplace_back(command, run_.talk.path(command.name), Manner{.shared = lock_});
+    tools_.emplace_back(command, run_.talk.path(command.name),
+                        Manner{.with_parent = ends_with_parent(command), .shared = lock_});
   life_.reach(State::homed);
   run_.note("started");
   const bool terminal = isatty(STDERR_FILENO) == 1;
@@ -254,7 +267,9 @@ void Drive::order_end() {
 
 void Drive::end_renewal() {
   if (!renewal_) return;
+  constexpr int patience_ms = 60000;  // for a step of it that is under way
   renewal_->order(SIGTERM);
+  if (!renewal_->ends_within(patience_ms)) renewal_->order(SIGKILL);
   const int status = renewal_->status();
   renewal_.reset();
   run_.look();

@@ -17,6 +17,9 @@ class Drive {
  public:
   explicit Drive(Run& run) : run_(run) {}
 
+  /// Until the last tool has ended, so that nobody takes the print for one that is over. Throws Error where another has
+  /// the lock.
+  void lock();
   /// Starts the tools.
   void start();
   /// Until the print is over. Returns its exit status, and throws Ended and Interrupted; the tools may then still run.

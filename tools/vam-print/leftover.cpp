@@ -98,13 +98,14 @@ bool is_left_on(const Run& run, const Child& tool) {
 }
 
 void switch_off(const Run& run, const std::string& who) {
-  const std::string printed = run.talk.path("off.out");
-  const Command off{"off",
-                    {"vam-devices", "off", "--printer", run.file("printer.toml"), "--light",
-                     run.options.light.empty() ? "none" : run.options.light},
-                    {{STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC}}};
+  std::string printed;
   int status = 1;
   try {
+    printed = run.talk.path("off.out");
+    const Command off{"off",
+                      {"vam-devices", "off", "--printer", run.file("printer.toml"), "--light",
+                       run.options.light.empty() ? "none" : run.options.light},
+                      {{STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC}}};
     status = Child(off, run.talk.path("off"), {.undisturbed = true}).status();
   } catch (const Error& error) {
     say(error.what());

@@ -95,6 +95,7 @@ LastImage last_image(const std::string& folder, const std::string& sinogram) {
 void take_over(Run& run) {
   const std::string folder = run.options.resume;
   io::require_run(folder);
+  require_over(folder);  // what it has shown is known from then on
   const io::RunEvents events = io::read_events(folder);
   if (events.outcome == "complete, in open loop")
     throw Error{Fault::data, folder + ": is complete; it ended in open loop, with the turns of its plan"};
@@ -102,7 +103,6 @@ void take_over(Run& run) {
     throw Error{Fault::no_input, folder + ": not the run folder of a print that was armed; see its events.jsonl"};
   }
   const LastImage image = last_image(folder, run.options.sinogram);
-  require_over(folder);
   if (events.sinogram_sha256 != run.sinogram_sha256)
     throw Error{Fault::data, run.options.sinogram + ": not the sinogram of " + folder};
   require_not_resumed(folder);
@@ -127,14 +127,14 @@ void take_over(Run& run) {
 void require_same_settings(const Run& run) {
   const std::string& folder = run.options.resume;
   if (folder.empty()) return;
-  const std::string& device = run.printer.stage.device;
-  if (device.starts_with("grbl:") &&
-      (device.find("?home=here") != std::string::npos || device.find("&home=here") != std::string::npos)) {
+  const auto then = io::frozen(io::load_printer(folder + "/printer.toml", {"calibration.folder="}));
+  for (const std::string& device : {then.stage.device, run.printer.stage.device}) {
+    if (!device.starts_with("grbl:")) continue;
+    if (device.find("?home=here") == std::string::npos && device.find("&home=here") == std::string::npos) continue;
     throw Error{Fault::data,
                 "--resume: the stage has home=here, whose zero ended with the print; only a stage that finds its zero "
                 "can resume"};
   }
-  const auto then = io::frozen(io::load_printer(folder + "/printer.toml", {"calibration.folder="}));
   const auto different = differences(then, run.printer);
   if (different.empty()) return;
   const std::string text = folder + ": printed with other settings: " + join(different, "; ");

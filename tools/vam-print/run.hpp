@@ -51,6 +51,8 @@ struct Run {
   /// Takes in what was added to `light`; a line that is none of a log of flips ends what is known.
   void look();
   [[nodiscard]] bool is_lit() const { return light && light->lit() > 0; }
+  /// Or its log cannot be read.
+  [[nodiscard]] bool may_be_lit() const { return is_lit() || light_lost_; }
   /// New projections were shown; they say when they end.
   [[nodiscard]] bool is_corrected() const { return light && light->end_turn(); }
   /// Up to the last flip.
