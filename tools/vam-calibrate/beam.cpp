@@ -2,6 +2,8 @@
 // vam-calibrate beam: width by plane, from a bare sensor that is moved along the light, or from the side through resin.
 #include "metrology/calibrate/beam.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/text/image_size.hpp"
 #include "base/text/json.hpp"
@@ -65,18 +67,23 @@ metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Pri
   return metrology::side_widths(mean, view, printer, side_planes);
 }
 
-// What light in air has instead: a flat wall before the resin, as seen from the side, has the light of a pixel meet
-// further behind it and at smaller angles, by the ratio of the indices.
+// What light in air has instead. Seen from the side the wall of a vial is as flat as a window: behind it light has
+// smaller angles by the index there, and meets further away.
 struct InAir {
   stats::Measured half_angle_deg;
   stats::Measured focus_mm;
 };
 
-InAir in_air(const metrology::MeasuredBeam& beam, double index, double wall_mm) {
+InAir in_air(const metrology::MeasuredBeam& beam, const model::Printer* in_resin) {
   InAir air{beam.divergence_deg, beam.focus_mm};
+  const double index = in_resin != nullptr ? in_resin->resin.index : 1;
   air.half_angle_deg.value *= index / divergence_of_half_angle;
   air.half_angle_deg.sigma *= index / divergence_of_half_angle;
-  air.focus_mm.value = (beam.focus_mm.value + wall_mm) / index - wall_mm;
+  if (in_resin == nullptr) return air;
+  const double radius_mm = in_resin->vial.radius_mm;
+  const double window_mm = std::max(in_resin->bath.window_mm, radius_mm);
+  air.focus_mm.value =
+      (radius_mm + beam.focus_mm.value) / index + (window_mm - radius_mm) / in_resin->bath.index - window_mm;
   air.focus_mm.sigma /= index;
   return air;
 }
@@ -91,7 +98,7 @@ Finding scan_beam(const ScanOptions& options, const model::Printer& printer) {
   finding.value("focus", found.focus_mm, "mm", "fit over planes");
   finding.value("axis_fwhm", found.axis_fwhm_mm, "mm", "fit over planes");
   finding.value("divergence", found.divergence_deg, "deg", "atan of width over distance");
-  const InAir air = in_air(found, options.side ? printer.resin.index / printer.bath.index : 1, printer.vial.radius_mm);
+  const InAir air = in_air(found, options.side ? &printer : nullptr);
   finding.value("half_angle", air.half_angle_deg, "deg", "divergence in air / sqrt 3: a round aperture");
   finding.value("focus_in_air", air.focus_mm, "mm", "behind the axis, without vial and bath");
   Json planes = Json::array();

@@ -141,6 +141,7 @@ constexpr ScanKind scans[] = {
      [](model::Printer& printer, const CalibrationRecord& record) { printer.camera.flat = beside(record, "flat"); }},
     {"beam", false,
      [](model::Printer& printer, const CalibrationRecord& record) {
+       if (!record.json->at("values").contains("half_angle")) return;
        printer.projector.half_angle_deg = in_unit(record, "half_angle", "deg");
        printer.projector.focus_mm = in_unit(record, "focus_in_air", "mm");
      }},
