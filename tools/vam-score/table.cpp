@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of words as a table for other programs.
+#include <string_view>
+
 #include "base/text/text.hpp"
 #include "vam-score/outputs.hpp"
 
@@ -18,6 +20,15 @@ std::string csv_cell(const std::string& cell) {
   return cell.find_first_of(",\"\n") == std::string::npos ? cell : '"' + escaped(cell, "\"", "\"") + '"';
 }
 
+std::string latex_cell(const std::string& cell) {
+  std::string text;
+  for (const char c : cell) {
+    const std::string_view word = c == '\\' ? "backslash" : c == '~' ? "asciitilde" : c == '^' ? "asciicircum" : "";
+    text += word.empty() ? escaped(std::string(1, c), "_&%#${}", "\\") : "\\text" + std::string(word) + "{}";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string text_of(const Table& table, const std::string& form) {
@@ -26,7 +37,7 @@ std::string text_of(const Table& table, const std::string& form) {
   for (const auto& row : table) {
     std::vector<std::string> cells;
     for (const auto& cell : row)
-      cells.push_back(is_csv ? csv_cell(cell) : escaped(cell, is_latex ? "_&%#${}" : "|", "\\"));
+      cells.push_back(is_csv ? csv_cell(cell) : is_latex ? latex_cell(cell) : escaped(cell, "|", "\\"));
     text += is_csv     ? join(cells, ",") + "\n"
             : is_latex ? join(cells, " & ") + " \\\\\n"
                        : "| " + join(cells, " | ") + " |\n";
