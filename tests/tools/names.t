@@ -14,7 +14,7 @@ box 4 4 1 >box.off
 cp box.off ./-lead.off
 quiet 'a name with a leading dash, after --' vam-slice --voxel 0.5 -o n.vdb -- -lead.off
 fails 64 '^vam-slice: --voxel: unexpected argument after --; options come before it' vam-slice -o x.vdb -- -lead.off --voxel 0.5
-fails 64 '^vam-score: --target: unexpected argument after --; options come before it' vam-score -- n.vdb --target n.vdb
+fails 64 '^vam-view: --target: unexpected argument after --; options come before it' vam-view -- n.vdb --target n.vdb
 rm -f ./-lead.off n.vdb
 cp box.off "$(printf 'a\nb.off')"
 ok 'a name with a newline' vam-slice "$(printf 'a\nb.off')" --voxel 0.5 -o n.vdb

@@ -38,7 +38,7 @@ struct Preview {
   std::vector<std::pair<int, double>> by_angles;
 };
 
-/// Optimises by --method auto, without the coarser levels before it. Throws as optimise() and run_trials() do.
+/// Optimises by --method auto. Throws as optimise() and run_trials() do.
 [[nodiscard]] Preview preview(const PreviewTask& task);
 
 }  // namespace vam::optimize
