@@ -20,7 +20,7 @@ namespace {
 
 constexpr int most_pixels = 800;  // columns and slices of a projection
 constexpr int shown_px = 400;
-constexpr int most_sinograms = 12;
+constexpr int most_sinograms = 9;
 
 struct Columns {
   int first;
