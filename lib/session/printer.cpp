@@ -6,6 +6,8 @@
 #include "base/log/log.hpp"
 #include "base/printer_path.hpp"
 #include "base/text/text.hpp"
+#include "base/text/utc.hpp"
+#include "io/settings/calibration_record.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
@@ -21,6 +23,11 @@ model::Printer printer_of(const cli::PrinterOptions& options, const model::Metad
   const std::string file = printer_path(options.file);
   if (stated == facts.end() || (role == Role::instrument && !file.empty())) return load_printer(options);
   auto own = io::parse_settings(stated->second, name + ": vam:printer", options.sets);
+  if (const auto named = io::parse_printer("", "--set", options.sets).calibration; !named.folder.empty()) {
+    auto calibrated = io::parse_settings(stated->second, name + ": vam:printer");
+    io::apply_records(calibrated, named, utc_seconds());
+    own = io::parse_settings(io::printer_settings(calibrated), name + ": vam:printer", options.sets);
+  }
   const model::Printer other = load_printer(options);
   if (role == Role::instrument) {  // no device moves or shines because of a file of projections
     own.stage.device = other.stage.device;

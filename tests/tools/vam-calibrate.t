@@ -38,12 +38,10 @@ echo '{"camera": {"camera": {"serial": "7"}, "fps": 10, "gain": 3, "gamma": 1, "
 vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 --devices known.json >levels.json
 is 'a record has the identities and the levels of the camera' "$(json levels.json devices)" \
   "{'camera': {'serial': '7', 'gain': 3, 'gamma': 1, 'black_level': 2}, 'stage': {'serial': '8'}}"
-vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 >beam.json
-is 'beam: status 0' $? 0
+is 'beam: status 0' "$(vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 >beam.json; echo $?)" 0
 near 'beam: the divergence' "$(value beam.json divergence)" 0.6417 "2 * $(sigma beam.json divergence) + 0.002"
 near 'beam: a round aperture, whose chords have sqrt 3 of its half angle' "$(value beam.json half_angle)" 0.3705 "2 * $(sigma beam.json half_angle) + 0.0012"
 is 'beam: eleven planes' "$(python3 -c 'import json; print(len(json.load(open("beam.json"))["planes"]))')" 11
-
 # Black that is the camera's own dark: the contrast is a limit, in words.
 vam-calibrate response ramp >contrast.json
 vam-calibrate response ramp --dark darkness/00000.png >limit.json
@@ -65,6 +63,8 @@ vam-calibrate edges sweep --pitch 4 --width 2 2>errors
 is 'edges of one stage angle, with a warning' "$? $(grep -c 'swept at one stage angle: .* recorded as the rotation axis' errors)" '0 1'
 near 'edges: the middle' "$(value cal/current-edges.json axis_column)" 249.3 0.1
 near 'edges: the radius' "$(value cal/current-edges.json radius)" 12.4 0.0062
+mkdir far; $exr make stated.exr space=projector width=512 height=8 count=2 'printer=projector.columns=512 projector.rows=8'
+fails 65 'projector.axis_column 255.5, now 249' env -u VAM_PRINTER sh -c 'cd far && vam-project ../stated.exr -o x/ --set calibration.folder=../cal --set calibration.instrument="lab 1" --set calibration.vial=A7'
 is 'edges: the fields of a value' "$(json cal/current-edges.json values.axis_column.unit) $(json cal/current-edges.json values.radius.unit)" 'px mm'
 is 'edges: the frames are named by their hash' "$(json cal/current-edges.json sha256.sweep)" "$(cd sweep && sha256sum * | sha256sum | cut -d' ' -f1)"
 quiet 'response' vam-calibrate response ramp
