@@ -105,7 +105,7 @@ void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, con
 std::string what_more_buys(const optimize::VolumeOutcome& outcome) {
   if (!(outcome.growth < 1) || outcome.metrics.latitude <= 0 || outcome.iterations == 0) return "";
   const std::string twice = format_number(50 * outcome.metrics.latitude * std::exp2(outcome.growth), 3);
-  return "; " + std::to_string(outcome.iterations) + " iterations, and twice the computing would make it at most +-" +
+  return "; " + std::to_string(outcome.iterations) + " iterations, and twice the computing would make it some +-" +
          twice + " %";
 }
 
