@@ -102,7 +102,7 @@ vam-slice --print-printer -o now.toml
 column=$(awk '/^\[/ { here = $0 == "[projector]" } here && $1 == "axis_column" { print $3 }' now.toml)
 near 'the axis in force is that of the bench' "$column" 106.7 0.1
 $exr make part.exr space=projector width=208 height=36 count=3 pixel=0.1 row=0.1 \
-  "printer=projector.columns=208 projector.pixel_mm=0.1 projector.axis_column=$column projector.telecentric=true vial.radius_mm=9 bath.index=1.53 bath.window_mm=12"
+  "printer=projector.columns=208 projector.pixel_mm=0.1 projector.axis_column=$column projector.telecentric=true vial.radius_mm=9 bath.index=1.53 bath.window_mm=12 $(awk '$1 == "half_angle_deg" || $1 == "focus_mm" { print "projector." $1 "=" $3 }' now.toml | tr '\n' ' ')"
 quiet 'a dry run with the records' vam-print part.exr --display null: --need 'latency response axis' --run-up 0.1 --max-missed 0.9 \
   --view-step 90 --run run
 camera_down
