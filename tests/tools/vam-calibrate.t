@@ -137,6 +137,11 @@ vam-calibrate edges moved --pitch 4 --width 2 2>errors
 is 'and the edges, with a warning' "$? $(grep -c 'warning.*not compared with the previous record: .*current-edges.json: links to a record that is gone' errors)" '0 1'
 ok 'both are in force' vam-project --print-printer -o healed.toml
 
+# What the printer cannot have is kept, but not put in force.
+vam-calibrate beam beam --pixel 0.07 --first -6.35 --spacing 1.27 2>errors
+is 'light too wide for a printer is status 1' "$? $(grep -c 'beam: projector.half_angle_deg: .*; not put in force' errors)" '1 1'
+is 'its record is kept' "$(kept beam) $(json cal/cal-lab-1-beam-*.json status)" '1 fail'
+ok 'and the tools continue' vam-project --print-printer -o healed.toml
 echo malformed >cal/current-beam.json
 fails 65 'is not a vam-calibration/1 record' vam-project --print-printer
 fails 73 'cannot make the folder' vam-calibrate axis turn --view-step 10 --set calibration.folder=printer.toml/cal

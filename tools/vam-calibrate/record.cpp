@@ -104,6 +104,17 @@ std::string refusal(model::Printer& printer, const io::CalibrationRecord& record
   }
 }
 
+// The files that belong to the record, each beside it.
+void write_products(const Finding& finding, const std::string& record, Json& facts) {
+  for (const auto& product : finding.products) {
+    const std::string path = fs::path(record).replace_extension(product.ending).string();
+    const std::string name = fs::path(path).filename().string();
+    product.write(path);
+    facts["files"][product.name] = name;
+    facts["sha256"][name] = io::sha256_of(path);
+  }
+}
+
 /// The file that a link in force names; of a folder that was copied with the links followed, the file itself.
 std::string record_file(const std::string& current) {
   if (!fs::is_symlink(current)) return current;
@@ -132,31 +143,30 @@ void Finding::require_sigma(const std::string& of, double sigma, double most, co
 void Finding::warn_because(const std::string& reason) { warnings_.push_back(reason); }
 void Finding::fail_because(const std::string& reason) { failures_.push_back(reason); }
 
-void keep(const cli::App& app, const ScanOptions& options, const model::Calibration& calibration,
-          const std::string& scan, Finding finding) {
-  std::vector<std::string> reasons = finding.failures_;
-  reasons.insert(reasons.end(), finding.warnings_.begin(), finding.warnings_.end());
-  Json facts{{"tool", app.history()},
-             {"status", !finding.failures_.empty()  ? "fail"
-                        : finding.warnings_.empty() ? "pass"
-                                                    : "warn"},
-             {"reasons", reasons},
-             {"values", finding.values_}};
+void keep(const cli::App& app, const ScanOptions& options, const model::Printer& printer, Finding finding) {
+  const std::string& scan = options.command;
+  Json facts{{"scan", scan}, {"tool", app.history()}, {"values", finding.values_}};
   facts.update(finding.facts);
   if (!options.devices.empty()) facts["devices"] = read_devices(options.devices);
   if (is_simulated(options.from, facts)) facts["simulated"] = true;
   facts["sha256"] = hashes(options);
-  if (calibration.folder.empty()) {
-    io::write_text("-", facts.dump(2) + "\n");
+  const double now_s = utc_seconds();
+  const bool kept = !printer.calibration.folder.empty();
+  if (kept) {
+    const std::string path = io::record_path(printer.calibration, scan, now_s, ".json");
+    write_products(finding, path, facts);
+    model::Printer with = printer;
+    const std::string why = refusal(with, {path, std::make_shared<const Json>(facts)});
+    if (finding.failures_.empty() && !why.empty()) finding.fail_because(why.substr(0, why.rfind("; ")));
+  }
+  std::vector<std::string> reasons = finding.failures_;
+  reasons.insert(reasons.end(), finding.warnings_.begin(), finding.warnings_.end());
+  facts["reasons"] = reasons;
+  facts["status"] = !finding.failures_.empty() ? "fail" : reasons.empty() ? "pass" : "warn";
+  if (kept) {
+    io::write_record(printer.calibration, scan, facts, now_s);
   } else {
-    const double now_s = utc_seconds();
-    for (const auto& product : finding.products) {
-      const std::string path = io::record_path(calibration, scan, now_s, product.ending);
-      product.write(path);
-      facts["files"][product.name] = fs::path(path).filename().string();
-      facts["sha256"][fs::path(path).filename().string()] = io::sha256_of(path);
-    }
-    io::write_record(calibration, scan, facts, now_s);
+    io::write_text("-", facts.dump(2) + "\n");
   }
   if (!finding.failures_.empty()) {
     throw Error{Fault::judged, scan + ": " + join(finding.failures_, "; ") + "; not put in force"};

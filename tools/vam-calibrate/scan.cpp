@@ -49,7 +49,7 @@ void run_scan(const cli::App& app, const std::string& command, Scan scan, ScanOp
   }
   Finding finding = scan(options, printer);
   finding.facts["settings"]["exposure_us"] = printer.camera.exposure_us;
-  keep(app, options, printer.calibration, command, std::move(finding));
+  keep(app, options, printer, std::move(finding));
 }
 
 }  // namespace vam::calibrate_tool

@@ -127,7 +127,7 @@ class Finding {
   std::vector<Product> products;
 
  private:
-  friend void keep(const cli::App&, const ScanOptions&, const model::Calibration&, const std::string&, Finding);
+  friend void keep(const cli::App&, const ScanOptions&, const model::Printer&, Finding);
   Json values_ = Json::object();
   std::vector<std::string> warnings_, failures_;
 };
@@ -135,10 +135,9 @@ class Finding {
 /// A value with its unit, sigma, n and method, as records have it.
 [[nodiscard]] Json measured_json(const stats::Measured& measured, const std::string& unit, const std::string& method);
 
-/// Writes the record with the hashes of the frames into calibration.folder; without a folder to stdout, products left
-/// out. Throws Fault::judged when it failed.
-void keep(const cli::App& app, const ScanOptions& options, const model::Calibration& calibration,
-          const std::string& scan, Finding finding);
+/// Writes the record of options.command with the hashes of the frames into calibration.folder; without a folder to
+/// stdout, products left out. Throws Fault::judged when it failed, also where the printer cannot have its values.
+void keep(const cli::App& app, const ScanOptions& options, const model::Printer& printer, Finding finding);
 
 /// Prints the current records and their validity as JSON. Throws Fault::data when a needed one is missing, and when one
 /// is stale, foreign or beyond what this printer can have.
