@@ -266,11 +266,18 @@ void override_one(Printer& printer, const std::string& set) {
 
 /// The built-in value of a setting that a preset should have is no property of that printer.
 void warn_of_unpublished(const std::vector<std::string>& keys, const std::vector<std::string>& sets,
-                         const std::string& preset, const Printer& printer) {
+                         const std::string& preset, Printer printer) {
+  const auto has_value = [](const auto* value) {
+    if constexpr (requires { value->has_value(); }) return value->has_value();
+    return true;
+  };
   std::vector<std::string> assumed;
-  for (const std::string& key : keys) {
+  for (const PrinterField& field : printer_fields()) {
+    const std::string key = dotted_name(field);
     const auto is_it = [&](const std::string& set) { return set.starts_with(key + "="); };
-    if (std::none_of(sets.begin(), sets.end(), is_it) && has_setting(printer, key)) assumed.push_back(key);
+    if (std::find(keys.begin(), keys.end(), key) == keys.end() || std::any_of(sets.begin(), sets.end(), is_it))
+      continue;
+    if (std::visit(has_value, field.slot(printer))) assumed.push_back(key);
   }
   if (assumed.empty()) return;
   warn(preset + ": " + join(assumed, ", ") + (assumed.size() == 1 ? " is" : " are") +

@@ -245,6 +245,7 @@ TEST_CASE("a preset is a printer, a vial and a resin by name, complete but for w
   CHECK(!printer.resin.critical_dose_mj_cm3);
   CHECK(has(said("vial-16,opencal", {"projector.throw_ratio=1.3"}), "projector.max_intensity_mw_cm2 is not published"));
   CHECK(has(printed, "axis_column = 539.5"));
+  CHECK(has(said("vial-10", {}), "vial-10: vial.wall_mm is not published"));
   CHECK(has(said("desktop", {}), "projector.pixel_mm, projector.max_intensity_mw_cm2, stage.speed_deg_s are not"));
   CHECK(has(error_of([] { (void)load_printer("dudma,dpepa", {}); }, Fault::usage), "names a second resin"));
   CHECK(has(error_of([] { (void)load_printer("ray21,cuvette", {}); }, Fault::usage), "cuvette: is square"));
