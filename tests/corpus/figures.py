@@ -139,7 +139,12 @@ def fact(value):
 
 
 def grids_of(path):
-    """(name, facts) of the grids of an OpenVDB file, by the published format."""
+    """(name, facts) of the grids of an OpenVDB file."""
+    return [(name, facts) for name, facts, _ in stored_of(path)]
+
+
+def stored_of(path):
+    """(name, facts, what follows these: transform, topology and values) of the grids, by the published format."""
     with open(path, "rb") as file:
         data = file.read()
     at = 20 + 1 + 36
@@ -175,7 +180,7 @@ def grids_of(path):
         number("I")
         facts = {key[4:]: raw.decode("utf-8", "replace") for key, (kind, raw) in metadata().items()
                  if key.startswith("vam:") and kind == "string" and not LEFT_OUT.search(key)}
-        yield name, facts
+        yield name, facts, data[at:end]
         if end is None:
             return
         at = end
