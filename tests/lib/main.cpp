@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The main of all unit tests. ctest runs each test case by its name, which it reads from --list-test-cases as a CMake
-// list: a semicolon there would cut it in two names that no test case has, and doctest is content with no test case at
-// all.
+// The main of all unit tests. ctest runs those of a file: doctest would be content with none.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <cstring>
-#include <iostream>
-#include <sstream>
-#include <string>
 
 namespace {
 
@@ -38,18 +31,9 @@ REGISTER_LISTENER("counter", 1, Counter);
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool listing = std::any_of(
-      argv, argv + argc, [](const char* argument) { return std::strstr(argument, "list-test-cases") != nullptr; });
-  std::ostringstream list;
   doctest::Context context(argc, argv);
-  if (listing) context.setCout(&list);
   const int status = context.run();
-  if (listing) {
-    std::string names = list.str();
-    std::replace(names.begin(), names.end(), ';',
-                 '?');  // which stands for any character when it comes back as a filter
-    std::cout << names;
-  } else if (nothing_ran && !context.shouldExit()) {
+  if (nothing_ran && !context.shouldExit()) {
     std::fputs("no test case has this name\n", stderr);
     return 1;
   }

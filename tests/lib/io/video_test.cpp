@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 2000 -tc=damage sweep*
 #include "io/image/video.hpp"
 
 #include <cstdlib>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 200 -tc=Vial edges: many sweeps*
 #include "lib/metrology/coverage.hpp"
 #include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/private/edges.hpp"

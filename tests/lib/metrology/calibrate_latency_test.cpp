@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 1000 -tc=Latency: *a*camera*screen*
 // The latency out of simulated blinks: any camera, any screen; which are refused, and why.
 #include <cstddef>
 #include <cstdlib>

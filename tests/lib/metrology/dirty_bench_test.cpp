@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 6 -tc=bubbles that rise*
+// trials: 10 -tc=bubbles with specks*
+// trials: 2 -tc=noise*background*specks,of several turns*,scattered light*,flat end faces*
 // A dirty bench, seen by an independent renderer: every row has the figure that is right as its bar.
 #include <numeric>
 #include <span>

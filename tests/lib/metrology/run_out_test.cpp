@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 20 -tc=where bubbles pass*
 // Run-out of the vial, seen by an independent renderer: fitted with deviations that hold, and removed.
 #include "metrology/ost/run_out.hpp"
 

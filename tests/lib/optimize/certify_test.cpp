@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 1000 -tc=no method's light is better*
 // The proof of how good any light could be: held by light that is tried, by the exact optimum, and ray by ray.
 #include "optimize/run/certify.hpp"
 

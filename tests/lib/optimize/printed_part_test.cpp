@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 6 -tc=test parts print*
 #include "lib/optimize/printed_part.hpp"
 
 #include <set>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 10 -tc=48 to 57 %*
 #include "solid/mesh/align.hpp"
 
 #include <utility>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 6 -tc=three rounds*
 // A print that shrinks and overcures corrects its design, judged by closed distances to the design.
 #include "solid/voxel/compensation.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 2000 -tc=damage sweep*
 // Every cut and many corruptions of every format that is parsed by foreign libraries or by hand: status 0 or 65, never
 // a signal, never long, never much memory. VAM_TRIALS corruptions a format, 200 by default; ctest --preset long has
 // 2000.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// trials: 2000 -tc=damage sweep*
 // Files that show that they are what was written: a flipped bit is an error, or changes nothing that is read. The
 // judges are the values themselves, and OpenEXR's and OpenVDB's own readers and writers.
 #include "io/stream/seal.hpp"
