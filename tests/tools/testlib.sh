@@ -4,6 +4,7 @@
 set -u
 LC_ALL=C PYTHONDONTWRITEBYTECODE=1; export LC_ALL PYTHONDONTWRITEBYTECODE
 unset VAM_PRINTER
+# Where a script has set TMPDIR to memory, a disk that is busy with others would hold up what it reads.
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/vam-test.XXXXXX") || exit 1
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch" || exit 1
@@ -146,6 +147,12 @@ fairly() {  # fairly GOOD COMMAND...: the command; while GOOD fails and its came
 }
 
 stops() { case $1 in *:error=*) echo --seccomp-bpf ;; esac; }  # of strace, for a fault: at its calls alone, which is quick
+
+find_browser() {  # $browser, without which the script ends
+  browser=$(command -v chromium || command -v google-chrome) && return
+  echo "ok $((number += 1)) - the page in a browser # SKIP no chromium here (scripts/setup installs it)"
+  done_testing
+}
 
 box() (  # box X Y Z: an OFF mesh of that size, 12 triangles, the axis through its middle, standing on z = 0
   x=$(awk "BEGIN { print $1 / 2 }"); y=$(awk "BEGIN { print $2 / 2 }")

@@ -105,11 +105,7 @@ vam-slice part.off --voxel 0.3 -o other.vdb
 fails 65 'voxel' vam-report other.vdb dose.vdb -o x.html
 
 # As a browser shows it, over file://. The policy forbids what a test adds, so that it stands in a copy without it.
-browser=$(command -v chromium || command -v google-chrome)
-if [ -z "$browser" ]; then
-  echo "ok $((number += 1)) - the page in a browser # SKIP no chromium here (scripts/setup installs it)"
-  done_testing
-fi
+find_browser
 look() {
   timeout 60 "$browser" --headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --enable-logging=stderr \
     --user-data-dir="$PWD/.log/browser" "$@" 2>.log/browser.err

@@ -276,11 +276,7 @@ vam-status run --page - | head -c 100 >/dev/null; report 0 'a page to head'
 is 'no line on standard output to a full disk' "$(vam-status run 2>&1 >/dev/full | grep -c .)" 1
 
 # As a browser shows it, over file://, with the images.
-browser=$(command -v chromium || command -v google-chrome)
-if [ -z "$browser" ]; then
-  echo "ok $((number += 1)) - the page in a browser # SKIP no chromium here (scripts/setup installs it)"
-  done_testing
-fi
+find_browser
 look() { timeout 60 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$PWD/.log/browser" "$@" 2>.log/browser.err; }
 dom() { look --dump-dom "$@" >dom.html; }
 dom "file://$PWD/page.html"
