@@ -19,6 +19,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "corpus"))
+import exr  # noqa: E402
 import figures  # noqa: E402
 
 
@@ -107,13 +108,12 @@ def facts_of(path):
 
 
 def values_of(path):
+    """What is stored beside the facts: the same bytes for the same values."""
     kind = kind_of(path)
-    if kind not in (".exr", ".vdb"):
-        return None
-    grids = [["--grid", name] for name, _ in figures.grids_of(path)] if kind == ".vdb" else [[]]
-    shown = [subprocess.run(["vam-view", path, "--quiet", "--export", "/dev/stdout", *grid], stdout=subprocess.PIPE,
-                            check=True).stdout.split(b"\n\n", 1) for grid in grids]
-    return [(values, re.findall(rb"^(?:sizes|space|axis).*", head, re.M)) for head, values in shown]
+    if kind == ".exr":
+        data, _, begin = exr.opened(path)
+        return data[begin:]
+    return [stored for _, _, stored in figures.stored_of(path)] if kind == ".vdb" else None
 
 
 class Run:

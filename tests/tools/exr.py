@@ -119,8 +119,8 @@ def unpacked(packed, size):
     return bytes(line)
 
 
-def read(path):
-    """Headers as dictionaries of raw bytes, and an iterator of (part, row, floats)."""
+def opened(path):
+    """All bytes, headers as dictionaries of raw bytes, where the chunks of values begin."""
     file = sys.stdin.buffer if path == "-" else open(path, "rb")
     data = file.read()
     assert struct.unpack_from("<2i", data) == (20000630, 2 | 0x1000), "not a multi-part EXR"
@@ -135,9 +135,14 @@ def read(path):
             head[name.decode()] = data[at + 4:at + 4 + size]
             at += 4 + size
         at += 1
-        assert head["compression"] in (b"\0", b"\1"), "compressed otherwise than by run lengths"
         parts.append(head)
-    at += 1 + 8 * sum(struct.unpack("<i", head["chunkCount"])[0] for head in parts)
+    return data, parts, at + 1 + 8 * sum(struct.unpack("<i", head["chunkCount"])[0] for head in parts)
+
+
+def read(path):
+    """Headers, and an iterator of (part, row, floats)."""
+    data, parts, at = opened(path)
+    assert all(head["compression"] in (b"\0", b"\1") for head in parts), "compressed otherwise than by run lengths"
 
     def rows():
         where = at
