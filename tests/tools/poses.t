@@ -6,7 +6,6 @@
 poses="python3 $VAM_SOURCE/tests/tools/poses.py"
 
 $poses wobble 60 0.3 >wobble.csv
-$poses wobble 60 0.4 >more.csv
 $poses sink 60 1 >sink.csv
 print_of() {  # print_of STACK NAME OPTION...: dose and score of a stack
   stack=$1; name=$2; shift 2
@@ -21,13 +20,11 @@ ok "print" print_of plain.exr plain
 ok "print in the wobbling vial: the stack knows the poses" print_of wobble.exr wobble
 ok "print while sinking" print_of sink.exr sink
 ok "print of light that does not know of the wobble" print_of plain.exr unknown --poses wobble.csv
-ok "print of light that does not know of more wobble" print_of plain.exr more --poses more.csv
 ok "print of light that does not know of the sinking" print_of plain.exr unsunk --poses sink.csv
 
 # 0.3 mm of wobble, known: IoU at least 0.999; 1 mm of sinking, known: at most 0.3 voxels of the print's surface.
 holds "a known wobble does no harm" "$(json wobble.json iou) >= 0.999 && $(json wobble.json ver) == 0"
-holds "an unknown one does" "$(json unknown.json iou) < $(json wobble.json iou) - 0.005 && $(json unknown.json ver) > 0"
-holds "a little more of it even more" "$(json more.json iou) < 0.99"
+holds "an unknown one does" "$(json unknown.json iou) < 0.99"
 holds "nor does known sinking" "$(json sink.json iou) >= 0.999 && $(json sink.json ver) == 0"
 holds "unknown sinking does" "$(json unsunk.json iou) < 0.9"
 ok "surface of the print while sinking, against the print without" vam-sdf sink.vdb plain.vdb --isovalue 0.8 \
