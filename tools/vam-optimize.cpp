@@ -17,6 +17,7 @@
 #include "optimize/methods/method.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
+#include "score/exposure.hpp"
 #include "session/exposure.hpp"
 #include "session/job_volumes.hpp"
 #include "session/printer.hpp"
@@ -104,7 +105,10 @@ void run(const cli::App& app, Options& options) {
   }
   const auto [plan, full_scale, threshold, seconds] = judge_printed(task, *light, sink, scene, info, options, outcome);
   std::optional<optimize::Trials> trials;
-  if (options.printer_tolerances) trials = run_trials(make_trial(scene, seconds, options), task, sink.kept());
+  if (options.printer_tolerances || options.sensitivity) {
+    const double aimed = threshold.value_or(score::aimed_dose(outcome.metrics, options.demands.window.threshold()));
+    trials = run_trials(make_trial(scene, seconds, aimed, options), task, sink.kept());
+  }
   if (planned && plan) {
     session::state_exposure(info.extra, plan->turns, full_scale);
     sink.state(info.extra);

@@ -18,15 +18,16 @@ constexpr std::string_view example = "; write for example 'axis=0.5px,index=0.00
 
 std::string names() {
   std::vector<std::string> all;
-  for (const Tolerance& one : tolerance_table) all.emplace_back(one.name);
+  for (std::size_t i = 0; i < robust_kinds; ++i) all.emplace_back(tolerance_table[i].name);
   return join(all, ", ");
 }
 
 /// Its place in the table.
 std::size_t named(std::string_view name, const std::string& clause) {
   const auto is = [&](const Tolerance& one) { return one.name == name; };
-  const auto found = std::find_if(tolerance_table.begin(), tolerance_table.end(), is);
-  if (found != tolerance_table.end()) return static_cast<std::size_t>(found - tolerance_table.begin());
+  const auto end = tolerance_table.begin() + robust_kinds;
+  const auto found = std::find_if(tolerance_table.begin(), end, is);
+  if (found != end) return static_cast<std::size_t>(found - tolerance_table.begin());
   throw Error{Fault::usage,
               "'" + clause + "': no tolerance is called '" + std::string(name) + "'; there are " + names()};
 }
@@ -75,19 +76,26 @@ std::string tolerances_text(const Tolerances& tolerances) {
 
 std::vector<std::string> exact_quantities(const Tolerances& tolerances) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < tolerances.size(); ++i) {
+  for (std::size_t i = 0; i < robust_kinds; ++i) {
     if (tolerances[i] == 0) names.emplace_back(tolerance_table[i].name);
   }
   return names;
 }
 
 DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, const PrinterDeviation& by) {
-  DeviatingPrinter off{printer, of(tolerances, by, ToleranceKind::angle) * rad_per_deg,
-                       1 + 0.01 * of(tolerances, by, ToleranceKind::lamp)};
+  DeviatingPrinter off{printer,
+                       of(tolerances, by, ToleranceKind::angle) * rad_per_deg,
+                       1 + 0.01 * of(tolerances, by, ToleranceKind::lamp),
+                       of(tolerances, by, ToleranceKind::sink),
+                       of(tolerances, by, ToleranceKind::vial_x),
+                       of(tolerances, by, ToleranceKind::vial_y),
+                       0.01 * of(tolerances, by, ToleranceKind::rim)};
   off.printer.projector.axis_column += of(tolerances, by, ToleranceKind::axis);
   off.printer.resin.index += of(tolerances, by, ToleranceKind::index);
   off.printer.vial.radius_mm *= 1 + 0.01 * of(tolerances, by, ToleranceKind::radius);
   off.printer.resin.psf_mm = std::max(0.0, printer.resin.psf_mm + of(tolerances, by, ToleranceKind::psf));
+  if (const double wider_deg = of(tolerances, by, ToleranceKind::aperture); wider_deg != 0)
+    off.printer.projector.half_angle_deg = printer.projector.half_angle_deg.value_or(0) + wider_deg;
   if (off.intensity > 0 && off.printer.resin.index >= 1 && resin_radius_mm(off.printer.vial) > 0) return off;
   throw Error{Fault::usage, "tolerances: they allow an impossible printer (relative intensity " +
                                 format_number(off.intensity) + ", resin index " +

@@ -219,7 +219,8 @@ void declare_proof(cli::App& app, Options& options) {
 
 void declare_tolerances(cli::App& app, Options& options) {
   std::vector<std::string> all;
-  for (const model::Tolerance& one : model::tolerance_table) {
+  for (std::size_t i = 0; i < model::robust_kinds; ++i) {
+    const model::Tolerance& one = model::tolerance_table[i];
     all.push_back(std::string(one.name) + " (" + std::string(one.meaning) + ")");
   }
   app.group("Tolerances of the printer");
@@ -235,6 +236,11 @@ void declare_tolerances(cli::App& app, Options& options) {
       .only_with(readers("--robust"))
       .excludes({"--grey-target"});
   app.brief("Print well also if the printer deviates by these, e.g. 'axis=0.5px,lamp=3%'.");
+  app.flag("--sensitivity", options.sensitivity,
+           "State which deviation of the printer ends the print first, and at which value: 40 to 80 times the dose of "
+           "a print are computed, as in some 20 to 40 iterations.")
+      .only_with(in_vial)
+      .excludes({"--grey-target", "--slices", "--delivered"});
 }
 
 void declare_grey_levels(cli::App& app, Options& options) {

@@ -212,7 +212,8 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
                                               model::light_width(printer, info.angle_step_deg, !options.in_vial()));
     if (plan) print.seconds = plan->seconds;
     print.threshold = threshold;
-    const verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
+    verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
+    if (options.sensitivity) verdict.words += words_of_ends(*trials);
     append_json(report, verdict);
     const bool stated = options.in_vial() && info.piece.whole() && shown.planned;
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words + what_more_buys(outcome) +
@@ -222,7 +223,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
         outcome.demands, [&](int k) { return model::vertical_magnification(printer) * scene.grid.z_mm(k); });
     add_blurred_faces(report, outcome, scene, target, options);
   }
-  if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);
+  if (trials) report["robust"] = optimize::report(*trials);
   io::write_report(options.report, "vam-optimize", report);
 }
 

@@ -8,6 +8,7 @@
 #include "base/text/text.hpp"
 #include "io/exr/stack_pieces.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/recorded_tolerances.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "session/slices.hpp"
@@ -108,16 +109,17 @@ optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVo
   return task;
 }
 
-optimize::Trial make_trial(const session::Scene& scene, double seconds, const Options& options) {
+optimize::Trial make_trial(const session::Scene& scene, double seconds, double threshold, const Options& options) {
   optimize::Trial trial;
   trial.printer = scene.printer;
-  trial.tolerances = *options.printer_tolerances;
+  trial.tolerances = options.printer_tolerances ? *options.printer_tolerances : io::expected_tolerances(scene.printer);
   trial.setup = [&](const model::Printer& printer) { return session::light_of(printer, scene, options); };
   trial.grid = scene.grid;
   trial.seconds = seconds;
   trial.blur = options.blur;
-  trial.threshold = options.demands.window.threshold();
-  trial.printers = options.yield_printers;
+  trial.threshold = options.printer_tolerances ? options.demands.window.threshold() : threshold;
+  trial.printers = options.printer_tolerances ? options.yield_printers : 0;
+  trial.ends = options.sensitivity;
   return trial;
 }
 

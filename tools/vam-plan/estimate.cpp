@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text/text.hpp"
+#include "io/settings/recorded_tolerances.hpp"
 #include "model/coarser.hpp"
 #include "model/dose/dose_spread.hpp"
 #include "model/dose/stray_cure.hpp"
@@ -13,12 +14,12 @@
 #include "optimize/run/preview.hpp"
 #include "resin/absolute_dose.hpp"
 #include "solid/voxel/size_doubt.hpp"
-#include "vam-plan/filled.hpp"
 
 namespace vam::plan_tool {
 
 namespace {
 
+constexpr auto axis = static_cast<std::size_t>(model::ToleranceKind::axis);
 constexpr int usual_coarseness = 4;
 constexpr double most_coarse_voxels = 2e6;   // of the part, on the coarsest voxels
 constexpr double most_finer_voxels = 0.7e6;  // on those that are taken where coarser ones do not tell
@@ -72,8 +73,8 @@ optimize::Preview preview_of(const Level& level, const model::Printer& printer) 
   task.part = model::covered_box(level.part.volume, model::coverage_rounding);
   task.radius_mm = optics::judged_radius_mm(task.printer, level.part.content.radius_mm);
   task.target = level.part.volume;
-  task.tolerances = model::parse_tolerances(deviations);
-  task.tolerances[static_cast<std::size_t>(model::ToleranceKind::axis)] *=  // of the printer's pixels
+  task.tolerances = io::expected_tolerances(printer);
+  task.tolerances[axis] *=  // of the printer's pixels
       printer.projector.pixel_mm / level.printer.projector.pixel_mm;
   return optimize::preview(task);
 }
@@ -168,6 +169,9 @@ void judge(Estimate& made, const Level& level, const EstimateTask& task) {
   if (!told.prints) made.verdict = leave_open(made.verdict, unknown(made, level, task, ", as " + told.why_not));
   made.wrong = wrong_of(preview, task.stretch_z);
   made.trials = preview.trials;
+  const double pixels = level.printer.projector.pixel_mm / task.printer.projector.pixel_mm;
+  made.trials.tolerances[axis] *= pixels;
+  for (optimize::Single& one : made.trials.singles) one.ends_at *= one.tolerance == axis ? pixels : 1;
   made.by_angles = preview.by_angles;
   made.resin_known = resin::dose_per_radian_mj_cm3(task.printer).has_value();
   made.exposure = exposure_of(preview.outcome, task.printer);

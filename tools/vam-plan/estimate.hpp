@@ -15,7 +15,17 @@
 
 namespace vam::plan_tool {
 
-inline constexpr const char* deviations = "axis=0.5px,index=0.005,angle=0.25deg";
+/// A part on voxels of some size.
+struct Filled {
+  model::Volume volume;
+  solid::FillSummary content;
+};
+/// Throws Error: no_memory.
+[[nodiscard]] Filled filled(const solid::Part& part, double voxel_mm);
+[[nodiscard]] inline solid::Part without_surface(solid::Part part) {
+  part.surface = {};
+  return part;
+}
 
 /// Heights in the print: slices with wrong voxels, and the one with most of them.
 struct WrongHeights {
@@ -28,7 +38,7 @@ struct Estimate {
   verdict::Verdict verdict;             // left open: "unknown at 0.26 mm; --voxel 0.1 tells: ..."
   std::vector<std::string> too_coarse;  // then: what voxels larger than those of the print do not resolve
   std::optional<WrongHeights> wrong;
-  optimize::Trials trials;
+  optimize::Trials trials;                        // of what is expected of the printer
   std::vector<std::pair<int, double>> by_angles;  // optimize::Preview
   bool resin_known = false;
   std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light

@@ -31,15 +31,13 @@ std::string fit_words(const Fit& fit) {
 double window(const optimize::Printed& printed) { return printed.figures.pw / printed.figures.max_dose; }
 
 /// The smaller window of both signs.
-double worst_window(const optimize::Trials::Single& single) {
-  return std::min(window(single.minus), window(single.plus));
-}
+double worst_window(const optimize::Single& single) { return std::min(window(single.minus), window(single.plus)); }
 
 /// "axis +-0.5 px"
-std::string deviation_name(std::size_t tolerance) {
-  const auto& [name, unit, meaning] = model::tolerance_table[tolerance];
-  return std::string(name) + " +-" + format_number(model::parse_tolerances(deviations)[tolerance]) +
-         (unit.empty() ? "" : " " + std::string(unit));
+std::string deviation_name(std::size_t tolerance, double expected) {
+  const model::Tolerance& of = model::tolerance_table[tolerance];
+  return std::string(of.name) + (of.one_way ? " " : " +-") + format_number(expected, 3) +
+         (of.unit.empty() ? "" : " " + std::string(of.unit));
 }
 
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
@@ -79,7 +77,10 @@ std::string estimate_rows(const Estimate& estimate) {
                                       number(wrong->worst_mm) + " mm");
   }
   for (const auto& single : estimate.trials.singles)
-    text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
+    text += row("  " + deviation_name(single.tolerance, estimate.trials.tolerances[single.tolerance]),
+                "process window " + signed_number(worst_window(single)));
+  if (const std::string ends = words_of_ends(estimate.trials); !ends.empty())
+    text += row("  what ends it", ends.substr(2));
   if (!estimate.by_angles.empty()) text += row("angles", angles_words(estimate));
   return text + row("duration", duration_words(estimate));
 }
@@ -99,6 +100,7 @@ void append_json(Json& json, const Estimate& estimate) {
   for (const auto& single : estimate.trials.singles) {
     const std::string name(model::tolerance_table[single.tolerance].name);
     json["pw_deviating"][name] = worst_window(single);
+    if (single.ends_at != 0) json["ends_at"][name] = single.ends_at;
   }
   for (const auto& [angles, pw] : estimate.by_angles) json["pw_by_angles"][std::to_string(angles)] = pw;
   if (!estimate.by_angles.empty()) json["angles_needed"] = angles_needed(estimate);

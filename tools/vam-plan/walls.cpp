@@ -5,7 +5,6 @@
 #include "base/log/log.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "solid/voxel/wall.hpp"
-#include "vam-plan/filled.hpp"
 #include "vam-plan/plan.hpp"
 
 namespace vam::plan_tool {

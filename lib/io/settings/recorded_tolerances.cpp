@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "base/error.hpp"
 #include "base/text/json.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "io/settings/csv_table.hpp"
 
 namespace vam::io {
 
@@ -27,15 +29,9 @@ double sigma(const CalibrationRecord& record, const std::string& name) {
   throw Error{Fault::data, record.path + ": has no standard deviation of " + name + "; run vam-calibrate"};
 }
 
-}  // namespace
-
-model::Tolerances recorded_tolerances(const model::Printer& printer) {
+/// All 0 where there is none.
+model::Tolerances of_records(const model::Printer& printer) {
   const model::Calibration& calibration = printer.calibration;
-  if (calibration.folder.empty()) {
-    throw Error{Fault::usage,
-                "calibration: no calibration.folder in the printer settings; set one, or give "
-                "the tolerances"};
-  }
   model::Tolerances found{};
   const auto set = [&](ToleranceKind what, double one_sigma) {
     found[static_cast<std::size_t>(what)] = sigmas * one_sigma;
@@ -49,8 +45,33 @@ model::Tolerances recorded_tolerances(const model::Printer& printer) {
   }
   if (const auto beam = current_record(calibration, "beam"))
     set(ToleranceKind::psf, sigma(*beam, "axis_fwhm") / sigma_of_fwhm);
+  return found;
+}
+
+}  // namespace
+
+model::Tolerances recorded_tolerances(const model::Printer& printer) {
+  const model::Calibration& calibration = printer.calibration;
+  if (calibration.folder.empty()) {
+    throw Error{Fault::usage,
+                "calibration: no calibration.folder in the printer settings; set one, or give "
+                "the tolerances"};
+  }
+  const model::Tolerances found = of_records(printer);
   if (std::any_of(found.begin(), found.end(), [](double one) { return one > 0; })) return found;
   throw Error{Fault::data, calibration.folder + ": has no record of edges, latency or beam; run vam-calibrate"};
+}
+
+model::Tolerances expected_tolerances(const model::Printer& printer) {
+  const bool recorded = !printer.calibration.folder.empty();
+  model::Tolerances expected = recorded ? of_records(printer) : model::Tolerances{};
+  if (const auto wobble_mm = recorded ? wobble_in_force_mm(printer.calibration) : std::nullopt) {
+    for (const auto kind : {ToleranceKind::vial_x, ToleranceKind::vial_y})
+      expected[static_cast<std::size_t>(kind)] = *wobble_mm;
+  }
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    if (expected[i] == 0) expected[i] = model::tolerance_table[i].typical;
+  return expected;
 }
 
 }  // namespace vam::io

@@ -14,4 +14,8 @@ namespace vam::io {
 /// current_record() throws.
 [[nodiscard]] model::Tolerances recorded_tolerances(const model::Printer& printer);
 
+/// Of each quantity what the records say, and eccentricity by the wobble in force; where they say nothing, or there is
+/// no folder, what is typical.
+[[nodiscard]] model::Tolerances expected_tolerances(const model::Printer& printer);
+
 }  // namespace vam::io

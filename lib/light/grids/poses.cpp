@@ -56,11 +56,15 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
   return poses;
 }
 
+bool may_move(const model::Printer& printer, double judged_mm) {
+  return judged_mm <= optics::writable_radius_mm(printer) + 1e-6;
+}
+
 void require_in_reach(const model::Poses& poses, const model::Printer& printer, double judged_mm) {
-  const double writable_mm = optics::writable_radius_mm(printer);
-  if (model::farthest_mm(poses, model::Moves::vial) == 0 || judged_mm <= writable_mm + 1e-6) return;
+  if (model::farthest_mm(poses, model::Moves::vial) == 0 || may_move(printer, judged_mm)) return;
   throw Error{Fault::data, "poses: the vial is displaced, and the part reaches beyond the writable radius of " +
-                               format_number(writable_mm, 4) + " mm; only one of the two is supported"};
+                               format_number(optics::writable_radius_mm(printer), 4) +
+                               " mm; only one of the two is supported"};
 }
 
 }  // namespace vam::light

@@ -85,6 +85,21 @@ void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& 
   setup.first_row_mm = setup.grid.z_mm(first);
 }
 
+void displace(VialSetup& setup, double vial_x_mm, double vial_y_mm, double sinking_mm) {
+  if (vial_x_mm == 0 && vial_y_mm == 0 && sinking_mm == 0) return;
+  const int frames = setup.turn.rows;
+  if (setup.poses.empty()) setup.poses.resize(static_cast<std::size_t>(frames));
+  for (int k = 0; k < frames; ++k) {
+    const double stage = setup.turn.start_rad + k * setup.turn.step_rad;
+    const double c = std::cos(setup.direction * stage), s = std::sin(setup.direction * stage);
+    model::Pose& pose = setup.poses[static_cast<std::size_t>(k)];
+    pose.angle_deg = stage * deg_per_rad;
+    pose.dx_mm += c * vial_x_mm + s * vial_y_mm;
+    pose.dy_mm += c * vial_y_mm - s * vial_x_mm;
+    pose.dz_mm -= sinking_mm * (k + 0.5) / frames;
+  }
+}
+
 VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment& alignment,
                      const model::StackInfo& info, const model::Grid& grid) {
   VialSetup setup = on_the_bench(printer, alignment, grid);

@@ -48,6 +48,10 @@ struct VialSetup {
 /// stand where slices do. Without poses nothing changes. Throws Fault::data when no row does.
 void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& slices);
 
+/// Moves the poses of a turn's frames, or none, so that the vial's axis is off the rotation axis, where it is at stage
+/// angle 0, and the part sinks evenly while they are shown.
+void displace(VialSetup& setup, double vial_x_mm, double vial_y_mm, double sinking_mm);
+
 /// Light that a projector's stack holds: its rows, angles and poses. Throws Fault::data unless its columns are the
 /// printer's and its slices the grid's.
 [[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment& alignment,

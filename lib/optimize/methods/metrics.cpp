@@ -75,8 +75,10 @@ namespace {
 
 /// As label(s, i) counts the voxels.
 template <class LabelOf>
-std::vector<model::DoseStatistics> counted(std::span<const Slab> dose, const Problem& problem, LabelOf label) {
-  std::vector<model::DoseStatistics> slices(problem.slices);
+std::vector<model::DoseStatistics> counted(std::span<const Slab> dose, const Problem& problem, LabelOf label,
+                                           std::optional<double> threshold = std::nullopt) {
+  std::vector<model::DoseStatistics> slices;
+  for (int k = 0; k < problem.slices; ++k) slices.emplace_back(threshold);
   const int items = (problem.slices + lanes_per_item - 1) / lanes_per_item;
   parallel_for(items, [&](int item) {
     const int first = item * lanes_per_item;
@@ -114,10 +116,12 @@ float coverage(const Problem& problem, std::size_t s, std::size_t i) {
 
 }  // namespace
 
-std::vector<model::DoseStatistics> whole_statistics(std::span<const Slab> dose, const Problem& problem) {
-  return counted(dose, problem, [&](std::size_t s, std::size_t i) {
+std::vector<model::DoseStatistics> whole_statistics(std::span<const Slab> dose, const Problem& problem,
+                                                    std::optional<double> threshold) {
+  const auto label = [&](std::size_t s, std::size_t i) {
     return is_thin_part(problem, s, i) ? Label::surface : problem.labels[s][i];
-  });
+  };
+  return counted(dose, problem, label, threshold);
 }
 
 std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem) {

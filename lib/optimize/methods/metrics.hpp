@@ -2,6 +2,7 @@
 // Figures of merit of doses, slice by slice.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace vam::optimize {
 /// Dose statistics of each slice in use.
 [[nodiscard]] std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const Problem& problem);
 /// The same of a result, as vam-score counts: what is part of a thin slice is cut by the surface.
-[[nodiscard]] std::vector<model::DoseStatistics> whole_statistics(std::span<const Slab> dose, const Problem& problem);
+[[nodiscard]] std::vector<model::DoseStatistics> whole_statistics(std::span<const Slab> dose, const Problem& problem,
+                                                                  std::optional<double> threshold = std::nullopt);
 /// Statistics of the voxels that the surface cuts, as part from half coverage on, else void; without those that are
 /// constrained (Demands::surface).
 [[nodiscard]] std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem);

@@ -84,6 +84,7 @@ Preview preview(const PreviewTask& wanted) {
   trial.grid = lit.grid;
   trial.seconds = seconds;
   trial.threshold = threshold;
+  trial.ends = true;
   made.trials = run_trials(trial, task, frames);
   for (const int angles : {120, 180, 240, 360, 720}) {
     if (setup.hold_rad == 0) break;

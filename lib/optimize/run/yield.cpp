@@ -2,13 +2,17 @@
 #include "optimize/run/yield.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/json.hpp"
+#include "base/text/text.hpp"
+#include "light/grids/poses.hpp"
 #include "light/operators/make_operator.hpp"
 #include "model/dose/dose_spread.hpp"
 #include "model/magnification.hpp"
+#include "optimize/methods/metrics.hpp"
 #include "optimize/run/private/shown_pass.hpp"
 #include "optimize/target/exclusions.hpp"
 
@@ -31,14 +35,44 @@ class Bench {
     light::VialSetup setup = trial_.setup(off.printer);
     setup.angle_offset_rad += off.angle_offset_rad;
     setup.z_scale = model::vertical_magnification(trial_.printer);  // of which the part was sliced
+    light::displace(setup, off.vial_x_mm, off.vial_y_mm, off.sinking_mm);
     const auto clear = light::make_operator(setup, input_.inserts);
     const double blur_mm = trial_.blur ? model::spread_mm(off.printer.resin, trial_.seconds) : 0;
     const PassLight light(*clear, nullptr, blur_mm / trial_.grid.voxel_mm, trial_.grid.nz);
     const Frames frames(frames_, clear->image());
-    return judged(dose_of(all(), light, [&](int k) { return frames[k]; }), off.intensity);
+    const auto shown = [&](int k) { return dimmed(frames[k], z_mm(setup, k), off.rim); };
+    return judged(dose_of(all(), light, shown), off.intensity);
+  }
+
+  [[nodiscard]] Printed print(std::size_t tolerance, double multiple) const {
+    model::PrinterDeviation by{};
+    by[tolerance] = multiple;
+    return print(by);
+  }
+
+  /// Whether the vial may be moved, as its rays are known in its place only where the part is near its wall.
+  [[nodiscard]] bool may_move() const {
+    return light::may_move(trial_.printer, trial_.setup(trial_.printer).radius_mm);
   }
 
  private:
+  /// Of a row of light, in the plane of the rotation axis.
+  [[nodiscard]] static double z_mm(const light::VialSetup& setup, int k) {
+    return (setup.rows > 0 ? setup.first_row_mm : setup.grid.z_mm(0)) + k * setup.grid.voxel_mm;
+  }
+
+  [[nodiscard]] Image dimmed(Image image, double z, double rim) const {
+    if (rim == 0) return image;
+    const model::Projector& p = trial_.printer.projector;
+    const double half_x = 0.5 * (p.columns - 1), half_y = 0.5 * (p.rows - 1);
+    const double y = p.axis_row - z / p.pixel_mm - half_y;
+    for (int x = 0; x < image.width; ++x) {
+      const double share = ((x - half_x) * (x - half_x) + y * y) / (half_x * half_x + half_y * half_y);
+      for (int a = 0; a < image.height; ++a) image(x, a) *= static_cast<float>(1 - rim * share);
+    }
+    return image;
+  }
+
   [[nodiscard]] Pass all() const { return {0, trial_.grid.nz, 0, trial_.grid.nz}; }
   [[nodiscard]] PassInput read(const Trial& trial, const VolumeTask& task) const {
     const SliceReader reader(task.source, {trial.grid.nx, trial.grid.ny});
@@ -46,17 +80,12 @@ class Bench {
         all(), [](int k) { return k; }, reader, {trial.grid.nx, trial.grid.ny}, task.circle, task.demands, true);
   }
 
-  [[nodiscard]] Printed judged(const std::vector<Slab>& dose, double intensity) const {
+  [[nodiscard]] Printed judged(std::vector<Slab> dose, double intensity) const {
     const auto unit = static_cast<float>(intensity / trial_.threshold);
-    std::vector<model::DoseStatistics> slices;
-    for (int k = 0; k < trial_.grid.nz; ++k) slices.emplace_back(1.0);
-    parallel_for(trial_.grid.nz, [&](int k) {
-      const std::vector<Label>& labels = input_.problem.labels[k / lanes];
-      const auto& values = dose[k / lanes].values;
-      for (std::size_t i = k % lanes; i < values.size(); i += lanes) slices[k].add(unit * values[i], labels[i]);
-    });
+    for (Slab& slab : dose)
+      for (float& value : slab.values) value *= unit;
     model::DoseStatistics all(1.0);
-    for (const model::DoseStatistics& slice : slices) all.merge(slice);
+    for (const auto& slice : whole_statistics(dose, input_.problem, 1.0)) all.merge(slice);
     return {all.metrics(false), all.at_threshold()->wrong};
   }
 
@@ -65,9 +94,70 @@ class Bench {
   PassInput input_;
 };
 
-double least_margin(const Trials::Single& single) { return std::min(single.minus.margin(), single.plus.margin()); }
+using Margin = std::function<double(double multiple)>;
+
+/// The multiple, up to `reach`, at which the margin is lost, to 2 %: by doubling, then by secants that step a little
+/// beyond the root, to both sides in turn. 0: none.
+double end(const Margin& margin, double at_low, double at_high, double reach) {
+  constexpr double sure = 0.02;
+  double low = 0, high = 1;
+  while (at_high > 0) {
+    if (high >= reach) return 0;
+    low = high;
+    at_low = at_high;
+    at_high = margin(high *= 2);
+  }
+  for (bool beyond = true; high - low > sure * high;) {
+    const double root = low + (high - low) * at_low / std::max(at_low - at_high, 1e-12);
+    const double tenth = 0.1 * (high - low);
+    const double x = std::clamp(root + (beyond ? 0.4 : -0.4) * sure * high, low + tenth, high - tenth);
+    const double at_x = margin(x);
+    beyond = at_x > 0;
+    (beyond ? low : high) = x;
+    (beyond ? at_low : at_high) = at_x;
+  }
+  return 0.5 * (low + high);
+}
+
+std::vector<Single> singles_of(const Trial& trial, const Bench& bench) {
+  std::vector<Single> all;
+  for (std::size_t i = 0; i < trial.tolerances.size(); ++i) {
+    const auto kind = static_cast<model::ToleranceKind>(i);
+    const bool moves = kind == model::ToleranceKind::vial_x || kind == model::ToleranceKind::vial_y;
+    if (trial.tolerances[i] == 0 || (moves && !bench.may_move())) continue;
+    const Printed plus = bench.print(i, 1);
+    all.push_back({i, model::tolerance_table[i].one_way ? plus : bench.print(i, -1), plus});
+  }
+  return all;
+}
+
+bool is_costlier(const Single& a, const Single& b) { return a.least_margin() < b.least_margin(); }
+
+/// The least of their tolerance first.
+void find_ends(std::vector<Single>& singles, const Trial& trial, const Bench& bench, double as_set) {
+  std::stable_sort(singles.begin(), singles.end(), is_costlier);
+  double reach = singles.front().least_margin() > 0 ? farthest_end : 1;
+  for (Single& one : singles) {
+    for (const double way : {1.0, -1.0}) {
+      if (way < 0 && model::tolerance_table[one.tolerance].one_way) continue;
+      const Margin at = [&](double multiple) { return bench.print(one.tolerance, way * multiple).margin(); };
+      const double found = way * end(at, as_set, (way > 0 ? one.plus : one.minus).margin(), reach);
+      if (one.ends_at == 0 || (found != 0 && std::abs(found) < std::abs(one.ends_at))) one.ends_at = found;
+    }
+    reach = 1;
+  }
+  const auto share = [](const Single& one) { return one.ends_at == 0 ? farthest_end : std::abs(one.ends_at); };
+  std::stable_sort(singles.begin(), singles.end(), [&](const auto& a, const auto& b) { return share(a) < share(b); });
+  for (Single& one : singles) one.ends_at *= trial.tolerances[one.tolerance];
+}
+
+std::string amount(double value, const model::Tolerance& of) {
+  return format_number(value, 2) + (of.unit.empty() ? "" : " ") + std::string(of.unit);
+}
 
 }  // namespace
+
+double Single::least_margin() const { return std::min(minus.margin(), plus.margin()); }
 
 double Printed::margin() const { return std::min(figures.min_part - 1, 1 - figures.max_void); }
 
@@ -79,21 +169,34 @@ Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Im
   const Bench bench(trial, task, frames);
   Progress progress("judging", trial.printers);
   Trials trials;
+  trials.tolerances = trial.tolerances;
   trials.nominal = bench.print({});
-  for (std::size_t i = 0; i < trial.tolerances.size(); ++i) {
-    if (trial.tolerances[i] == 0) continue;
-    model::PrinterDeviation plus{}, minus{};
-    plus[i] = 1;
-    minus[i] = -1;
-    trials.singles.push_back({i, bench.print(minus), bench.print(plus)});
-  }
-  const auto costlier = [](const auto& a, const auto& b) { return least_margin(a) < least_margin(b); };
-  trials.costliest = std::min_element(trials.singles.begin(), trials.singles.end(), costlier)->tolerance;
+  trials.singles = singles_of(trial, bench);
+  trials.costliest = std::min_element(trials.singles.begin(), trials.singles.end(), is_costlier)->tolerance;
+  if (const double margin = trials.nominal.margin(); trial.ends && margin > 0)
+    find_ends(trials.singles, trial, bench, margin);
   for (; trials.printers < trial.printers; ++trials.printers) {
     if (bench.print(model::drawn_deviation(seed, trials.printers)).wrong <= allowed_wrong) ++trials.good;
     progress.tick();
   }
   return trials;
+}
+
+std::string words_of_ends(const Trials& trials) {
+  if (!(trials.nominal.margin() > 0)) return "";
+  std::string text;
+  for (const Single& one : trials.singles) {
+    const model::Tolerance& of = model::tolerance_table[one.tolerance];
+    if (one.ends_at == 0) continue;
+    text += (text.empty() ? "; " : ", then ") + std::string(of.name) + " of " +
+            (of.one_way        ? ""
+             : one.ends_at < 0 ? "-"
+                               : "+") +
+            amount(std::abs(one.ends_at), of) + " (expected: " + amount(trials.tolerances[one.tolerance], of) + ")" +
+            (text.empty() ? " ends it first" : "");
+  }
+  return text.empty() ? "; no deviation that is expected of the printer ends it, nor the worst of them eightfold"
+                      : text;
 }
 
 namespace {
@@ -109,18 +212,19 @@ Json figures_of(const Printed& printed) {
 
 }  // namespace
 
-Json report(const Trials& trials, const model::Tolerances& tolerances) {
+Json report(const Trials& trials) {
   Json json;
   json["nominal"] = figures_of(trials.nominal);
-  for (const Trials::Single& single : trials.singles) {
+  for (const Single& single : trials.singles) {
     const model::Tolerance& tolerance = model::tolerance_table[single.tolerance];
     json["single"].push_back({{"name", tolerance.name},
-                              {"tolerance", tolerances[single.tolerance]},
+                              {"tolerance", trials.tolerances[single.tolerance]},
                               {"unit", tolerance.unit},
                               {"minus", figures_of(single.minus)},
                               {"plus", figures_of(single.plus)}});
+    if (single.ends_at != 0) json["single"].back()["ends_at"] = single.ends_at;
   }
-  json["exact"] = model::exact_quantities(tolerances);
+  json["exact"] = model::exact_quantities(trials.tolerances);
   json["costliest"] = model::tolerance_table[trials.costliest].name;
   json["printers"] = trials.printers;
   if (trials.printers > 0) json["yield"] = static_cast<double>(trials.good) / trials.printers;
