@@ -10,17 +10,28 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"
-#include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/gate.hpp"
 #include "solid/voxel/isosurface.hpp"
+#include "solid/wrap/wrap.hpp"
 
 namespace vam::session {
 
+io::ColouredMesh read_solid(const std::string& path, const std::string& others) {
+  io::ColouredMesh read = io::read_coloured_mesh(path, others);
+  if (read.taken_away == 0) return read;
+  auto& triangles = read.mesh.triangles;
+  const auto from = triangles.end() - static_cast<std::ptrdiff_t>(read.taken_away);
+  model::TriangleSoup taken_away{read.mesh.points, {from, triangles.end()}};
+  triangles.erase(from, triangles.end());
+  read.mesh = solid::difference(std::move(read.mesh), std::move(taken_away), io::input_name(path));
+  return read;
+}
+
 model::TriangleSoup mesh_in_unit(const std::string& path, bool given, const std::string& flag,
                                  const std::string& scale) {
-  io::ColouredMesh read = io::read_coloured_mesh(path);
+  io::ColouredMesh read = read_solid(path);
   if (given && read.in_mm) {
     throw Error{Fault::usage, flag + ": " + io::input_name(path) + " states its unit, as 3MF files do; omit " + flag +
                                   ", or give " + scale + " to change the size"};
@@ -86,7 +97,7 @@ model::TriangleSoup array_in_unit(const std::string& path, const ArrayOptions& a
 
 model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue,
                                  const std::function<void(model::Volume&)>& prepare, const MeasureSurface& measure) {
-  if (!io::is_volume(path)) return io::read_mesh(path);
+  if (!io::is_volume(path)) return read_solid(path).mesh;
   const std::string name = io::input_name(path);
   if (!isovalue) {
     throw Error{Fault::usage, name + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/app.hpp"
+#include "io/mesh/file.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/mesh.hpp"
 #include "model/metadata.hpp"
@@ -24,6 +25,9 @@ struct ArrayOptions {
 /// --copies, --beside and --gap, not for these kinds and not with these options.
 void add_array(cli::App& app, ArrayOptions& options, const std::vector<std::string>& not_for,
                const std::vector<std::string>& excludes);
+
+/// io::read_coloured_mesh() without what a slicer takes away from it. Throws also as solid::difference().
+[[nodiscard]] io::ColouredMesh read_solid(const std::string& path, const std::string& others = "");
 
 /// A mesh whose unit may be said on the command line. Throws Fault::usage where `flag` is given for a file that states
 /// its unit, by which that of the command line would be multiplied; `scale` is the option to change the size.

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <map>
 
-#include "io/mesh/file.hpp"
 #include "plot/page.hpp"
+#include "session/surface.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "vam-report/layers.hpp"
 #include "vam-report/page_parts.hpp"
@@ -65,7 +65,7 @@ ShownMesh shown(const ShownMesh& mesh) {
 std::vector<ShownMesh> read_meshes(const std::vector<std::string>& paths) {
   std::vector<ShownMesh> meshes;
   for (const std::string& path : paths) {
-    io::ColouredMesh read = io::read_coloured_mesh(path);
+    io::ColouredMesh read = session::read_solid(path);
     meshes.push_back({file_name(path), std::move(read.mesh), std::move(read.colours)});
   }
   std::stable_sort(meshes.begin(), meshes.end(),

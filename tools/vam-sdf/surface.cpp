@@ -3,7 +3,6 @@
 #include "session/surface.hpp"
 
 #include "base/stats/median.hpp"
-#include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
 #include "metrology/ost/surface_uncertainty.hpp"
 #include "vam-sdf/steps.hpp"
@@ -14,7 +13,7 @@ PrintSurface read_print(const cli::App& app, const Options& options, std::option
   PrintSurface print;
   if (!io::is_volume(options.print)) {
     app.require_for("meshes", options.print);
-    io::ColouredMesh read = io::read_coloured_mesh(options.print);
+    io::ColouredMesh read = session::read_solid(options.print);
     print.mesh = std::move(read.mesh);
     print.uncertainty_mm = std::move(read.uncertainty);
     return print;

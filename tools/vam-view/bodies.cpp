@@ -8,7 +8,6 @@
 #include "base/error.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/mesh/file.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "plot/missing.hpp"
 #include "plot/render.hpp"
@@ -48,7 +47,7 @@ model::TriangleSoup beyond(const model::TriangleSoup& mesh, const std::vector<fl
 }  // namespace
 
 plot::ImageFigure mesh_figure(const std::string& path, const plot::ViewOptions& view) {
-  io::ColouredMesh read = io::read_coloured_mesh(
+  io::ColouredMesh read = session::read_solid(
       path, "a volume (VDB), a stack (EXR), a video (MKV, MP4), a folder of images, a trace of vam-optimize (.csv)");
   const plot::Body body{std::move(read.mesh), std::move(read.colours)};
   return single(body, view, "");

@@ -52,6 +52,11 @@ class Package {
       if (root_.empty() && name.ends_with(".model")) root_ = name;
     }
     if (root_.empty()) throw MeshProblem{"not a 3MF file: the zip archive has no 3D model"};
+    for (const char* settings : {"Metadata/Slic3r_PE_model.config", "Metadata/model_settings.config"}) {
+      if (!archive_.has(settings) || !volumes_.empty()) continue;
+      for (VolumeType& volume : parse_volume_types([&](const auto& take) { read(settings, take); }))
+        volumes_[volume.object].push_back(std::move(volume));
+    }
   }
 
   PolygonSoup placed() {
@@ -62,8 +67,10 @@ class Package {
     require_room(all);
     soup_.points.reserve(all.points);
     soup_.faces.reserve(all.triangles);
-    for (const Instance& item : build) place(root_, item, {});
-    if (soup_.faces.empty() && all.instances == 0) throw MeshProblem{"its build has supports only, and no part"};
+    for (const Instance& item : build) place(root_, item, {}, Role::added);
+    if (soup_.faces.empty() && ignored_) throw MeshProblem{"its build has supports only, and no part"};
+    soup_.taken_away = taken_away_.size();
+    soup_.faces.insert(soup_.faces.end(), taken_away_.begin(), taken_away_.end());
     return std::move(soup_);
   }
 
@@ -130,10 +137,7 @@ class Package {
       throw MeshProblem{"its components are nested deeper than " + std::to_string(max_depth) +
                         "; save it as a plain mesh (STL)"};
     const Object3mf& made_of = object(name, instance.object);
-    if (made_of.support) return count = {0, 0, 0, false};
-    if (!made_of.unread.empty()) {
-      throw MeshProblem{which + " has a " + excerpt(made_of.unread) + ", which is not read; export it as a plain mesh"};
-    }
+    if (!made_of.problem.empty()) throw MeshProblem{which + " " + made_of.problem + "; export it as a plain mesh"};
     count.triangles = made_of.triangles.size();
     count.points = made_of.points.size();
     for (const Instance& component : made_of.components) add(count, expanded(name, component, depth + 1));
@@ -141,25 +145,46 @@ class Package {
     return count;
   }
 
-  void place(const std::string& from, const Instance& instance, const ComponentPlacement& outer) {
+  // What a volume of this type is for within one of that role.
+  static Role within(Role outer, const std::string& type, const std::string& which) {
+    const Role own = role_of(type);
+    if (outer == Role::ignored || own == Role::added) return outer;
+    if (own != Role::refused) return own;
+    throw MeshProblem{which + " is of type " + excerpt(type) + ", which is not printed; export it as a plain mesh"};
+  }
+
+  void place(const std::string& from, const Instance& instance, const ComponentPlacement& outer, Role role) {
     const std::string name = part_name(from, instance);
+    const std::string which = "object " + std::to_string(instance.object);
     const Object3mf& made_of = object(name, instance.object);
-    if (made_of.support) return;
+    if (made_of.components.empty()) role = within(role, made_of.type, which);
     const ComponentPlacement placement = instance.placement.then(outer);
     const bool mirrored = placement.mirrors();  // 3MF core specification, 4.1: the outside stays outside
     const int first = count_of(soup_.points);
     const int last = count_of(made_of.points);
     for (const auto& point : made_of.points) soup_.points.push_back(placement(point));
-    for (auto [a, b, c] : made_of.triangles) {
+    std::vector<Role> roles(made_of.triangles.size(), role);
+    std::map<unsigned, Role> inner;  // of components
+    for (const VolumeType& volume : name == root_ ? volumes_[instance.object] : std::vector<VolumeType>{}) {
+      const Role own = within(role, volume.type, which);
+      if (volume.component != 0) inner[volume.component] = own;
+      if (volume.component != 0) continue;
+      for (std::size_t t = volume.first; t <= volume.last && t < roles.size(); ++t) roles[t] = own;
+    }
+    for (std::size_t t = 0; t < roles.size(); ++t) {
+      auto [a, b, c] = made_of.triangles[t];
       for (const int corner : {a, b, c}) {
         if (corner >= 0 && corner < last) continue;
-        throw MeshProblem{"object " + std::to_string(instance.object) + " uses vertex " + std::to_string(corner) +
-                          " of " + std::to_string(last) + " (counted from 0); mend it, or save the mesh again"};
+        throw MeshProblem{which + " uses vertex " + std::to_string(corner) + " of " + std::to_string(last) +
+                          " (counted from 0); mend it, or save the mesh again"};
       }
       if (mirrored) std::swap(b, c);
-      soup_.faces.push_back({first + a, first + b, first + c});
+      ignored_ = ignored_ || roles[t] == Role::ignored;
+      if (roles[t] == Role::added) soup_.faces.push_back({first + a, first + b, first + c});
+      if (roles[t] == Role::taken_away) taken_away_.push_back({first + a, first + b, first + c});
     }
-    for (const Instance& component : made_of.components) place(name, component, placement);
+    for (const Instance& component : made_of.components)
+      place(name, component, placement, inner.contains(component.object) ? inner[component.object] : role);
   }
 
   ZipArchive archive_;
@@ -168,36 +193,25 @@ class Package {
   std::string root_;
   std::map<std::string, ModelPart> parts_;
   std::map<std::pair<std::string, unsigned>, Expanded> counted_;
+  std::map<unsigned, std::vector<VolumeType>> volumes_;  // of slicers, by objects of the root part
+  bool ignored_ = false;                                 // something was
+  std::vector<std::vector<int>> taken_away_;             // faces
   PolygonSoup soup_;
 };
 
 }  // namespace
 
-std::array<double, 3> ComponentPlacement::operator()(const std::array<double, 3>& p) const {
-  std::array<double, 3> moved = rows[3];
-  for (std::size_t from = 0; from < 3; ++from) {
-    for (std::size_t to = 0; to < 3; ++to) moved[to] += p[from] * rows[from][to];
-  }
-  return moved;
+Vector3 ComponentPlacement::operator()(const Vector3& p) const {
+  return rows[3] + p[0] * rows[0] + p[1] * rows[1] + p[2] * rows[2];
 }
 
 ComponentPlacement ComponentPlacement::then(const ComponentPlacement& outer) const {
-  ComponentPlacement both;
-  for (std::size_t row = 0; row < 4; ++row) {
-    std::array<double, 3> sum = row < 3 ? std::array<double, 3>{} : outer.rows[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t column = 0; column < 3; ++column) sum[column] += rows[row][k] * outer.rows[k][column];
-    }
-    both.rows[row] = sum;
-  }
-  return both;
+  ComponentPlacement turn = outer;
+  turn.rows[3] = {};
+  return {{turn(rows[0]), turn(rows[1]), turn(rows[2]), outer(rows[3])}};
 }
 
-bool ComponentPlacement::mirrors() const {
-  const auto& [a, b, c, shift] = rows;
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]) <
-         0;
-}
+bool ComponentPlacement::mirrors() const { return dot(rows[0], cross(rows[1], rows[2])) < 0; }
 
 PolygonSoup parse_3mf(const std::string& bytes) { return Package(bytes).placed(); }
 

@@ -142,6 +142,7 @@ ColouredMesh triangulated(PolygonSoup&& soup) {
   mesh.points = std::move(soup.points);
   made.colours = std::move(soup.colours);
   made.uncertainty = std::move(soup.uncertainty);
+  made.taken_away = soup.taken_away;
   return made;
 }
 
@@ -156,7 +157,7 @@ ColouredMesh parsed(const std::string& bytes, const std::string& name, const std
 }
 
 auto members(ColouredMesh& made) {
-  return std::tie(made.mesh.points, made.mesh.triangles, made.colours, made.uncertainty);
+  return std::tie(made.mesh.points, made.mesh.triangles, made.colours, made.uncertainty, made.taken_away);
 }
 
 // Once more, as what a child sends is not believed.
@@ -164,7 +165,7 @@ void check_indices(const ColouredMesh& made, const std::string& name) {
   const model::TriangleSoup& mesh = made.mesh;
   const int points = count_of(mesh.points);
   const auto whole = [&](const auto& values) { return values.empty() || values.size() == mesh.points.size(); };
-  if (!whole(made.colours) || !whole(made.uncertainty))
+  if (!whole(made.colours) || !whole(made.uncertainty) || made.taken_away > mesh.triangles.size())
     throw Error{Fault::data, name + ": is damaged (its parser failed)"};
   for (const auto& triangle : mesh.triangles) {
     for (const int corner : triangle) {

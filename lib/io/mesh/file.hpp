@@ -24,6 +24,7 @@ struct ColouredMesh {
   model::TriangleSoup mesh;
   std::vector<std::array<std::uint8_t, 3>> colours;  // one a point, or none
   std::vector<float> uncertainty;                    // the same
+  std::size_t taken_away = 0;                        // last triangles, around what a slicer takes away from the rest
   bool in_mm = false;                                // the file states its unit, which was converted
 };
 [[nodiscard]] ColouredMesh read_coloured_mesh(const std::string& path, const std::string& others = "");

@@ -57,15 +57,6 @@ bool has_vertex_line(const std::string& text) {
   return false;
 }
 
-void write_plain_ply(const std::string& path, const model::TriangleSoup& mesh,
-                     const std::vector<std::string>& comments) {
-  write_ply(path, mesh, {}, comments);
-}
-
-void write_plain_stl(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>&) {
-  write_stl(path, mesh);
-}
-
 void write_obj(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments) {
   OutputFile file(path);
   for (const std::string& comment : comments) file.write("# " + printable(comment) + "\n");
@@ -113,8 +104,12 @@ void give_up(const char* format, const PolygonSoup& soup) {
 
 const std::vector<MeshFormat>& mesh_formats() {
   static const std::vector<MeshFormat> formats{
-      {".3mf", "3MF", is_3mf, parse_3mf, write_3mf},       {".ply", "PLY", is_ply, parse_ply, write_plain_ply},
-      {".stl", "STL", is_stl, parse_stl, write_plain_stl}, {".off", "OFF", is_off, parse_off, nullptr},
+      {".3mf", "3MF", is_3mf, parse_3mf, write_3mf},
+      {".ply", "PLY", is_ply, parse_ply,
+       [](const auto& path, const auto& mesh, const auto& comments) { write_ply(path, mesh, {}, comments); }},
+      {".stl", "STL", is_stl, parse_stl,
+       [](const auto& path, const auto& mesh, const auto&) { write_stl(path, mesh); }},
+      {".off", "OFF", is_off, parse_off, nullptr},
       {".obj", "OBJ", is_obj, parse_obj, write_obj},
   };
   return formats;

@@ -7,13 +7,11 @@
 #include <exception>
 #include <memory>
 #include <type_traits>
-#include <utility>
 
 #include "base/index.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "io/mesh/private/formats.hpp"
-#include "io/mesh/private/text.hpp"
 
 namespace vam::io {
 
@@ -60,6 +58,10 @@ void XMLCALL on_end(void* data, const char*) {
   });
 }
 
+void XMLCALL on_text(void* data, const char* text, int size) {
+  guarded(data, [&](const Parsing& parsing) { parsing.events.text({text, static_cast<std::size_t>(size)}); });
+}
+
 void XMLCALL on_namespace(void* data, const char* prefix, const char* space) {
   guarded(data, [&](const Parsing& parsing) {
     if (parsing.events.declare && prefix != nullptr && space != nullptr) parsing.events.declare(prefix, space);
@@ -82,6 +84,13 @@ std::optional<std::string_view> XmlElement::attribute(std::string_view wanted) c
   return std::nullopt;
 }
 
+void XmlElement::wrong(std::string_view wanted) const {
+  const auto text = attribute(wanted);
+  throw MeshProblem{"its <" + std::string(name) + "> has " +
+                    (text ? std::string(wanted) + " " + excerpt(*text) : "no " + std::string(wanted)) +
+                    "; it is damaged"};
+}
+
 void parse_xml(const ByteFeed& feed, const XmlEvents& events) {
   const std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser(
       XML_ParserCreateNS(nullptr, separator), XML_ParserFree);
@@ -89,6 +98,7 @@ void parse_xml(const ByteFeed& feed, const XmlEvents& events) {
   Parsing parsing{parser.get(), events, nullptr};
   XML_SetUserData(parser.get(), &parsing);
   XML_SetElementHandler(parser.get(), on_begin, on_end);
+  if (events.text) XML_SetCharacterDataHandler(parser.get(), on_text);
   XML_SetStartNamespaceDeclHandler(parser.get(), on_namespace);
   XML_SetStartDoctypeDeclHandler(parser.get(), on_doctype);
   const auto parse = [&](std::string_view bytes, bool last) {
@@ -112,15 +122,16 @@ void parse_xml(const ByteFeed& feed, const XmlEvents& events) {
 namespace {
 
 constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+constexpr std::string_view beam_extension = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
 
-// Extensions without which the shape of an object is still what its triangles say. Beam lattices are refused object by
-// object, as a file may declare the extension without using it.
-constexpr std::array<std::string_view, 5> harmless{
+// Extensions that are read, or without which the shape of an object is still what its triangles say.
+constexpr std::array<std::string_view, 6> known_extensions{
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
-    "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02",
-    "http://schemas.microsoft.com/3dmanufacturing/beamlattice/balls/2020/07",
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
+    "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07",
+    beam_extension,
+    "http://schemas.microsoft.com/3dmanufacturing/beamlattice/balls/2020/07",
 };
 
 // 3MF core specification, 3.4: millimetre when absent.
@@ -140,16 +151,18 @@ class ModelReader {
 
   void begin(const XmlElement& element) {
     ++depth_;
+    metadata_.clear();
     if (element.space != core) {
-      // A shape of another kind stands beside the mesh or, a beam lattice, in it.
-      if (object_ != nullptr && (depth_ == object_depth_ + 1 || element.name == "beamlattice")) unread(element);
+      begin_of_extension(element);
     } else if (element.name == "vertex" && object_ != nullptr) {
       object_->points.push_back(
-          {unit_ * number(element, "x"), unit_ * number(element, "y"), unit_ * number(element, "z")});
+          {unit_ * element.number("x"), unit_ * element.number("y"), unit_ * element.number("z")});
     } else if (element.name == "triangle" && object_ != nullptr) {
       add_triangle(element);
     } else if (element.name == "component" && object_ != nullptr) {
       object_->components.push_back(instance(element));
+    } else if (element.name == "metadata" && object_ != nullptr) {
+      metadata_ = element.attribute("name").value_or("");
     } else if (element.name == "item") {
       if (element.attribute("printable").value_or("1") != "0") part_.build.push_back(instance(element));
     } else if (element.name == "object") {
@@ -160,8 +173,18 @@ class ModelReader {
       found_ = true;
     }
   }
+  // Cura says "True" of what a mesh is.
+  void text(std::string_view piece) {
+    if (!metadata_.empty() && piece == "True" && role_of(metadata_) != Role::refused) object_->type = metadata_;
+  }
   void end() {
-    if (depth_-- == object_depth_) object_ = nullptr;
+    metadata_.clear();
+    if (depth_-- != object_depth_ || object_ == nullptr) return;
+    const std::size_t before = object_->triangles.size();
+    append_beams(beams_, *object_);
+    count(object_->triangles.size() - before);
+    beams_.clear();
+    object_ = nullptr;
   }
 
   ModelPart result() {
@@ -171,10 +194,11 @@ class ModelReader {
 
  private:
   void check_extensions(const XmlElement& model) const {
+    const auto& known = known_extensions;
     for (const std::string& prefix : split(std::string(model.attribute("requiredextensions").value_or("")), ' ')) {
       const auto space = spaces_.find(prefix);
       if (prefix.empty() ||
-          (space != spaces_.end() && std::find(harmless.begin(), harmless.end(), space->second) != harmless.end())) {
+          (space != spaces_.end() && std::find(known.begin(), known.end(), space->second) != known.end())) {
         continue;
       }
       throw MeshProblem{"needs the 3MF extension " + excerpt(space != spaces_.end() ? space->second : prefix) +
@@ -182,25 +206,65 @@ class ModelReader {
     }
   }
 
+  void begin_of_extension(const XmlElement& element) {
+    if (object_ == nullptr) return;
+    if (element.space == beam_extension && element.name == "beamlattice") {
+      end_ = beam_end(element, "", {0, unit_ * element.number("radius")});
+      least_mm_ = unit_ * element.number("minlength");
+      for (const char* mode : {"clippingmode", "clipping", "ballmode"}) {  // the second before version 1.2
+        if (element.attribute(mode).value_or("none") != "none")
+          spoil("has a beam lattice with " + std::string(mode) + ", which is not read");
+      }
+    } else if (element.space == beam_extension && element.name == "beam") {
+      add_beam(element);
+    } else if (depth_ == object_depth_ + 1) {  // a shape of another kind stands beside the mesh
+      spoil("has a " + excerpt(element.name) + ", which is not read");
+    }
+  }
+
+  [[nodiscard]] BeamEnd beam_end(const XmlElement& element, const std::string& which, BeamEnd end) const {
+    if (element.attribute("v" + which)) end.point = element.number<int>("v" + which);
+    if (element.attribute("r" + which)) end.radius_mm = unit_ * element.number("r" + which);
+    if (const auto cap = element.attribute("cap" + which); cap && !cap->empty()) end.cap = cap->front();
+    if (end.radius_mm <= 0) element.wrong("r" + which);
+    return end;
+  }
+
+  void add_beam(const XmlElement& element) {
+    constexpr std::size_t most = std::size_t{1} << 16;
+    const BeamEnd first = beam_end(element, "1", end_);
+    const Beam beam{first, beam_end(element, "2", {0, first.radius_mm, end_.cap})};
+    for (const auto& [end, name] : {std::pair{beam[0], "v1"}, {beam[1], "v2"}})
+      if (end.point < 0 || end.point >= count_of(object_->points)) element.wrong(name);
+    const double mm = length(object_->points[beam[1].point] - object_->points[beam[0].point]);
+    if (mm == 0 || mm < least_mm_) return;
+    if (beams_.size() == most) return spoil("has a lattice of more than " + std::to_string(most) + " beams");
+    beams_.push_back(beam);
+  }
+
   void begin_object(const XmlElement& element) {
-    const unsigned id = number<unsigned>(element, "id");
+    const unsigned id = element.number<unsigned>("id");
     const auto [place, fresh] = part_.objects.try_emplace(id);
     if (!fresh) throw MeshProblem{"has two objects " + std::to_string(id) + "; mend it, or save the mesh again"};
     object_ = &place->second;
-    const std::string_view type = element.attribute("type").value_or("model");  // core specification, 4.1
-    object_->support = type == "support" || type == "solidsupport";
+    object_->type = element.attribute("type").value_or("model");
+    // Its mesh is a stand-in, in the samples of the 3MF Consortium the box around it, whatever its meshresolution.
+    if (element.attribute("slicestackid")) spoil("consists of slices, which are not read");
     object_depth_ = depth_;
   }
 
-  void unread(const XmlElement& element) const {
-    if (object_->unread.empty()) object_->unread = element.name;
+  void spoil(const std::string& problem) const {
+    if (object_->problem.empty()) object_->problem = problem;
+  }
+
+  void count(std::size_t more) {
+    if ((triangles_ += more) <= max_triangles) return;
+    throw MeshProblem{"has more than " + std::to_string(max_triangles) + " triangles, the most that are read"};
   }
 
   void add_triangle(const XmlElement& element) {
-    if (++triangles_ > max_triangles) {
-      throw MeshProblem{"has more than " + std::to_string(max_triangles) + " triangles, the most that are read"};
-    }
-    object_->triangles.push_back({number<int>(element, "v1"), number<int>(element, "v2"), number<int>(element, "v3")});
+    count(1);
+    object_->triangles.push_back({element.number<int>("v1"), element.number<int>("v2"), element.number<int>("v3")});
   }
 
   [[nodiscard]] Instance instance(const XmlElement& element) {
@@ -210,37 +274,28 @@ class ModelReader {
     }
     Instance made;
     made.part = element.attribute("path").value_or("");
-    made.object = number<unsigned>(element, "objectid");
+    made.object = element.number<unsigned>("objectid");
     const auto text = element.attribute("transform");
     if (!text) return made;
     std::string_view rest = *text;
     for (auto& row : made.placement.rows) {
       for (double& value : row) {
         const auto number = number_of<double>(take_word(rest));
-        if (!number) wrong(element, "transform");
+        if (!number) element.wrong("transform");
         value = *number * (&row == &made.placement.rows.back() ? unit_ : 1);
       }
     }
-    if (!without_blanks(rest).empty()) wrong(element, "transform");
+    if (!without_blanks(rest).empty()) element.wrong("transform");
     return made;
-  }
-
-  [[noreturn]] static void wrong(const XmlElement& element, std::string_view attribute) {
-    const auto text = element.attribute(attribute);
-    throw MeshProblem{"its <" + std::string(element.name) + "> has " +
-                      (text ? std::string(attribute) + " " + excerpt(*text) : "no " + std::string(attribute)) +
-                      "; it is damaged"};
-  }
-  template <class Number = double>
-  [[nodiscard]] static Number number(const XmlElement& element, std::string_view attribute) {
-    const auto value = number_of<Number>(element.attribute(attribute).value_or(""));
-    if (!value) wrong(element, attribute);
-    return *value;
   }
 
   ModelPart part_;
   std::map<std::string, std::string> spaces_;  // by prefix
   Object3mf* object_ = nullptr;                // that is open
+  std::vector<Beam> beams_;                    // of it
+  BeamEnd end_;                                // of its beams that say nothing else
+  double least_mm_ = 0;                        // shorter beams are none
+  std::string metadata_;                       // that is open, of an object
   int depth_ = 0;
   int object_depth_ = 0;
   std::size_t triangles_ = 0;
@@ -254,17 +309,18 @@ class ModelReader {
 ModelPart parse_model_part(const ByteFeed& feed) {
   ModelReader reader;
   parse_xml(feed, {[&](const XmlElement& element) { reader.begin(element); }, [&] { reader.end(); },
-                   [&](std::string_view prefix, std::string_view space) { reader.declare(prefix, space); }});
+                   [&](std::string_view prefix, std::string_view space) { reader.declare(prefix, space); },
+                   [&](std::string_view piece) { reader.text(piece); }});
   return reader.result();
 }
 
 std::string model_target(const ByteFeed& feed) {
   std::string target;
   parse_xml(feed, {[&](const XmlElement& element) {
-                     if (element.name != "Relationship" || !target.empty()) return;
-                     if (element.attribute("Type").value_or("").ends_with("/3dmodel")) {
-                       target = element.attribute("Target").value_or("");
-                     }
+                     if (element.name != "Relationship") return;
+                     if (!element.attribute("Type").value_or("").ends_with("/3dmodel")) return;
+                     if (!target.empty()) throw MeshProblem{"names two 3D models to be printed; save it again"};
+                     target = element.attribute("Target").value_or("");
                    },
                    {},
                    {}});

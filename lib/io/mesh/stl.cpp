@@ -11,6 +11,7 @@
 
 #include "base/index.hpp"
 #include "base/text/printable.hpp"
+#include "base/vector3.hpp"
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/text.hpp"
@@ -37,14 +38,11 @@ bool is_padding(std::string_view bytes) {
   return bytes.size() <= blank_bytes && bytes.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == bytes.npos;
 }
 
-std::array<float, 3> normal_of(const std::array<double, 3>& a, const std::array<double, 3>& b,
-                               const std::array<double, 3>& c) {
-  const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  const double v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-  const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  const double length = std::hypot(n[0], n[1], n[2]);
+std::array<float, 3> normal_of(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const auto [x, y, z] = cross(b - a, c - a);
+  const double length = std::hypot(x, y, z);
   if (!(length > 0)) return {0, 0, 0};
-  return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
+  return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
 }
 
 /// What leads from one level of a text to another.

@@ -2,14 +2,20 @@
 #include "solid/wrap/wrap.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/compute/memory.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "base/vector3.hpp"
 #include "solid/mesh/repair.hpp"
@@ -57,11 +63,15 @@ model::TriangleSoup soup_of(const Surface& surface) {
   return soup;
 }
 
-model::TriangleSoup wrap_of(const model::TriangleSoup& mesh, const WrapSize& size) {
+std::vector<Point3> points_of(const model::TriangleSoup& mesh) {
   std::vector<Point3> points;
   for (const auto& [x, y, z] : mesh.points) points.emplace_back(x, y, z);
+  return points;
+}
+
+model::TriangleSoup wrap_of(const model::TriangleSoup& mesh, const WrapSize& size) {
   Surface surface;
-  CGAL::alpha_wrap_3(points, mesh.triangles, size.alpha_mm, size.offset_mm, surface);
+  CGAL::alpha_wrap_3(points_of(mesh), mesh.triangles, size.alpha_mm, size.offset_mm, surface);
   return soup_of(surface);
 }
 
@@ -79,6 +89,59 @@ Wrap wrapped(const model::TriangleSoup& mesh, const WrapSize& size, const std::s
     made.mesh = wrap_of(lidded, size);
   }
   return made;
+}
+
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+
+[[noreturn]] void not_cut(const std::string& subject, const std::string& why) {
+  throw Error{Fault::data, subject + ": a volume is to be taken away from another, but " + why +
+                               "; do it in the program that made the file, or leave the volume out"};
+}
+
+Surface surface_of(const model::TriangleSoup& mesh) {
+  std::vector<Point3> points = points_of(mesh);
+  std::vector<std::array<int, 3>> triangles = mesh.triangles;
+  pmp::orient_polygon_soup(points, triangles);  // has bodies that share an edge or a corner each have its own
+  Surface surface;
+  pmp::polygon_soup_to_polygon_mesh(points, triangles, surface);
+  return surface;
+}
+
+/// The whole mesh, or each of its connected bodies where these cross.
+std::vector<Surface> bodies_of(model::TriangleSoup mesh, const std::string& subject) {
+  const Repair done = repair(mesh, subject);
+  if (!done.closed()) not_cut(subject, "one of them is not closed (" + done.summary() + ")");
+  const Surface whole = surface_of(mesh);
+  if (!pmp::does_self_intersect(whole)) return {whole};
+  if (done.cavities > 0) not_cut(subject, "one of them has cavities and crosses itself");
+  std::vector<Surface> bodies;
+  pmp::split_connected_components(whole, bodies);
+  for (const Surface& body : bodies)
+    if (pmp::does_self_intersect(body)) not_cut(subject, "one of them crosses itself");
+  return bodies;
+}
+
+}  // namespace
+
+model::TriangleSoup difference(model::TriangleSoup mesh, model::TriangleSoup taken_away, const std::string& subject) {
+  model::TriangleSoup left;
+  std::vector<Surface> cutters = bodies_of(std::move(taken_away), subject);
+  for (Surface& body : bodies_of(std::move(mesh), subject)) {
+    for (Surface cutter : cutters) {
+      Surface rest;
+      if (!pmp::corefine_and_compute_difference(body, cutter, rest)) not_cut(subject, "they touch along an edge");
+      body = std::move(rest);
+    }
+    body.collect_garbage();
+    const model::TriangleSoup soup = soup_of(body);
+    const int first = count_of(left.points);
+    left.points.insert(left.points.end(), soup.points.begin(), soup.points.end());
+    for (const auto& [a, b, c] : soup.triangles) left.triangles.push_back({first + a, first + b, first + c});
+  }
+  if (left.triangles.empty()) not_cut(subject, "nothing is left of it");
+  return left;
 }
 
 }  // namespace vam::solid

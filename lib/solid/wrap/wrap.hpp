@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A closed surface around a mesh of any state.
+// A closed surface around a mesh of any state; and what is left of a mesh without another one.
 #pragma once
 
 #include <string>
@@ -24,5 +24,11 @@ struct Wrap {
 /// Takes 0.1 to 0.2 ms and up to 2 kB a triangle, of which there are some 2.1 area / alpha^2. Throws Fault::data beyond
 /// two million of these, Fault::memory for a lack of memory.
 [[nodiscard]] Wrap wrapped(const model::TriangleSoup& mesh, const WrapSize& size, const std::string& subject);
+
+/// `mesh` without what `taken_away` encloses, by the curves in which they cross: exact but for the rounding of these.
+/// Of a mesh that crosses itself each connected body is cut, so that what is left may overlap as before. Throws
+/// Fault::data where one is not closed, or a body crosses itself.
+[[nodiscard]] model::TriangleSoup difference(model::TriangleSoup mesh, model::TriangleSoup taken_away,
+                                             const std::string& subject);
 
 }  // namespace vam::solid

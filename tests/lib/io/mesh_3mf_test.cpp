@@ -89,6 +89,80 @@ TEST_CASE("3MF: supports are not printed, alone, as items or as components") {
   CHECK(mesh_of(package(model(objects, item(1) + item(2) + item(3)))).triangles.size() == 12);
   CHECK(mesh_of(package(model(objects, item(4)))).triangles.size() == 12);
   CHECK(has(refused(package(model(objects, item(2)))), "its build has supports only, and no part"));
+  for (const std::string type : {"other", "surface", "invalidtype"}) {
+    CHECK(has(refused(package(model(typed(1, type), item(1)))), "object 1 is of type '" + type + "', which is not"));
+  }
+  const std::string sliced =
+      "<object id=\"1\" xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\" "
+      "s:slicestackid=\"7\">" +
+      mesh_xml(box()) + "</object>";
+  CHECK(has(refused(package(model(sliced, item(1)))), "object 1 consists of slices, which are not read; export it"));
+}
+
+TEST_CASE("3MF: volumes of slicers are added, taken away or left out, as PrusaSlicer, BambuStudio and Cura mean them") {
+  const auto with = [](const std::string& root, const std::string& name, const std::string& settings) {
+    const scratch::Folder folder;
+    Zip zip;
+    zip.add("3D/3dmodel.model", root);
+    zip.add(name, "<config>" + settings + "</config>");
+    const auto read = vam::io::read_coloured_mesh(folder.write("mesh", zip.done()));
+    TriangleSoup taken_away = read.mesh;
+    const auto from = std::ssize(taken_away.triangles) - static_cast<std::ptrdiff_t>(read.taken_away);
+    taken_away.triangles.erase(taken_away.triangles.begin(), taken_away.triangles.begin() + from);
+    return std::pair{volume(read.mesh) - volume(taken_away), volume(taken_away)};
+  };
+  const auto typed = [](const std::string& first, const std::string& last, const std::string& type) {
+    return "<volume firstid=\"" + first + "\" lastid=\"" + last +
+           "\"><metadata type=\"volume\" key=\"volume_type\" value=\"" + type + "\"/></volume>";
+  };
+  TriangleSoup three = box();
+  for (int i = 0; i < 24; ++i) three.triangles.push_back(three.triangles[i]);
+  const auto prusa = [&](const std::string& second, const std::string& third) {
+    return with(model(object(4, mesh_xml(three)), item(4)), "Metadata/Slic3r_PE_model.config",
+                "<object id=\"4\">" + typed("0", "11", "ModelPart") + typed("12", "23", second) +
+                    typed("24", "35", third) + "</object><object id=\"5\">" + typed("0", "11", "NegativeVolume") +
+                    "</object>");
+  };
+  CHECK(prusa("NegativeVolume", "ParameterModifier") == std::pair(6.0, 6.0));
+  CHECK(prusa("SupportBlocker", "ModelPart") == std::pair(12.0, 0.0));
+  const auto part = [](int id, const std::string& subtype) {
+    return "<part id=\"" + std::to_string(id) + "\" subtype=\"" + subtype + "\"/>";
+  };
+  const std::string components =
+      object(1, mesh_xml(box())) + object(2, mesh_xml(box())) + object(3, mesh_xml(box())) +
+      object(8, "<components>" + component(1) + component(2) + component(3) + "</components>");
+  CHECK(with(model(components, item(8)), "Metadata/model_settings.config",
+             "<object id=\"8\">" + part(1, "normal_part") + part(2, "negative_part") + part(3, "modifier_part") +
+                 "</object>") == std::pair(6.0, 6.0));
+  const std::string cura =
+      object(1, mesh_xml(box())) + object(2,
+                                          "<metadatagroup><metadata name=\"cura:cutting_mesh\">True</metadata>"
+                                          "</metadatagroup>" +
+                                              mesh_xml(box()));
+  CHECK(volume(mesh_of(package(model(cura, item(1) + item(2))))) == doctest::Approx(6));
+}
+
+TEST_CASE("3MF: a beam is a frustum with its caps, of the volume that geometry gives") {
+  const auto beam = [](const std::string& attributes, const std::string& lattice = "") {
+    const std::string beams = "<b:beamlattice radius=\"0.5\" minlength=\"0.1\" " + lattice +
+                              "><b:beams><b:beam v1=\"0\" v2=\"1\" " + attributes + "/></b:beams></b:beamlattice>";
+    const std::string mesh =
+        "<mesh><vertices><vertex x=\"1\" y=\"2\" z=\"3\"/><vertex x=\"3\" y=\"5\" z=\"9\"/></vertices>"
+        "<triangles/>" +
+        beams + "</mesh>";
+    return package(model(object(3, mesh), item(3),
+                         "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/"
+                         "2017/02\" requiredextensions=\"b\""));
+  };
+  const double pi = std::acos(-1), cylinder = pi * 0.25 * 7, ball = pi / 6;  // 7 mm long, 1 mm thick
+  CHECK(volume(mesh_of(beam("cap1=\"butt\" cap2=\"butt\""))) == doctest::Approx(cylinder).epsilon(1e-9));
+  CHECK(volume(mesh_of(beam(""))) == doctest::Approx(cylinder + 2 * ball).epsilon(1e-9));  // half of it twice
+  const double cone = pi * 7 / 3 * (0.25 + 0.5 + 1);
+  CHECK(volume(mesh_of(beam("r1=\"0.5\" r2=\"1\"", "cap=\"hemisphere\""))) ==
+        doctest::Approx(cone + ball / 2 + 4 * ball).epsilon(1e-9));
+  CHECK(has(refused(beam("", "clippingmode=\"inside\" clippingmesh=\"1\"")),
+            "has a beam lattice with clippingmode, which is not"));
+  CHECK(has(refused(beam("r1=\"-1\"")), "its <beam> has r1 '-1'"));
 }
 
 TEST_CASE("3MF: an object of another part, whose unit is its own") {
@@ -123,11 +197,6 @@ TEST_CASE("3MF: rejects unbounded components and non-mesh geometry") {
   for (int id = 2; id <= 100; ++id) chain += object(id, "<components>" + component(id - 1) + "</components>");
   CHECK(has(refused(package(model(chain, item(100)))), "nested deeper than 64; save it as a plain mesh"));
 
-  const std::string lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"";
-  std::string beams = mesh_xml(box());
-  beams.insert(beams.find("</mesh>"),
-               "<b:beamlattice radius=\"1\"><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice>");
-  CHECK(has(refused(package(model(object(3, beams), item(3), lattice))), "object 3 has a 'beamlattice'"));
   CHECK(has(refused(package(model(object(3, mesh_xml(box())), item(3),
                                   "xmlns:v=\"http://example.com/volumes\" requiredextensions=\"v\""))),
             "needs the 3MF extension 'http://example.com/volumes'"));

@@ -105,3 +105,36 @@ TEST_CASE("a wrap of too many triangles is refused with the length that helps") 
       (void)wrapped(mesh, {0.001, 0.001}, "sphere"),
       doctest::Contains("sphere: its wrap of 0.001 mm would have 656 million triangles; up to 2 million are"), Error);
 }
+
+TEST_CASE(
+    "what is taken away from boxes leaves the volume that geometry gives, inside, across a face and through both") {
+  const auto boxes = [](std::initializer_list<std::array<double, 6>> all) {
+    vam::model::TriangleSoup mesh;
+    for (const auto& [x0, y0, z0, x1, y1, z1] : all) {
+      const int n = static_cast<int>(mesh.points.size());
+      for (const double z : {z0, z1})
+        for (const double y : {y0, y1})
+          for (const double x : {x0, x1}) mesh.points.push_back({x, y, z});
+      for (const auto& [a, b, c, d] :
+           {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+        mesh.triangles.push_back({n + a, n + b, n + c});
+        mesh.triangles.push_back({n + a, n + c, n + d});
+      }
+    }
+    return mesh;
+  };
+  const auto left = [&](const auto& mesh, const auto& cutter) {
+    return oracle::signed_volume(vam::solid::difference(mesh, cutter, "part"));
+  };
+  const auto one = boxes({{0, 0, 0, 6, 6, 6}});
+  CHECK(left(one, boxes({{2, 2, 2, 4, 4, 4}})) == doctest::Approx(208));
+  CHECK(left(one, boxes({{2, 2, 4, 4, 4, 8}})) == doctest::Approx(208));                      // out of the top
+  CHECK(left(one, boxes({{2, 2, 4, 4, 4, 6}, {2, 2, 3, 4, 4, 5}})) == doctest::Approx(204));  // flush with it, in two
+  // Of boxes that overlap each loses its own, so that their sum is 2 x 216 less 2 x 12.
+  const auto two = boxes({{0, 0, 0, 6, 6, 6}, {3, 1, 1, 9, 7, 7}});
+  CHECK(left(two, boxes({{4, 2, 2, 5, 5, 6}})) == doctest::Approx(408));
+  auto open = one;
+  open.triangles.pop_back();
+  CHECK(has(error_of([&] { (void)left(open, one); }, vam::Fault::data), "one of them is not closed"));
+  CHECK(has(error_of([&] { (void)left(one, one); }, vam::Fault::data), "nothing is left"));
+}

@@ -20,6 +20,7 @@ struct PolygonSoup {
   std::vector<std::vector<int>> faces;
   std::vector<std::array<std::uint8_t, 3>> colours = {};  // one a point, or none
   std::vector<float> uncertainty = {};                    // the same
+  std::size_t taken_away = 0;                             // last faces, triangles around what is no part
   bool of_facets = false;                                 // three points a face, in its order
 };
 
@@ -70,7 +71,7 @@ inline constexpr double farthest_point = 1e12;
 
 /// Every build item placed with its components, the model's unit converted to mm. Throws MeshProblem: what the parts
 /// throw, a component loop, more than 2^25 triangles, 2^26 vertices or 2^20 objects in all, or more than fit in the
-/// memory of the child for a file of its size, a beam lattice.
+/// memory of the child for a file of its size, an object that is not printed or not what its mesh says.
 [[nodiscard]] PolygonSoup parse_3mf(const std::string& bytes);
 /// A zip archive.
 [[nodiscard]] bool is_3mf(const std::string& bytes);
