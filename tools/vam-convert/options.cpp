@@ -88,7 +88,7 @@ void declare(cli::App& app, Options& options) {
   app.default_is("the only one; of HDF5 the only one of 3 axes");
   app.option("--axes", "ORDER", options.axes,
              "Axes of the array from the slowest to the fastest, as NumPy indexes them: x, y and z of a volume; z, a "
-             "(angle) and x (column) of projections.")
+             "(angle) and x (column) of projections. A minus before a letter reverses its axis.")
       .not_for({"images"});
   app.default_is("zyx, zax");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
@@ -108,11 +108,17 @@ void declare(cli::App& app, Options& options) {
 
 std::array<int, 3> axes_of(const Options& options, const std::string& letters) {
   const std::string order = options.axes.empty() ? letters : options.axes;
-  if (order.size() != 3 || !std::is_permutation(order.begin(), order.end(), letters.begin())) {
+  std::string bare = order;
+  std::erase(bare, '-');
+  const bool stray = order.ends_with('-') || order.find("--") != order.npos;
+  if (stray || bare.size() != 3 || !std::is_permutation(bare.begin(), bare.end(), letters.begin())) {
     throw Error{Fault::usage, "--axes: '" + order + "' is not an order of the letters " + letters};
   }
   std::array<int, 3> axes{};
-  for (std::size_t i = 0; i < 3; ++i) axes[i] = static_cast<int>(order.find(letters[i]));
+  for (std::size_t i = 0; i < 3; ++i) {
+    axes[i] = static_cast<int>(bare.find(letters[i]));
+    if (order.find(std::string{'-', letters[i]}) != order.npos) axes[i] = ~axes[i];
+  }
   return axes;
 }
 

@@ -42,7 +42,8 @@ struct Options {
 
 void declare(cli::App& app, Options& options);
 
-/// Which axis of the array counts images, rows and columns, where `letters` name them in this order: "zyx", "zax".
+/// Which axis of the array counts images, rows and columns, as io::ArrayOptions has it, where `letters` name them in
+/// this order: "zyx", "zax".
 /// Throws Fault::usage unless --axes has just these letters.
 [[nodiscard]] std::array<int, 3> axes_of(const Options& options, const std::string& letters);
 

@@ -145,8 +145,10 @@ std::array<std::size_t, 3> strides(const Head& head) {
 Parser::Parser(const Head& head, Bytes values, std::array<int, 3> axes) : head_(head), bytes_(std::move(values)) {
   const std::array<std::size_t, 3> own = strides(head_);
   for (std::size_t i = 0; i < 3; ++i) {
-    size_[i] = head_.shape[axes[i]];
-    stride_[i] = own[axes[i]];
+    const int axis = axes[i] < 0 ? ~axes[i] : axes[i];
+    size_[i] = head_.shape[axis];
+    stride_[i] = axes[i] < 0 ? 0 - own[axis] : own[axis];  // modulo 2^64
+    if (axes[i] < 0) first_ += (size_[i] - 1) * own[axis];
   }
   if (size_[1] * size_[2] > most_image) throw std::runtime_error("has images of more than 2^28 values");
   streams_ = stride_[2] == 1 && stride_[1] == size_[2] && (stride_[0] == size_[1] * size_[2] || size_[0] == 1);
@@ -173,8 +175,8 @@ void Parser::gather() {
   some_.assign(count, Image(static_cast<int>(size_[2]), static_cast<int>(size_[1])));
   for (std::size_t r = 0; r < size_[1]; ++r) {
     for (std::size_t c = 0; c < size_[2]; ++c) {
-      const float* from = all_.data() + done_ * stride_[0] + r * stride_[1] + c * stride_[2];
-      for (std::size_t k = 0; k < count; ++k) some_[k].values[r * size_[2] + c] = from[k * stride_[0]];
+      const std::size_t at = first_ + done_ * stride_[0] + r * stride_[1] + c * stride_[2];
+      for (std::size_t k = 0; k < count; ++k) some_[k].values[r * size_[2] + c] = all_[at + k * stride_[0]];
     }
   }
 }

@@ -22,7 +22,7 @@ struct ArraySize {
 
 struct ArrayOptions {
   std::string name;                  // of the array in a .npz or HDF5 file that holds several
-  std::array<int, 3> axes{0, 1, 2};  // which axis of the array counts the images, the rows and the columns
+  std::array<int, 3> axes{0, 1, 2};  // which axis of the array counts images, rows and columns; ~i: i, from its end
 };
 
 /// Reads an array of 2 or 3 axes front to back, parsed in a child; what is not finite as float is refused. Where

@@ -78,6 +78,7 @@ class Parser {
   Bytes bytes_;
   std::array<std::size_t, 3> size_{};
   std::array<std::size_t, 3> stride_{};  // in values, from image to image, row to row, column to column
+  std::size_t first_ = 0;                // value of the first image
   bool streams_ = false;                 // the images are as they come
   std::vector<char> raw_;
   std::vector<float> all_;  // where they are not
