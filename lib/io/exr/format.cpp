@@ -7,9 +7,11 @@
 #include <OpenEXR/ImfVersion.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "base/text/printable.hpp"
+#include "base/text/text.hpp"
 
 namespace vam::io::exr {
 
@@ -187,6 +189,14 @@ std::string channel_remedy(const Imf::ChannelList& channels) {
   return "to take " + name + ": oiiotool -a FILE --ch 'Y=" + name + "' -o FILE.Y.exr";
 }
 
+void require_whole(const Imf::Header& header) {
+  if (header.dataWindow() != header.displayWindow())
+    throw std::runtime_error("has pixels for a part of its image only; oiiotool FILE --croptofull -o FILE.full.exr");
+  if (const auto aspect = static_cast<double>(header.pixelAspectRatio()); std::abs(aspect - 1) > 1e-3)
+    throw std::runtime_error("has pixels " + format_number(aspect, 3) + " times as wide as high; resample it, or if " +
+                             "its header is wrong: oiiotool FILE --attrib PixelAspectRatio 1 -o FILE.square.exr");
+}
+
 namespace {
 
 std::string only_channel(const Imf::Header& header) {
@@ -196,6 +206,9 @@ std::string only_channel(const Imf::Header& header) {
     if (one.name() == std::string(channel)) return channel;
     names += (count == 0 ? "" : ", ") + printable(one.name());
   }
+  if (count == 1 && (names.ends_with("Z") || names.ends_with("depth")))
+    throw std::runtime_error("has depths alone (" + names +
+                             "); if they are intensities: oiiotool FILE --chnames Y -o FILE.Y.exr");
   if (count == 1) return header.channels().begin().name();
   throw std::runtime_error("has the channels " + names + "; one of intensity is read (Y); " +
                            channel_remedy(header.channels()));
@@ -208,7 +221,7 @@ Image decode_single(const std::string& bytes) {
   Imf::InputFile file(stream, 0);
   const Imf::Header& header = file.header();
   const Imath::Box2i window = header.dataWindow();
-  if (window != header.displayWindow()) throw std::runtime_error("has pixels for a part of its image only");
+  require_whole(header);
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   if (width > max_side || height > max_side || width * height > max_pixels) {

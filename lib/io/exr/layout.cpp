@@ -51,6 +51,7 @@ Layout checked_layout(const Imf::Header& part) {
     throw std::runtime_error("has an image of " + std::to_string(width) + " x " + std::to_string(height) +
                              " pixels; 1 to 65536 per axis and up to 2^28 in all can be read");
   }
+  require_whole(part);
   check_channels(part.channels());
   if (part.compression() < 0 || part.compression() >= Imf::NUM_COMPRESSION_METHODS) {
     throw std::runtime_error("has a compression that is not known");

@@ -171,6 +171,16 @@ TEST_CASE("a file that is not a stack is status 65") {
   { Imf::MultiPartOutputFile file((folder / "kindless.exr").c_str(), &kindless, 1); }
   CHECK(open("kindless.exr") == 65);
   CHECK(line.find("vam:kind") != std::string::npos);
+  Imf::Header cropped = kindless;
+  cropped.displayWindow().max.x = 9;
+  Imf::Header wide = kindless;
+  wide.pixelAspectRatio() = 2;
+  for (const auto& [header, what] : {std::pair{cropped, "a part of its image only; oiiotool FILE --croptofull"},
+                                     std::pair{wide, "pixels 2 times as wide as high; resample it, or if"}}) {
+    { Imf::MultiPartOutputFile file((folder / "odd.exr").c_str(), &header, 1); }
+    CHECK(open("odd.exr") == 65);
+    CHECK(has(line, what));
+  }
   CHECK(open("absent.exr") == 66);
 }
 

@@ -34,6 +34,8 @@ inline constexpr std::int32_t multi_part_flag = 0x1000;
 inline constexpr const char* channel = "Y";
 /// Remedy text for files without channel Y.
 std::string channel_remedy(const Imf::ChannelList& channels);
+/// Throws std::runtime_error where pixels are missing, or are not square.
+void require_whole(const Imf::Header& header);
 
 /// Refused beyond these, before memory is taken.
 inline constexpr int max_side = 1 << 16;                               // pixels
