@@ -109,7 +109,7 @@ void require_dose(const Exposure& exposure, bool accepted, const std::string& na
   if (!exposure.share || exposure.as_planned()) return;
   const std::string turns = format_number(exposure.turns, 4);
   const std::string what = name + ": " + turns + (turns == "1" ? " turn gives " : " turns give ") +
-                           format_number(*exposure.share, 2) + " of the planned dose, which " +
+                           format_number(*exposure.share, 4) + " of the planned dose, which " +
                            format_number(exposure.turns / *exposure.share, 4) + " turns reach";
   const bool near = *exposure.share >= 0.9 && *exposure.share <= 1.1;
   if (!near && !accepted) throw Error{Fault::data, what + "; omit what differs from the plan, or give --accept-dose"};
