@@ -43,6 +43,7 @@ std::string report(const std::string& path, const std::vector<ProvenanceEntry>& 
   std::string text;
   for (const ProvenanceEntry& finding : findings) {
     text += printable(io::input_name(path)) + ": " + printable(finding.what) + state_of(finding) + "\n";
+    for (const std::string& fact : finding.facts) text += "  " + printable(fact) + "\n";
     for (const auto& [command, seal] : chain_of(finding)) {
       const auto named = names.find(seal);
       text += "  " + (seal.empty() ? std::string(15, ' ') + "-" : seal) + "  " + printable(command) +

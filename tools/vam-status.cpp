@@ -20,7 +20,6 @@
 #include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
-#include "vam-status/correction.hpp"
 #include "vam-status/light_view.hpp"
 #include "vam-status/page.hpp"
 #include "vam-status/progress.hpp"

@@ -120,7 +120,7 @@ cp other.exr part/sinogram.exr; fails 65 'part/sinogram.exr: is not the sinogram
 ln -sf ../other.exr part/sinogram.exr; fails 65 'part/sinogram.exr: is not the sinogram of part' vam-check part
 ln -sf gone part/sinogram.exr
 vam-check part >said 2>err
-is 'a sinogram that is gone is told' "$? $(cat said | sed 's/[0-9][0-9]*/N/') $(cat err)" \
+is 'a sinogram that is gone is told' "$? $(head -n 1 said | sed 's/[0-9][0-9]*/N/') $(cat err)" \
   '0 part: run folder of N files, sealed vam-check: warning: part/sinogram.exr: links to gone, which cannot be read, so that the sinogram was not verified; restore it, or remove the link'
 for name in more.json views/more.png views2; do
   spoil; ln -s ../run/views "part/$name"; fails 65 "part/$name: is a link, which no print leaves; remove it" vam-check part
@@ -175,7 +175,7 @@ for cut in "head -n 200" cat "grep -v '\"frame\":7,'" 'sed s/"angle_deg":1\(..[.
 done
 spoil; rm part/SHA256SUMS; unchain part/*.jsonl; sed -i '/"event":"sealed"/d' part/events.jsonl
 ok 'a run without chains is read' vam-status part
-is 'and said to be unsealed' "$(vam-check part)" 'part: run folder without SHA256SUMS, unsealed'
+is 'and said to be unsealed' "$(vam-check part | head -n 1)" 'part: run folder without SHA256SUMS, unsealed'
 ok 'the log alone is held to the events, too' sh -c "vam-check run/flips.jsonl | grep -Eqx 'run/flips.jsonl: flips of a print: flips.jsonl is sealed up to byte ([0-9]+) of \1, sealed'"
 spoil; rm part/SHA256SUMS; printf '{"utc' >>part/flips.jsonl; ok 'a line that was cut counts nowhere' vam-status part
 rm part/flips.jsonl; fails 65 'part/flips.jsonl: is gone, but events.jsonl states [0-9]+ bytes of it; restore it' vam-status part

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-status/correction.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,6 +12,7 @@
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
 #include "plot/planes.hpp"
+#include "vam-status/page.hpp"
 
 namespace vam::status_tool {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-status/overhead.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +8,7 @@
 #include "plot/colour_map.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
+#include "vam-status/page.hpp"
 
 namespace vam::status_tool {
 

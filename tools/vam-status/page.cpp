@@ -15,8 +15,6 @@
 #include "io/stream/log_lines.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
-#include "vam-status/correction.hpp"
-#include "vam-status/overhead.hpp"
 
 namespace vam::status_tool {
 

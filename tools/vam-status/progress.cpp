@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-status/progress.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -33,15 +29,6 @@ namespace fs = std::filesystem;
 constexpr double silence_s = 5;               // longer than any pause of a stage that turns
 constexpr double loading_s = 600;             // and than it takes to load frames and to find a reference
 constexpr std::streamoff tail_bytes = 65536;  // holds many entries
-
-// vam-print keeps a lock on its events until the last tool has ended.
-bool is_locked(const std::string& file) {
-  const int handle = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (handle < 0) return true;  // not armed yet
-  const bool locked = flock(handle, LOCK_SH | LOCK_NB) != 0;
-  close(handle);
-  return locked;
-}
 
 // Time to the planned end; infinite where it is not known or light has not begun.
 double left_s(const PrintProgress& p, double speed_deg_s) {
@@ -98,8 +85,9 @@ void RunFolder::read() {
 
 void RunFolder::read_events() {
   progress_.silent_s = 1e9;
-  const bool armed = io::has_regular_file(file("events.jsonl"));                  // before, there are only the settings
-  held_ = armed ? std::optional(is_locked(file("events.jsonl"))) : std::nullopt;  // before the end is looked for
+  // Before, there are only the settings.
+  const bool armed = io::has_regular_file(file("events.jsonl")) && fs::file_size(file("events.jsonl")) > 0;
+  held_ = armed ? std::optional(io::is_printed(path_)) : std::nullopt;  // before the end is looked for
   for (const char* name :
        {armed ? "events.jsonl" : "printer.toml", armed ? "flips.jsonl" : "calibration.json", "angles.jsonl"}) {
     std::error_code problem;
@@ -117,20 +105,9 @@ void RunFolder::read_events() {
   }
   if (!progress_.outcome) read_summary();
   progress_.simulated.clear();
-  const auto look = [&](const char* log, const char* event, const char* what) {
-    bool simulated = false;
-    io::LogLines lines(file(log));
-    std::string text;
-    for (int first = 0; first < 8 && lines.next(text); ++first) {
-      const Json line = parse_distinct(text, file(log));
-      if (!line.is_object() || line.value("event", Json()) != event) continue;
-      simulated = simulated || text.find("\"simulated\":true") != std::string::npos;
-    }
-    if (simulated) progress_.simulated.emplace_back(what);
-  };
-  look("stage.jsonl", "begin", "stage");
-  look("capture.jsonl", "begin", "camera");
-  look("flips.jsonl", "light", "light engine");
+  for (const io::UsedDevice& one : io::used_devices(path_)) {
+    if (one.simulated) progress_.simulated.push_back(one.what == "light" ? "light engine" : one.what);
+  }
 }
 
 // The last that vam-print writes: a print that has it has ended, whatever became of its events.
@@ -174,7 +151,7 @@ void RunFolder::read_flips() {
 void RunFolder::look_for_end() {
   const bool is_over = left_s(progress_, printer_.stage.speed_deg_s) < 0.5;
   const bool is_alive = held_.value_or(progress_.blanks == 0);
-  progress_.abandoned = !progress_.outcome && !is_alive && (is_over || progress_.silent_s > silence_s);
+  progress_.abandoned = !progress_.outcome && !is_alive && (held_ || is_over || progress_.silent_s > silence_s);
   if (is_alive || warned_ || !(progress_.outcome || progress_.abandoned) || io::has_run_sums(path_)) return;
   warned_ = true;
   const std::string sealed = io::sealed_flips(path_);

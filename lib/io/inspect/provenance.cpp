@@ -74,7 +74,7 @@ std::vector<ProvenanceEntry> inspect_unended(const std::string& path) {
                     "minute, nothing of it can be verified"};
   }
   if (const std::string sealed = sealed_flips(path); !sealed.empty())
-    return {{"run folder of a print that goes on or was killed: " + sealed, true, "", {}}};
+    return {{"run folder of a print that goes on or was killed: " + sealed, true, "", {}, false, {}, run_facts(path)}};
   throw Error{Fault::data, path +
                                ": has no SHA256SUMS, which a print writes when it has ended: it goes on, was "
                                "killed, or the list is gone; nothing of it can be verified"};
@@ -87,11 +87,12 @@ std::vector<ProvenanceEntry> inspect_run(const std::string& path, bool fast) {
     const RunSums sums = read_run_sums(path);
     auto damage = run_damage(path, sums, fast);
     if (damage.empty() && !fast) require_logs(path);
-    return {{"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, false, damage}};
+    const auto facts = damage.empty() ? run_facts(path) : std::vector<std::string>{};
+    return {{"run folder of " + std::to_string(sums.size()) + " files", true, "", {}, false, damage, facts}};
   }
   if (!has_regular_file((std::filesystem::path(path) / "summary.json").string())) return inspect_unended(path);
   require_run_logs(path);
-  if (sealed_flips(path).empty()) return {{"run folder without SHA256SUMS", false, "", {}}};
+  if (sealed_flips(path).empty()) return {{"run folder without SHA256SUMS", false, "", {}, false, {}, run_facts(path)}};
   throw Error{Fault::data, path +
                                ": has no SHA256SUMS, which a print writes when it has ended; only its logs can be "
                                "verified; restore the list"};

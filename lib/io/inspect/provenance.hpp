@@ -15,6 +15,7 @@ struct ProvenanceEntry {
   std::vector<std::string> history;      // with the lines of seals
   bool checksums = false;                // of a video of any program: those of its container are valid
   std::vector<std::string> damage = {};  // of a folder: what differs, is gone or does not belong to it, a line each
+  std::vector<std::string> facts = {};   // of a print: run_facts()
 };
 
 /// Reads the file, or with `fast` its headers alone. Throws Fault::data where it is not what was written, and what its

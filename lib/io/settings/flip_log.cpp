@@ -112,6 +112,8 @@ void FlipLog::require_possible(const LoggedFlip& flip) const {
     refuse("time " + format_number(flip.t_s) + " s is not between 0 and " + format_number(most_s) +
            " s since the machine started");
   }
+  if (!flips_.empty() && !places_.back().last && flip.t_s < flips_.back().t_s)
+    refuse("time " + format_number(flip.t_s, 12) + " s is before that of the flip before it");
   if (frames_ > 0 && flip.frame >= frames_)
     refuse("frame " + std::to_string(flip.frame) + " is none of the " + std::to_string(frames_) + " of the print");
   if (flip.angle_deg >= least_deg && flip.angle_deg <= most_deg) return;

@@ -44,6 +44,8 @@ class FlipLog {
   void read();
 
   [[nodiscard]] const std::vector<LoggedFlip>& flips() const { return flips_; }
+  /// No line of it can have been lost or changed unseen.
+  [[nodiscard]] bool is_chained() const { return lines_.is_chained(); }
   /// The lit images so far, in order.
   [[nodiscard]] std::vector<ShownImage> shown() const;
   /// Those of a sinogram, by its SHA-256; where the log does not state it, those of which it states none.

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <filesystem>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/log/chain.hpp"
+#include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
+#include "base/text/text.hpp"
+#include "io/settings/flip_log.hpp"
 #include "io/settings/run_folder.hpp"
 #include "io/stream/log_lines.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
@@ -33,6 +42,7 @@ void take_event(const Json& event, RunEvents& events) {
   if (name == "end") {
     events.outcome = text_at(event, "outcome", "unknown");
     events.status = static_cast<int>(number_at(event, "status"));
+    events.ended_utc = text_at(event, "utc");
   }
   if (name != "sealed" || !event.contains("logs") || !event["logs"].is_object()) return;
   for (const auto& [log, stated] : event["logs"].items()) {
@@ -63,7 +73,72 @@ void require_log(const std::string& path, const RunEvents::Log& stated) {
                                stated.chain + "); it was changed; restore it"};
 }
 
+std::string records_of(const std::string& run) {
+  const std::string path = log_path(run, "calibration.json");
+  if (!has_regular_file(path)) return "none";
+  std::vector<std::string> records;
+  const Json whole = parse_distinct(read_all(path, Content::text, std::uint64_t{1} << 20), path);
+  for (const auto& [scan, record] : whole.items()) {
+    if (record.is_object()) records.push_back(scan + " of " + text_at(record, "utc"));
+  }
+  return join(records, ", ");
+}
+
 }  // namespace
+
+std::vector<UsedDevice> used_devices(const std::string& run) {
+  std::vector<UsedDevice> devices;
+  for (const auto& [log, what] :
+       {std::pair{"flips.jsonl", ""}, {"stage.jsonl", "stage"}, {"capture.jsonl", "camera"}}) {
+    constexpr int first = 8;
+    LogLines lines(log_path(run, log));
+    Json line;
+    for (int n = 0; n < first && lines.next(line); ++n) {
+      if (text_at(line, "device").empty()) continue;
+      devices.push_back({*what == '\0' ? text_at(line, "event") : what, text_at(line, "device"),
+                         line.value("simulated", Json()) == true});
+    }
+  }
+  return devices;
+}
+
+bool is_printed(const std::string& run) {
+  const std::string path = log_path(run, "events.jsonl");
+  const int events = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (events < 0) return false;
+  const bool held = flock(events, LOCK_SH | LOCK_NB) != 0;
+  close(events);
+  return held;
+}
+
+std::vector<std::string> run_facts(const std::string& run) {
+  const RunEvents events = read_events(run);
+  const auto hash = [](const std::string& sha256) { return sha256.empty() ? "" : ", SHA-256 " + sha256.substr(0, 16); };
+  std::vector<std::string> devices;
+  for (const UsedDevice& one : used_devices(run))
+    devices.push_back(one.what + " " + one.device + (one.simulated ? " (simulated)" : ""));
+  std::vector<std::string> facts{"armed      " + events.armed_utc + hash(events.sinogram_sha256),
+                                 "devices    " + join(devices, ", "), "records    " + records_of(run)};
+  if (!events.resumes.empty()) facts.push_back("resumes    " + events.resumes);
+  if (has_regular_file(log_path(run, flips_log))) {
+    FlipLog log(run);
+    log.read();
+    double lit_deg = events.from_deg;
+    for (const LoggedFlip& flip : log.flips()) lit_deg = flip.frame >= 0 ? flip.angle_deg : lit_deg;
+    for (const ShownSinogram& one : log.sinograms()) facts.push_back("sinogram   " + one.name + hash(one.sha256));
+    facts.push_back("delivered  turn " + fixed_number(lit_deg / 360, 2) + " of " + format_number(events.turns) +
+                    ", from " + fixed_number(events.from_deg / 360, 2) + " on: " + std::to_string(log.lit()) +
+                    " images, " + std::to_string(log.missed()) + " of " + std::to_string(log.blanks()) +
+                    " vertical blanks missed");
+  }
+  const std::string end = events.outcome
+                              ? events.ended_utc + ": " + *events.outcome + ", status " + std::to_string(events.status)
+                          : is_printed(run) ? "it goes on"
+                                            : "not logged: it was killed";
+  facts.push_back("ended      " + end);
+  if (!events.resumed_by.empty()) facts.push_back("resumed by " + events.resumed_by);
+  return facts;
+}
 
 RunEvents read_events(const std::string& run) {
   RunEvents events;

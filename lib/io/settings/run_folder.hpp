@@ -19,6 +19,7 @@ struct RunEvents {
   std::string resumes, resumes_utc;    // the folder of the print of which this is the rest, and when that was armed
   std::string resumed_by;              // empty: not resumed, or that was taken back
   std::optional<std::string> outcome;  // none while it goes on, or of one that was killed
+  std::string ended_utc;               // likewise
   int status = 0;
   struct Log {
     std::uint64_t bytes = 0;  // of whole lines
@@ -29,6 +30,20 @@ struct RunEvents {
 
 /// None of a folder without. Throws as LogLines does.
 [[nodiscard]] RunEvents read_events(const std::string& run);
+
+/// What drove light, stage and camera, as the first lines of their logs name it.
+struct UsedDevice {
+  std::string what;  // stage, camera, display, light
+  std::string device;
+  bool simulated = false;
+};
+[[nodiscard]] std::vector<UsedDevice> used_devices(const std::string& run);
+
+/// Whether somebody prints: vam-print keeps a lock on its events until the last tool has ended.
+[[nodiscard]] bool is_printed(const std::string& run);
+
+/// What was printed, when, with what, and how far it was delivered, a line each. Throws as FlipLog does.
+[[nodiscard]] std::vector<std::string> run_facts(const std::string& run);
 
 /// Every log of the folder is a whole chain, and those that the events state are as long at least. Throws Fault::data.
 void require_logs(const std::string& run);

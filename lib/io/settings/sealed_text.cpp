@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
@@ -11,6 +12,7 @@
 #include "base/text/json_text.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "io/stream/log_lines.hpp"
 #include "io/stream/seal.hpp"
 #include "io/stream/stream.hpp"
 
@@ -46,14 +48,17 @@ Digest digest_of_values(Json object) {
   return digest_of(canonical.data(), canonical.size());
 }
 
-void require_equal(const std::string& seal, const Digest& read, const std::string& name, const std::string& where) {
+void require_equal(const std::string& seal, const Digest& read, const std::string& name, const std::string& remedy) {
   Digest sealed;
   const bool whole = parse_seal(seal, sealed);
   if (whole && sealed == read) return;
   throw Error{Fault::data, name + ": changed after it was written (" +
                                (whole ? "sealed " + shortened(sealed) + ", read " : "seal unreadable, hash ") +
-                               shortened(read) + "); create it again, or remove " + where +
-                               " if the change was intentional"};
+                               shortened(read) + "); " + remedy};
+}
+
+std::string without(const std::string& seal) {
+  return "create it again, or remove " + seal + " if the change was intentional";
 }
 
 bool is_seal(std::string_view text) {
@@ -89,7 +94,8 @@ bool require_seal(const Json& object, const std::string& name) {
   }
   if (seal == object.end()) return false;
   const bool readable = seal.key() == json_key && seal->is_string();
-  require_equal(readable ? seal->get<std::string>() : "", digest_of_values(object), name, "its key " + seal.key());
+  require_equal(readable ? seal->get<std::string>() : "", digest_of_values(object), name,
+                without("its key " + seal.key()));
   return true;
 }
 
@@ -105,7 +111,10 @@ bool require_text_seal(const std::string& text, const std::string& name) {
   const bool whole = seal.starts_with(text_head) && seal.back() == '\n';
   if (whole) seal = seal.substr(text_head.size(), seal.size() - text_head.size() - 1);
   const Digest digest = digest_of(text.data(), *line);
-  require_equal(whole ? seal : "", digest, name, "its last line '" + text_head + "...'");
+  const std::string folder = std::filesystem::path(name).parent_path().string();
+  const bool in_run = has_regular_file((folder.empty() ? "." : folder) + "/events.jsonl");  // where none is intentional
+  require_equal(whole ? seal : "", digest, name,
+                in_run ? "restore it" : without("its last line '" + text_head + "...'"));
   return true;
 }
 
