@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-optimize: optimises the projections that print a target.
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,7 +83,10 @@ void run(const cli::App& app, Options& options) {
   task.count_pieces = !options.bits;  // else those of the frames
   const auto light = session::make_light(scene, options);
   optimize_tool::require_independent(task, *light);
-  optimize_tool::StartingPoint beginning(app, printer, whole, options);
+  std::optional<optimize_tool::Initial> initial;
+  std::optional<optimize_tool::Checkpoint> checkpoint;
+  if (!options.init.empty()) initial.emplace(options.init, whole);
+  if (!options.checkpoint.empty()) checkpoint.emplace(app, printer, options);
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int k, const Image& image) {
     if (k < whole.count) sink.add(image);  // there may be more slices than rows
@@ -91,12 +95,12 @@ void run(const cli::App& app, Options& options) {
   const std::string subject = io::input_name(options.input);
   require_memory_for(scene, task, *light, optimize::method_entry(options.method), subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
-  beginning.begin(task);
+  if (initial) task.initial = std::ref(*initial);
+  if (checkpoint) task.checkpoint = checkpoint->state();
   auto outcome = optimize::optimise(task, *light);
   if (outcome.stop == optimize::StopReason::interrupted) {
-    beginning.keep();
-    if (!options.checkpoint.empty())
-      note("vam-optimize: interrupted; " + options.checkpoint + " has its state, from which the same command resumes");
+    checkpoint->keep();  // without one nothing interrupts
+    note("vam-optimize: interrupted; " + options.checkpoint + " has its state, from which the same command resumes");
     return;
   }
   const bool void_piece = slices && outcome.metrics.part == 0;
@@ -115,7 +119,7 @@ void run(const cli::App& app, Options& options) {
   }
   sink.commit();  // hours of work, which no figure or report shall undo
   publish(task, outcome, trials, scene, in.target.front(), plan, threshold, info, options);
-  beginning.remove();
+  if (checkpoint) checkpoint->remove();
 }
 
 /// A paragraph for each row of the method table.

@@ -48,6 +48,8 @@ Initial::Initial(const std::string& path, const model::StackInfo& want) : path_(
 
 Image Initial::operator()(int k) {
   constexpr int kept = 64;
+  const model::StackInfo& is = reader_.info();
+  if (k >= is.count) return {is.width, is.height};
   model::ImageInfo about;
   for (; next_ <= k; ++next_) {
     Image image;
@@ -58,14 +60,16 @@ Image Initial::operator()(int k) {
   return recent_.at(k);
 }
 
-Checkpoint::Checkpoint(const std::string& path)
-    : path_(regular(path)),
-      out_(path),
-      to_(optimize::Archive::Direction::out, path, [this](void* bytes, std::size_t size) { out_.write(bytes, size); }) {
-  if (!std::filesystem::exists(path)) return;
-  in_.emplace(path);
+Checkpoint::Checkpoint(const cli::App& app, const model::Printer& printer, const Options& options)
+    : path_(regular(options.checkpoint)),
+      job_(job_of(app, printer, options)),
+      out_(path_),
+      to_(optimize::Archive::Direction::out, path_,
+          [this](void* bytes, std::size_t size) { out_.write(bytes, size); }) {
+  if (!std::filesystem::exists(path_)) return;
+  in_.emplace(path_);
   from_.emplace(
-      optimize::Archive::Direction::in, path, [this](void* bytes, std::size_t size) { take(bytes, size); },
+      optimize::Archive::Direction::in, path_, [this](void* bytes, std::size_t size) { take(bytes, size); },
       [this] { return in_->at_end(); });
 }
 
@@ -76,26 +80,10 @@ void Checkpoint::take(void* bytes, std::size_t size) {
                                " bytes, which is incomplete; remove it and start again"};
 }
 
-optimize::CheckpointState Checkpoint::state(const std::string& job) {
-  return {device::interrupted, &to_, from_ ? &*from_ : nullptr, job};
-}
+optimize::CheckpointState Checkpoint::state() { return {device::interrupted, &to_, from_ ? &*from_ : nullptr, job_}; }
 
 void Checkpoint::remove() const {
   if (in_) std::filesystem::remove(path_);
-}
-
-StartingPoint::StartingPoint(const cli::App& app, const model::Printer& printer, const model::StackInfo& info,
-                             const Options& options)
-    : count_(info.count), width_(info.width), height_(info.height) {
-  if (!options.init.empty()) initial_.emplace(options.init, info);
-  if (options.checkpoint.empty()) return;
-  checkpoint_.emplace(options.checkpoint);
-  state_ = checkpoint_->state(job_of(app, printer, options));
-}
-
-void StartingPoint::begin(optimize::VolumeTask& task) {
-  if (initial_) task.initial = [this](int k) { return k < count_ ? (*initial_)(k) : Image(width_, height_); };
-  task.checkpoint = state_;
 }
 
 }  // namespace vam::optimize_tool

@@ -17,7 +17,8 @@
 
 namespace vam::optimize_tool {
 
-/// Reads a stack slice after slice, the last 64 of which may be read again; slices in between are skipped.
+/// Reads a stack slice after slice, the last 64 of which may be read again; slices in between are skipped. Those beyond
+/// its last one are dark.
 class Initial {
  public:
   /// Throws Fault::data unless the stack has the size of `want`.
@@ -34,13 +35,13 @@ class Initial {
 /// Finished slices and, when a signal comes, the last iterate go to a file without a name; keep() gives it one.
 class Checkpoint {
  public:
-  /// Opens the file if it is there. Throws Error: no_input, no_output.
-  explicit Checkpoint(const std::string& path);
+  /// Opens the file of --checkpoint if it is there. Throws Error: no_input, no_output.
+  Checkpoint(const cli::App& app, const model::Printer& printer, const Options& options);
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
 
   /// For the task, as long as this lives; the signals must be noted (device::interruptible).
-  [[nodiscard]] optimize::CheckpointState state(const std::string& job);
+  [[nodiscard]] optimize::CheckpointState state();
   /// The state appears under its name.
   void keep() { out_.commit(); }
   /// The run is complete; the state it resumed from is removed.
@@ -48,32 +49,11 @@ class Checkpoint {
 
  private:
   void take(void* bytes, std::size_t size);
-  std::string path_;
+  std::string path_, job_;
   std::optional<io::InputFile> in_;
   io::OutputFile out_;
   std::optional<optimize::Archive> from_;
   optimize::Archive to_;
-};
-
-class StartingPoint {
- public:
-  /// Opens --checkpoint and --init. Throws Error: no_input, no_output, data.
-  StartingPoint(const cli::App& app, const model::Printer& printer, const model::StackInfo& info,
-                const Options& options);
-  /// The task starts there and refers to this. A checkpoint has the iterate of the pass that was interrupted.
-  void begin(optimize::VolumeTask& task);
-  /// The run was interrupted: the checkpoint appears.
-  void keep() { checkpoint_->keep(); }
-  /// The run is complete.
-  void remove() const {
-    if (checkpoint_) checkpoint_->remove();
-  }
-
- private:
-  int count_, width_, height_;  // of the projections
-  std::optional<Initial> initial_;
-  std::optional<Checkpoint> checkpoint_;
-  optimize::CheckpointState state_;
 };
 
 }  // namespace vam::optimize_tool
