@@ -101,12 +101,12 @@ void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, con
   warn_of(hard, remedy, place_mm, scale, io::input_name(options.input));
 }
 
-/// What more of the same would buy, by how the latitude grew last.
+/// What it took, and what twice of that would buy, by how the latitude grew last.
 std::string what_more_buys(const optimize::VolumeOutcome& outcome) {
   if (!(outcome.growth < 1) || outcome.metrics.latitude <= 0 || outcome.iterations == 0) return "";
   const std::string twice = format_number(50 * outcome.metrics.latitude * std::exp2(outcome.growth), 3);
-  return "; " + std::to_string(outcome.iterations) + " iterations, and twice the computing would make it some +-" +
-         twice + " %";
+  return "; computed in " + format_number(outcome.seconds, 2) + " s, some +-" + twice + " % of dose would take " +
+         format_number(2 * outcome.seconds, 2) + " s";
 }
 
 void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {

@@ -2,6 +2,7 @@
 #include "optimize/run/volume.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <limits>
 #include <utility>
@@ -208,6 +209,7 @@ VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
     if (pieces) pieces->add(jobs.schedule.job_of_slice[k], image);
     task.write(k, image);
   });
+  const auto began = std::chrono::steady_clock::now();
   RunState run{task, light, jobs};
   PassState work;
   start(run, mark_of(task, digests), outputs, work);
@@ -224,6 +226,7 @@ VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
     hand_out(run, pass, setup.light.sharp(), std::exchange(work, {}), outputs);
   }
   if (pieces) run.outcome.pieces = pieces->found();
+  run.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return complete(run, outputs);
 }
 

@@ -72,6 +72,7 @@ struct VolumeOutcome {
   int iterations = 0;                        // most of any pass
   StopReason stop = StopReason::iterations;  // of the pass with most iterations; interrupted: there is no result
   double growth = no_growth_known;           // Outcome::growth of that pass
+  double seconds = 0;                        // that the optimisation took
   std::vector<model::DoseMetrics> trace;     // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;                // of the result, at the common threshold
   bool all_cut = false;                      // no voxel is wholly inside the part, and these are as with_cut
