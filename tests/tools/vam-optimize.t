@@ -21,8 +21,10 @@ is "with level rays a part of constant cross-section needs a few slices, its end
 quiet "auto is apg up to the knee" vam-optimize --angles 180 --report auto.json part.vdb -o auto.exr
 is "auto reaches its goal" "$(json auto.json stopped_by)" goal
 holds "no voxel is wrong" "$(json auto.json ver) == 0"
-vam-optimize --method apg --angles 180 --iterations "$(json auto.json iterations)" --patience 0 part.vdb -o apg.exr
+vam-optimize --method apg --angles 180 --iterations "$(json auto.json iterations)" part.vdb -o apg.exr
 is "with apg's pixels" "$(tail -c 20000 auto.exr | cksum)" "$(tail -c 20000 apg.exr | cksum)"
+quiet "beyond the knee" vam-optimize --angles 180 --iterations 40 --report long.json part.vdb -o apg.exr
+holds "all iterations are done, and no worse" "$(json long.json iterations) == 40 && $(json long.json latitude) >= $(json auto.json latitude)"
 holds "its report has the deviation of the surface" \
   "$(json auto.json surface.mean_mm) ^ 2 < 0.01 ^ 2 && $(json auto.json surface.rms_mm) < 0.025"
 
@@ -200,7 +202,6 @@ mkfifo fifo.state
 fails 65 'fifo.state: is not a regular file' endless --checkpoint fifo.state part.vdb -o out.exr
 ln -s gone gone.state
 fails 66 'gone.state: links to a file that is gone' endless --checkpoint gone.state part.vdb -o out.exr
-rm fifo.state gone.state
 unseen=0
 for trial in $(seq 12); do
   python3 - "$trial" <<'EOF'
@@ -219,7 +220,6 @@ is 'a cut or a flipped bit anywhere in a state is an error' $unseen 0
 cp part.vdb other.vdb
 fails 65 'not a checkpoint' vam-optimize --checkpoint other.vdb part.vdb -o out.exr
 
-# The front of duration against window.
 vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
 quiet "a front" vam-optimize --angles 60 $resin --tradeoff front.csv coarse.vdb -o front.exr
 is "its columns" "$(head -n 1 front.csv)" max_intensity,duration_s,turns,latitude,pw,ver,iou,peak_intensity,efficiency,latitude_tolerances

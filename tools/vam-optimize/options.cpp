@@ -106,9 +106,10 @@ void declare_constraints(cli::App& app, Options& options) {
 
 void declare_stopping(cli::App& app, Options& options) {
   app.group("Stopping criteria");
-  app.option("--iterations", "N", options.iterations, {0, 1000000}, "Maximum number of iterations.")
+  app.option("--iterations", "N", options.iterations, {0, 1000000},
+             "Number of iterations, which --until, --patience and --budget end before where they are given.")
       .excludes(at_once());
-  app.default_is(default_iterations()).not_in_job().brief("Maximum number of iterations.");
+  app.default_is("at most " + default_iterations()).not_in_job().brief("Number of iterations.");
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
                  join(optimize::SliceFigures::names(), ", ") + ".");
@@ -119,11 +120,11 @@ void declare_stopping(cli::App& app, Options& options) {
       .brief("Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'.");
   app.option(
       "--patience", "N", options.limits.patience, {0, 1000000},
-      "Stop when IoU + latitude has not improved by 1e-4 in this number of iterations; 0 disables it. Where no goal is "
-      "met, "
-      "the result is that of the iteration with the largest IoU + latitude (with --robust, and with apg while its "
-      "loss constrains the surface, that of the last one), with 0 that of the last one.");
-  app.excludes(at_once()).not_in_job();
+      "Stop when IoU + latitude, less what the surface's RMS distance in voxels is beyond 0.1 where apg constrains it, "
+      "has not improved by 1e-4 in this number of iterations. The result is that of the best iteration by this "
+      "figure, of those that meet --until if any does. 0 disables both: the result is that of the last, as with "
+      "--robust.");
+  app.default_is("10; --iterations where that is given").excludes(at_once()).not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
   app.option("--delivered", "DOSE", options.delivered,
              "Dose (VDB, in mJ/cm3) that the resin has received already, as of vam-dose --shown: the projections "

@@ -136,6 +136,7 @@ void resolve(const cli::App& app, const model::Printer& printer, Options& option
   options.how.power = options.power;
   resolve_limit(options, method);
   options.limits.iterations = options.iterations.value_or(method.iterations);
+  if (options.iterations && !app.given("--patience")) options.limits.patience = *options.iterations;  // all are done
   if (options.budget_s) options.limits.deadline = deadline_of(options);
   options.tradeoff.empty() ? resolve_raising(app, options) : resolve_tradeoff(options);
   if (!options.until.empty()) {

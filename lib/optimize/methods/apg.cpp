@@ -88,7 +88,6 @@ class Apg final : public Method {
   }
 
   [[nodiscard]] bool keeps_scale() const override { return true; }
-  [[nodiscard]] bool asks_more(const Problem& problem) const override { return asks_surface(problem.demands); }
   [[nodiscard]] std::optional<SurfaceMiss> surface_miss(std::span<const Slab> dose) const override {
     if (!surface_ || surface_->points().empty()) return std::nullopt;
     return surface_->miss(dose);

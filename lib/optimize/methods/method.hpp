@@ -65,8 +65,8 @@ class Method {
   [[nodiscard]] virtual std::optional<SurfaceMiss> surface_miss(std::span<const Slab> /*dose*/) const {
     return std::nullopt;
   }
-  /// Whether it asks for more than the nominal doses show: for the print's surface, for other printers.
-  [[nodiscard]] virtual bool asks_more(const Problem& /*problem*/) const { return false; }
+  /// Whether it asks for more than the nominal doses show: for other printers.
+  [[nodiscard]] virtual bool asks_more() const { return false; }
   /// max_V x / min_G x of no light within the limit is less, with the threshold in the middle; 0: not known.
   [[nodiscard]] virtual double provable_ratio() const { return 0; }
 

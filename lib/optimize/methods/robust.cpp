@@ -54,7 +54,7 @@ class Robust final : public Method {
     ++done_;
   }
 
-  [[nodiscard]] bool asks_more(const Problem& /*problem*/) const override { return true; }
+  [[nodiscard]] bool asks_more() const override { return true; }
 
   void exchange(Archive& archive) override {
     nominal_->exchange(archive);

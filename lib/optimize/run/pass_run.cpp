@@ -98,8 +98,7 @@ bool iterate(RunState& run, const Pass& pass, const PassPrinters& printers, Pass
   const Outcome outcome = run_shortest(*work.method, problem, light, limits_of(run, pass), task.raising, work.state,
                                        search, watch, task.checkpoint.pause, at_limit);
   if (outcome.stop == StopReason::interrupted) return false;
-  const bool returned = outcome.stop != StopReason::goal && return_to_best(problem, light, search.run, work.state);
-  if (returned) search.max_intensity = search.best_max_intensity;
+  if (return_to_best(problem, light, search.run, work.state)) search.max_intensity = search.best_max_intensity;
   search.run.best_light = {};
   run.totals.end(outcome);
   return true;

@@ -14,8 +14,11 @@ namespace vam::optimize {
 
 namespace {
 
-/// Mean over the slices with part.
-double mean_merit(const std::vector<model::DoseMetrics>& slices) {
+constexpr double goal_merit = 10;  // conditions that are met count for more than all else
+constexpr double true_rms = 0.1;   // voxels: up to this distance the surface is where it was asked for
+
+/// Mean over the slices with part, less by how far the surface is off.
+double mean_merit(const Method& method, const Iterate& state, const std::vector<model::DoseMetrics>& slices) {
   double sum = 0;
   int count = 0;
   for (const auto& m : slices) {
@@ -23,7 +26,8 @@ double mean_merit(const std::vector<model::DoseMetrics>& slices) {
     sum += merit(m);
     ++count;
   }
-  return count > 0 ? sum / count : 0.0;
+  const auto surface = method.surface_miss(state.dose);
+  return (count > 0 ? sum / count : 0.0) - (surface ? std::max(0.0, surface->rms - true_rms) : 0.0);
 }
 
 model::DoseMetrics mean_of(const std::vector<model::DoseMetrics>& slices) {
@@ -71,8 +75,9 @@ bool in_time(const std::optional<Deadline>& deadline, const IterationState& run)
 }
 
 /// Whether to stop at this iterate, and why.
-std::optional<StopReason> look(const Problem& problem, const light::Operator& light, const Limits& limits,
-                               const Iterate& state, IterationState& run, bool keeps, const Watch& watch) {
+std::optional<StopReason> look(const Method& method, const Problem& problem, const light::Operator& light,
+                               const Limits& limits, const Iterate& state, IterationState& run, bool keeps,
+                               const Watch& watch) {
   const bool last = run.iteration == limits.iterations;
   if (limits.watch_last || limits.iterations > 0) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
@@ -80,9 +85,11 @@ std::optional<StopReason> look(const Problem& problem, const light::Operator& li
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
     const model::DoseMetrics mean = mean_of(slices);
     note(run, mean.latitude);
+    const bool met = reached(limits.until, mean);
+    const double merit_now = mean_merit(method, state, slices) + (met ? goal_merit : 0.0);
+    const bool lost = lost_patience(run, limits, merit_now, keeps ? &state.g : nullptr);
     const bool counts = run.iteration >= limits.at_least && (limits.least_rate <= 0 || growth(run) < limits.least_rate);
-    if (counts && reached(limits.until, mean)) return StopReason::goal;
-    const bool lost = lost_patience(run, limits, mean_merit(slices), keeps ? &state.g : nullptr);
+    if (counts && met) return StopReason::goal;
     if (!last && lost && run.iteration >= limits.at_least) return StopReason::no_progress;
   }
   if (!last && !in_time(limits.deadline, run)) return StopReason::time;
@@ -126,9 +133,9 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
     }
     run.iteration = 0;
   }
-  const bool keeps = limits.patience > 0 && limits.iterations > 1 && !method.asks_more(problem);
+  const bool keeps = limits.patience > 0 && limits.iterations > 1 && !method.asks_more();
   for (;; ++run.iteration) {
-    const auto stop = looked ? std::nullopt : look(problem, light, limits, state, run, keeps, watch);
+    const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, run, keeps, watch);
     if (stop) return {run.iteration, *stop, growth(run)};
     if (pause && pause()) return {run.iteration, StopReason::interrupted};
     method.step(problem, light, state);

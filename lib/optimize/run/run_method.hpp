@@ -56,7 +56,9 @@ using Watch = std::function<void(int iteration, const std::vector<model::DoseMet
 /// Asked after every complete iterate whether to break off there.
 using Pause = std::function<bool()>;
 
-/// State of a run after `iteration` complete steps: the best merit so far, its iteration and its light.
+/// State of a run after `iteration` complete steps: the best merit so far, its iteration and its light. Merit is the
+/// mean of IoU + latitude, less what the RMS distance of a surface that the method optimises is beyond 0.1 voxels; an
+/// iterate that meets the conditions is before any that does not.
 struct IterationState {
   int iteration = -1;  // not begun
   double best = std::numeric_limits<double>::lowest();
@@ -67,7 +69,7 @@ struct IterationState {
 };
 
 /// Runs the method on one pass. The light of the best merit is kept where there is patience, unless the method asks for
-/// more than the merit shows. When iterate.g is not empty it is where the method starts from; a run
+/// more than the nominal doses show. When iterate.g is not empty it is where the method starts from; a run
 /// that has begun resumes from where it was interrupted (method and iterate as they were), as if it had not been.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate, IterationState& run, const Watch& watch = {}, const Pause& pause = {});
