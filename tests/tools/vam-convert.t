@@ -76,7 +76,7 @@ fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.ti
 mkdir patterns
 for a in 0 1 2 3 4 5 6 7; do $exr image patterns/000$a.exr 4 3 "50.0 * $a + 10 * y + x"; done
 $npy of patterns.npy 8,3,4 '50.0 * k + 10 * (2 - j) + i'
-for how in 'parallel --pixel 0.1' 'vial --axis-column 1.5 --set projector.response=[[0,0],[0.5,0.2],[1,1]]'; do
+for how in 'parallel --pixel 0.1' 'parallel --pixel 0.1 --from drtvam' 'vial --axis-column 1.5 --set projector.response=[[0,0],[0.5,0.2],[1,1]]'; do
   vam-convert patterns --geometry $how -o exr.exr
   vam-convert patterns.npy --axes azx --geometry $how -o npy.exr 2>/dev/null
   for kind in exr npy; do vam-convert $kind.exr -o $kind.npy; done
@@ -255,6 +255,19 @@ seen() {  # seen VOLUME: where voxels of its first slice are full
 }
 is 'images are slices as one sees them' "$(seen converted.vdb)" '(-0.75, 0.75) (0.25, -0.25) (0.75, -0.25)'
 is 'as vam-slice reads them' "$(seen sliced.vdb)" '(-0.75, 0.75) (0.25, -0.25) (0.75, -0.25)'
+python3 -c 'import struct
+data, pages = b"", 2
+for page in range(pages):  # 36 levels, then 9 entries: tag, type, count, value
+  at = 8 + len(data)
+  data += bytes(255 * ((i % 6, i // 6) in ((1, 1), (3, 3), (4, 3))) for i in range(36))
+  tags = {256: 6, 257: 6, 258: 8, 259: 1, 262: 1, 273: at, 277: 1, 278: 6, 279: 36}
+  data += struct.pack("<H", 9) + b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags.items())
+  data += struct.pack("<I", 0 if page == pages - 1 else 48 + len(data))
+open("pages.tif", "wb").write(b"II*\0" + struct.pack("<I", 44) + data)'
+vam-convert pages.tif --voxel 0.5 --full-scale 255 -o paged.vdb
+is 'and as pages of TIFF' "$(seen paged.vdb)" '(-0.75, 0.75) (0.25, -0.25) (0.75, -0.25)'
+vam-convert pages.tif --axes zyx --voxel 0.5 --full-scale 255 -o paged.vdb
+is 'whose rows --axes takes as they come' "$(seen paged.vdb)" '(-0.75, -0.75) (0.25, 0.25) (0.75, 0.25)'
 
 # H.264 has black at 16 and white at 235 of 255, unless it states a full range; of colours the luma counts.
 python3 -c 'import sys; sys.stdout.buffer.write(bytes([0] * 256 + [85] * 256 + [170] * 256 + [255] * 256) * 4)' >levels

@@ -27,7 +27,7 @@ void declare_volume(cli::App& app, Options& options) {
   app.default_is("the only one; target");
   app.group("Volumes", {"--voxel"});
   app.option("--origin", "X,Y,Z", options.origin_mm, 3, "Centre of the first voxel in mm; the axis is at x = y = 0.");
-  app.default_is("that which puts the middle of the volume on the axis, at z = 0");
+  app.default_is("that which puts the middle of the volume, or the voxel that --from has there, on the axis, at z = 0");
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::Range{model::least_stretch, model::most_stretch},
              "Interpolate the array along z to this multiple of its height, recorded as vam:stretch_z: for a target "
              "1/M_vp of the printer, as vam-slice has it.");
@@ -57,12 +57,14 @@ void declare_projections(cli::App& app, Options& options) {
              "state more turns than they make are then all of the print.");
   app.default_is(
       "that of frames.csv beside the images, or of a video that states it; else one turn divided by the projections");
+  app.option("--first-angle", "DEG", options.first_angle_deg, {-360, 360}, "Stage angle of the first projection.");
+  app.default_is("0, or that of frames.csv");
   app.option("--speed", "DEG/S", options.speed_deg_s, {-3600, 3600, false, true},
              "Speed at which the stage turns while a video plays, negative for the other way: its frames are shown for "
              "as long as it states. Sets stage.speed_deg_s.")
       .excludes({"--view-step"});
   app.option("--axis-column", "PX", options.axis_column, on_image, "Column of the projections on which the axis lies.");
-  app.default_is("projector.axis_column in images as wide as the projector's, else the middle");
+  app.default_is("that of --from; projector.axis_column in images as wide as the projector's, else the middle");
   app.option("--axis-row", "PX", options.axis_row, on_image,
              "Row of the images, or slice of the array, on which z = 0 lies.");
   app.default_is("projector.axis_row in images as high as the projector's, else the middle");
@@ -72,6 +74,7 @@ void declare_projections(cli::App& app, Options& options) {
          "How the images were turned for the projector, clockwise; undone first. Those for a projector on its side, "
          "with rows along the axis, are rotate-90 or rotate-270.")
       .not_for({"arrays"});
+  app.default_is("that of --from; normal");
 }
 
 }  // namespace
@@ -82,6 +85,10 @@ void declare(cli::App& app, Options& options) {
                  "video (MKV, MP4), volume (VDB) or stack (EXR).")
       .reads();
   cli::add_output(app, options.output);
+  app.choice("--from", options.from, programs(),
+             "Program whose conventions count (vam-formats(7)): order of axes, angles, the place of the axis, rows of "
+             "frames. Its angles are those of --view-step, --first-angle and --speed.")
+      .not_for(own_files);
   app.group("Arrays", {}, own_files);
   app.option("--array", "NAME", options.array, "Name of the array in a .npz file, path of the dataset in an HDF5 file.")
       .not_for({"images", "arrays alone in a file"});
@@ -90,7 +97,7 @@ void declare(cli::App& app, Options& options) {
              "Axes of the array from the slowest to the fastest, as NumPy indexes them: x, y and z of a volume; z, a "
              "(angle) and x (column) of projections. A minus before a letter reverses its axis.")
       .not_for({"images"});
-  app.default_is("zyx, zax");
+  app.default_is("those of --from; zyx, zax");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
              "Value that becomes 1, full coverage or full intensity.");
   app.default_is("1; full grey of images");
@@ -103,23 +110,25 @@ void declare(cli::App& app, Options& options) {
   app.group("Performance");
   cli::add_threads(app);
   app.usual({"--output", "--array", "--axes", "--full-scale", "--voxel", "--stretch-z", "--geometry", "--pixel",
-             "--like", "--view-step", "--axis-column", "--orientation", "--printer", "--set"});
+             "--like", "--view-step", "--from", "--axis-column", "--orientation", "--printer", "--set"});
 }
 
-std::array<int, 3> axes_of(const Options& options, const std::string& letters) {
-  const std::string order = options.axes.empty() ? letters : options.axes;
-  std::string bare = order;
-  std::erase(bare, '-');
-  const bool stray = order.ends_with('-') || order.find("--") != order.npos;
-  if (stray || bare.size() != 3 || !std::is_permutation(bare.begin(), bare.end(), letters.begin())) {
-    throw Error{Fault::usage, "--axes: '" + order + "' is not an order of the letters " + letters};
+io::ArrayOptions array_of(const Options& options, const std::string& letters) {
+  const Convention& program = convention_of(options.from);
+  const std::string_view usual = letters == "zyx" ? program.volume_axes : program.projection_axes;
+  const std::string stated = options.axes.empty() ? std::string(usual) : options.axes;
+  io::ArrayOptions array{options.array};
+  std::string order;
+  for (std::size_t at = 0; at < stated.size(); ++at) {
+    const bool reversed = stated[at] == '-' && at + 1 < stated.size();
+    const std::size_t letter = letters.find(stated[at += reversed ? 1 : 0]);
+    if (letter != std::string::npos) array.reversed[letter] = reversed;
+    order += stated[at];
   }
-  std::array<int, 3> axes{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    axes[i] = static_cast<int>(bare.find(letters[i]));
-    if (order.find(std::string{'-', letters[i]}) != order.npos) axes[i] = ~axes[i];
-  }
-  return axes;
+  if (order.size() != 3 || !std::is_permutation(order.begin(), order.end(), letters.begin()))
+    throw Error{Fault::usage, "--axes: '" + stated + "' is not an order of the letters " + letters};
+  for (std::size_t i = 0; i < 3; ++i) array.axes[i] = static_cast<int>(order.find(letters[i]));
+  return array;
 }
 
 void check_export(const Options& options) {

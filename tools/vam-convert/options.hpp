@@ -5,20 +5,34 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
+#include "io/array/array_file.hpp"
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"
 
 namespace vam::convert_tool {
+
+/// How a program keeps what it computes.
+struct Convention {
+  std::string_view program;
+  std::string_view volume_axes, projection_axes;  // of arrays, as --axes
+  std::string_view frames;                        // as --orientation
+  double zero_deg;                                // stage angle of its projections at 0,
+  int sense;                                      // from where they go on: -1: downwards
+  bool volume_at_half, columns_at_half;           // is the axis on N / 2, rounded down, of N; else in the middle
+  bool speed_in_name;                             // part_9rpm.mp4
+};
 
 struct Options {
   std::string input = "-";
   std::string output = "-";
   std::string array;
   std::string axes;
+  std::string from = "none";
   std::string grid;
   std::optional<double> full_scale;
   std::optional<double> voxel_mm;
@@ -30,6 +44,7 @@ struct Options {
   std::optional<double> slice_height_mm;
   std::string like;
   std::optional<double> view_step_deg;
+  std::optional<double> first_angle_deg;
   std::optional<double> speed_deg_s;
   std::optional<double> axis_column;
   std::optional<double> axis_row;
@@ -42,10 +57,17 @@ struct Options {
 
 void declare(cli::App& app, Options& options);
 
-/// Which axis of the array counts images, rows and columns, as io::ArrayOptions has it, where `letters` name them in
-/// this order: "zyx", "zax".
-/// Throws Fault::usage unless --axes has just these letters.
-[[nodiscard]] std::array<int, 3> axes_of(const Options& options, const std::string& letters);
+/// Those of --from, the first "none": of these tools.
+[[nodiscard]] std::vector<std::string> programs();
+[[nodiscard]] const Convention& convention_of(const std::string& program);
+/// Where that has the axis among so many voxels or columns.
+[[nodiscard]] double axis_of(int count, bool at_half);
+/// That of a video by its name, as OpenCAL has it: part_9rpm.mp4.
+[[nodiscard]] std::optional<double> named_speed_deg_s(const std::string& path);
+
+/// The array and its axes that count images, rows and columns, where `letters` name them in this order: "zyx", "zax".
+/// Throws Fault::usage unless --axes has just these letters, some behind a minus.
+[[nodiscard]] io::ArrayOptions array_of(const Options& options, const std::string& letters);
 
 /// Out of these tools: throws Fault::usage for an output that is not .npy.
 void check_export(const Options& options);

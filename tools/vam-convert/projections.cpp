@@ -69,9 +69,16 @@ session::Exposure stated_exposure(const Options& options, const io::ImageSource&
 
 /// What projections make together, and how exact the speed of the stage must be: the last one moves by half a column at
 /// the edge of the light. Frames of which nothing states the step may be those of several turns, as videos often are.
-void tell_turns(const Options& options, const Slices& slices, const Turns& turns, double axis) {
+void tell_turns(const Options& options, const Slices& slices, const std::vector<double>& edges_deg, const Turns& turns,
+                double axis) {
   const std::string name = io::input_name(options.input) + ": ";
   const int count = slices.size().rows;
+  if (options.from != "none") {
+    note(name + "as of " + options.from + ": the first projection at " +
+         format_number(0.5 * (edges_deg[0] + edges_deg[1]), 4) + " degrees, the last at " +
+         format_number(0.5 * (edges_deg[count - 1] + edges_deg[count]), 4) + ", the axis in column " +
+         format_number(axis));
+  }
   if (are_angles_stated(options, slices.source())) {
     const double reach = std::max({axis - slices.lit().first, slices.lit().second - axis, 0.5});
     return note(name + std::to_string(count) + " projections in " + format_number(turns.count()) +
@@ -88,8 +95,9 @@ void tell_turns(const Options& options, const Slices& slices, const Turns& turns
 }
 
 double axis_column(const Options& options, const model::Projector& projector, int columns) {
-  const double usual = columns == projector.columns ? projector.axis_column : 0.5 * (columns - 1);
-  return options.axis_column.value_or(options.in_vial() ? usual : 0.5 * (columns - 1));
+  if (options.axis_column) return *options.axis_column;
+  const bool own = options.in_vial() && options.from == "none" && columns == projector.columns;
+  return own ? projector.axis_column : axis_of(columns, convention_of(options.from).columns_at_half);
 }
 
 /// Slices are counted upwards, rows of images downwards.
@@ -268,6 +276,9 @@ void warn_of_colour(const Options& options, double peak) {
 }  // namespace
 
 void make_projections(const cli::App& app, Options options, std::optional<io::FileType> type) {
+  const Convention& program = convention_of(options.from);
+  if (program.speed_in_name && !options.view_step_deg && !options.speed_deg_s && type == io::FileType::video)
+    options.speed_deg_s = named_speed_deg_s(options.input);
   Slices slices(options, type, "zax");
   const io::ImageSource& source = slices.source();
   const model::Metadata& stated = source.info().extra;
@@ -276,12 +287,15 @@ void make_projections(const cli::App& app, Options options, std::optional<io::Fi
   printer.stage.speed_deg_s = std::abs(options.speed_deg_s.value_or(printer.stage.speed_deg_s));
   if (!app.given("--orientation") && stated.contains("vam:printer"))
     options.orientation = printer.projector.orientation;
+  else if (!app.given("--orientation"))
+    options.orientation = program.frames;
   const bool frames = slices.are_frames();
   if (frames) slices.collect(options, printer);
   const io::ArraySize size = slices.size();
-  const Turns turns(stage_edges_deg(options, source, size.rows), options.speed_deg_s.has_value(), name);
+  const std::vector<double> edges_deg = stage_edges_deg(options, source, size.rows);
+  const Turns turns(edges_deg, options.speed_deg_s.has_value(), name);
   if (turns.blurred()) printer.stage.motion = "stepped";  // the width of held frames is in the rows
-  tell_turns(options, slices, turns, axis_column(options, printer.projector, size.columns));
+  tell_turns(options, slices, edges_deg, turns, axis_column(options, printer.projector, size.columns));
   const Place place = place_columns(options, printer.projector, size.columns);
   const Heights own = own_heights(options, printer.projector, size.images, frames);
   Heights heights = own;

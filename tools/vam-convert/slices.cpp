@@ -21,8 +21,7 @@ namespace {
 
 class ArraySource : public io::ImageSource {
  public:
-  ArraySource(const Options& options, const std::string& letters)
-      : reader_(options.input, {options.array, axes_of(options, letters)}) {
+  ArraySource(const Options& options, const std::string& letters) : reader_(options.input, array_of(options, letters)) {
     const io::ArraySize size = reader_.size();
     info_.count = size.images;
     info_.height = size.rows;
@@ -31,6 +30,7 @@ class ArraySource : public io::ImageSource {
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
   bool next(Image& image, model::ImageInfo&) override { return reader_.next(image); }
+  [[nodiscard]] bool has_pages() const { return reader_.has_pages(); }
 
  private:
   io::ArrayReader reader_;
@@ -70,7 +70,11 @@ void upright(Image& frame, const std::string& orientation) {
 Slices::Slices(const Options& options, std::optional<io::FileType> type, const std::string& letters)
     : name_(io::input_name(options.input)), full_scale_(options.full_scale.value_or(1)), frames_(type.has_value()) {
   if (type) source_ = io::open_images(options.input, *type);
-  if (!type) source_ = std::make_unique<ArraySource>(options, letters);
+  if (!type) {
+    auto array = std::make_unique<ArraySource>(options, letters);
+    pages_ = array->has_pages() && options.axes.empty() && options.from == "none" && letters == "zyx";
+    source_ = std::move(array);
+  }
   const model::StackInfo& info = source_->info();
   size_ = {info.count, info.height, info.width};
   lit_columns_ = {0, info.width - 1};
@@ -118,7 +122,7 @@ void Slices::collect(const Options& options, const model::Printer& printer) {
 bool Slices::next(Image& slice) {
   if (lit_.empty()) {
     if (!take(slice)) return false;
-    if (frames_) optics::orient(slice, "flip-rows");  // voxels begin at the least y
+    if (frames_ || pages_) optics::orient(slice, "flip-rows");  // voxels begin at the least y
     return true;
   }
   if (done_ == size_.images) return false;

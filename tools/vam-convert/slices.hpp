@@ -43,6 +43,7 @@ class Slices {
   std::string name_;
   double full_scale_;
   bool frames_;
+  bool pages_ = false;
   std::unique_ptr<io::ImageSource> source_;
   io::ArraySize size_;
   std::vector<Lit> lit_;

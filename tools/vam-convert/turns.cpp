@@ -76,12 +76,21 @@ bool are_angles_stated(const Options& options, const io::ImageSource& from) {
 std::vector<double> stage_edges_deg(const Options& options, const io::ImageSource& from, int projections) {
   const std::string name = io::input_name(options.input);
   const std::vector<model::ImageInfo> frames = from.about();
-  if (options.speed_deg_s) return timed_edges_deg(from.times_s(), *options.speed_deg_s, name);
-  if (!options.view_step_deg && !frames.empty()) return measured_edges_deg(frames, name);
   const double stated_deg = from.info().angle_step_deg;
   const double step_deg = options.view_step_deg.value_or(stated_deg != 0 ? stated_deg : 360.0 / projections);
+  const bool measured = !options.speed_deg_s && !options.view_step_deg && !frames.empty();
   std::vector<double> edges;
-  for (int n = 0; n <= projections; ++n) edges.push_back((n - 0.5) * step_deg);
+  if (options.speed_deg_s) {
+    edges = timed_edges_deg(from.times_s(), *options.speed_deg_s, name);
+  } else if (measured) {
+    edges = measured_edges_deg(frames, name);
+  } else {
+    for (int n = 0; n <= projections; ++n) edges.push_back((n - 0.5) * step_deg);
+  }
+  const Convention& program = convention_of(options.from);
+  const double own_first = measured ? frames.front().angle_deg : 0;
+  const double first = options.first_angle_deg.value_or(own_first) - own_first;
+  for (double& edge : edges) edge = program.zero_deg + program.sense * (first + edge);
   return edges;
 }
 

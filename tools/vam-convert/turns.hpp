@@ -16,7 +16,8 @@ namespace vam::convert_tool {
 
 /// Over which stage angles each projection is shown: from edge n to edge n + 1, not wrapped. By --speed as long as a
 /// video shows it; in the middle of even steps, as given, stated or of one turn in all; by frames.csv until half way to
-/// the next, the shorter way. Throws Fault::usage for a speed without times, Fault::data for what is no angle.
+/// the next, the shorter way; the first at --first-angle, all as --from counts them. Throws Fault::usage for a speed
+/// without times, Fault::data for what is no angle.
 [[nodiscard]] std::vector<double> stage_edges_deg(const Options& options, const io::ImageSource& from, int projections);
 
 class Turns {

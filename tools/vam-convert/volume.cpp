@@ -26,6 +26,9 @@ model::Grid grid_of(const Options& options, const io::ArraySize& size, double st
   const double voxel_mm = *options.voxel_mm;
   const int slices = static_cast<int>(std::max(std::lround(size.images * stretch_z), 1L));
   model::Grid grid = model::centred_grid(size.columns, size.rows, slices, voxel_mm, -0.5 * (slices - 1) * voxel_mm);
+  const bool at_half = convention_of(options.from).volume_at_half;
+  grid.origin_mm[0] = -axis_of(size.columns, at_half) * voxel_mm;
+  grid.origin_mm[1] = -axis_of(size.rows, at_half) * voxel_mm;
   if (!options.origin_mm.empty()) {
     std::copy_n(options.origin_mm.begin(), 3, grid.origin_mm.begin());
     grid.origin_mm[2] = grid.origin_mm[2] * stretch_z + 0.5 * (stretch_z * (size.images - 1) - (slices - 1)) * voxel_mm;

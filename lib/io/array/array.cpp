@@ -73,7 +73,8 @@ std::string shape_text(const std::vector<std::uint64_t>& shape) {
   return text.empty() ? "one number" : text;
 }
 
-void set_shape(const std::vector<std::uint64_t>& shape, Head& head) {
+void set_shape(std::vector<std::uint64_t> shape, Head& head) {
+  while (shape.size() > 3 && shape.back() == 1) shape.pop_back();
   if (shape.size() != 2 && shape.size() != 3) {
     throw std::runtime_error("has " + std::to_string(shape.size()) + " axes" +
                              (shape.empty() ? "" : " (" + shape_text(shape) + ")") + "; arrays of 2 or 3 are read");
@@ -142,16 +143,16 @@ std::array<std::size_t, 3> strides(const Head& head) {
 
 }  // namespace
 
-Parser::Parser(const Head& head, Bytes values, std::array<int, 3> axes) : head_(head), bytes_(std::move(values)) {
+Parser::Parser(const Head& head, Bytes values, std::array<int, 3> axes, std::array<bool, 3> reversed)
+    : head_(head), bytes_(std::move(values)), reversed_(reversed) {
   const std::array<std::size_t, 3> own = strides(head_);
   for (std::size_t i = 0; i < 3; ++i) {
-    const int axis = axes[i] < 0 ? ~axes[i] : axes[i];
-    size_[i] = head_.shape[axis];
-    stride_[i] = axes[i] < 0 ? 0 - own[axis] : own[axis];  // modulo 2^64
-    if (axes[i] < 0) first_ += (size_[i] - 1) * own[axis];
+    size_[i] = head_.shape[axes[i]];
+    stride_[i] = own[axes[i]];
   }
   if (size_[1] * size_[2] > most_image) throw std::runtime_error("has images of more than 2^28 values");
-  streams_ = stride_[2] == 1 && stride_[1] == size_[2] && (stride_[0] == size_[1] * size_[2] || size_[0] == 1);
+  streams_ = !reversed_[0] && stride_[2] == 1 && stride_[1] == size_[2] &&
+             (stride_[0] == size_[1] * size_[2] || size_[0] == 1);
 }
 
 void Parser::take_floats(float* to, std::size_t count) {
@@ -175,8 +176,11 @@ void Parser::gather() {
   some_.assign(count, Image(static_cast<int>(size_[2]), static_cast<int>(size_[1])));
   for (std::size_t r = 0; r < size_[1]; ++r) {
     for (std::size_t c = 0; c < size_[2]; ++c) {
-      const std::size_t at = first_ + done_ * stride_[0] + r * stride_[1] + c * stride_[2];
-      for (std::size_t k = 0; k < count; ++k) some_[k].values[r * size_[2] + c] = all_[at + k * stride_[0]];
+      const float* from = all_.data() + r * stride_[1] + c * stride_[2];
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t image = reversed_[0] ? size_[0] - 1 - done_ - k : done_ + k;
+        some_[k].values[r * size_[2] + c] = from[image * stride_[0]];
+      }
     }
   }
 }
@@ -207,6 +211,9 @@ void Parser::next(Image& image) {
     image = std::move(some_[done_ % side_by_side]);
   }
   check(image);
+  for (int r = 0; r < image.height && reversed_[2]; ++r) std::reverse(image.row(r), image.row(r) + image.width);
+  for (int r = 0; r < image.height / 2 && reversed_[1]; ++r)
+    std::swap_ranges(image.row(r), image.row(r) + image.width, image.row(image.height - 1 - r));
   ++done_;
 }
 

@@ -117,7 +117,7 @@ struct ArrayReader::State {
       Bytes unpacked = arrays::open_array(archive, options.name, file.name(), stated);
       const arrays::Head head = take_npy_head(unpacked);
       arrays::require_values(head, stated);
-      return send({head, std::move(unpacked), options.axes}, out);
+      return send({head, std::move(unpacked), options.axes, options.reversed}, out);
     }
     if (format == Format::tiff) {
       TiffPages pages(std::move(bytes));
@@ -126,18 +126,18 @@ struct ArrayReader::State {
       head.kind = pages.kind();
       head.bytes = pages.value_bytes();
       set_shape({pages.pages(), pages.rows(), pages.columns()}, head);
-      return send({head, std::move(values), options.axes}, out);
+      return send({head, std::move(values), options.axes, options.reversed}, out);
     }
     if (format == Format::hdf5) {
       const std::string_view all = map == nullptr ? std::string_view(bytes) : std::string_view(map.get(), file.size());
       arrays::Head head;
       Bytes values = arrays::open_hdf5(all, options.name, file.name(), head);
-      return send({head, std::move(values), options.axes}, out);
+      return send({head, std::move(values), options.axes, options.reversed}, out);
     }
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); });
     double stated_mm = 0;
     const arrays::Head head = format == Format::npy ? take_npy_head(front) : take_nrrd_head(front, stated_mm);
-    send({head, std::move(front), options.axes}, out, stated_mm);
+    send({head, std::move(front), options.axes, options.reversed}, out, stated_mm);
   }
 
   // What a child sends is not believed.
@@ -169,6 +169,8 @@ ArrayReader::~ArrayReader() = default;
 const ArraySize& ArrayReader::size() const { return state_->size; }
 
 double ArrayReader::voxel_mm() const { return state_->voxel_mm; }
+
+bool ArrayReader::has_pages() const { return state_->format == Format::tiff; }
 
 bool ArrayReader::next(Image& image) {
   if (state_->done == state_->size.images) return false;

@@ -32,8 +32,9 @@ struct Head {
 /// "3 x 4"; "one number" where there are no axes.
 [[nodiscard]] std::string shape_text(const std::vector<std::uint64_t>& shape);
 
-/// Two axes or three, the slowest first. Throws for another number of axes, an empty axis, sizes beyond the limits.
-void set_shape(const std::vector<std::uint64_t>& shape, Head& head);
+/// Two axes or three, the slowest first; more where the last are 1, as the only channel of a target of Dr.TVAM. Throws
+/// for another number of axes, an empty axis, sizes beyond the limits.
+void set_shape(std::vector<std::uint64_t> shape, Head& head);
 
 /// `count` values of the head's type as floats; what is too large for a float becomes infinite.
 void to_floats(const Head& head, const char* bytes, std::size_t count, float* to);
@@ -59,8 +60,8 @@ class Bytes {
 /// The values front to back.
 class Parser {
  public:
-  /// Which axis of the array counts images, rows and columns. Throws std::runtime_error.
-  Parser(const Head& head, Bytes values, std::array<int, 3> axes);
+  /// Which axis of the array counts images, rows and columns, and whether from its end. Throws std::runtime_error.
+  Parser(const Head& head, Bytes values, std::array<int, 3> axes, std::array<bool, 3> reversed = {});
   /// Images, rows, columns.
   [[nodiscard]] const std::array<std::size_t, 3>& size() const { return size_; }
   /// Image `k`, in ascending order. Throws std::runtime_error: cut off, more bytes than values, a value that is not
@@ -78,8 +79,8 @@ class Parser {
   Bytes bytes_;
   std::array<std::size_t, 3> size_{};
   std::array<std::size_t, 3> stride_{};  // in values, from image to image, row to row, column to column
-  std::size_t first_ = 0;                // value of the first image
-  bool streams_ = false;                 // the images are as they come
+  std::array<bool, 3> reversed_{};
+  bool streams_ = false;  // the images are as they come
   std::vector<char> raw_;
   std::vector<float> all_;  // where they are not
   std::vector<Image> some_;
