@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -69,6 +70,9 @@ class Package {
     soup_.faces.reserve(all.triangles);
     for (const Instance& item : build) place(root_, item, {}, Role::added);
     if (soup_.faces.empty() && ignored_) throw MeshProblem{"its build has supports only, and no part"};
+    if (!taken_away_.empty() && build.size() > 1)
+      throw MeshProblem{"has a negative volume, which is taken away from one of its " + std::to_string(build.size()) +
+                        " items only; export it as a plain mesh"};
     soup_.taken_away = taken_away_.size();
     soup_.faces.insert(soup_.faces.end(), taken_away_.begin(), taken_away_.end());
     return std::move(soup_);
@@ -137,7 +141,6 @@ class Package {
       throw MeshProblem{"its components are nested deeper than " + std::to_string(max_depth) +
                         "; save it as a plain mesh (STL)"};
     const Object3mf& made_of = object(name, instance.object);
-    if (!made_of.problem.empty()) throw MeshProblem{which + " " + made_of.problem + "; export it as a plain mesh"};
     count.triangles = made_of.triangles.size();
     count.points = made_of.points.size();
     for (const Instance& component : made_of.components) add(count, expanded(name, component, depth + 1));
@@ -153,22 +156,40 @@ class Package {
     throw MeshProblem{which + " is of type " + excerpt(type) + ", which is not printed; export it as a plain mesh"};
   }
 
-  void place(const std::string& from, const Instance& instance, const ComponentPlacement& outer, Role role) {
+  /// What the slicer has made of the n-th component, by its place, or by its object where not each is named. None: what
+  /// its own type says.
+  std::optional<Role> stated(const std::vector<VolumeType>& parts, const std::vector<Instance>& components,
+                             std::size_t n, Role outer, const std::string& which) const {
+    std::optional<Role> role;
+    const bool each = parts.size() == components.size() && parts[n].component == components[n].object;
+    for (const VolumeType& part : each ? std::vector{parts[n]} : parts) {
+      if (part.component != components[n].object) continue;
+      const Role own = within(outer, part.type, which);
+      if (role && *role != own) throw MeshProblem{which + " has a component of two types; export it as a plain mesh"};
+      role = own;
+    }
+    return role;
+  }
+
+  void place(const std::string& from, const Instance& instance, const ComponentPlacement& outer, Role role,
+             bool is_stated = false) {
     const std::string name = part_name(from, instance);
     const std::string which = "object " + std::to_string(instance.object);
     const Object3mf& made_of = object(name, instance.object);
-    if (made_of.components.empty()) role = within(role, made_of.type, which);
+    if (made_of.components.empty() && !is_stated) role = within(role, made_of.type, which);
+    if (role != Role::ignored && !made_of.problem.empty())
+      throw MeshProblem{which + " " + made_of.problem + "; export it as a plain mesh"};
     const ComponentPlacement placement = instance.placement.then(outer);
     const bool mirrored = placement.mirrors();  // 3MF core specification, 4.1: the outside stays outside
     const int first = count_of(soup_.points);
     const int last = count_of(made_of.points);
     for (const auto& point : made_of.points) soup_.points.push_back(placement(point));
     std::vector<Role> roles(made_of.triangles.size(), role);
-    std::map<unsigned, Role> inner;  // of components
+    std::vector<VolumeType> parts;  // its components
     for (const VolumeType& volume : name == root_ ? volumes_[instance.object] : std::vector<VolumeType>{}) {
-      const Role own = within(role, volume.type, which);
-      if (volume.component != 0) inner[volume.component] = own;
+      if (volume.component != 0) parts.push_back(volume);
       if (volume.component != 0) continue;
+      const Role own = within(role, volume.type, which);
       for (std::size_t t = volume.first; t <= volume.last && t < roles.size(); ++t) roles[t] = own;
     }
     for (std::size_t t = 0; t < roles.size(); ++t) {
@@ -183,8 +204,10 @@ class Package {
       if (roles[t] == Role::added) soup_.faces.push_back({first + a, first + b, first + c});
       if (roles[t] == Role::taken_away) taken_away_.push_back({first + a, first + b, first + c});
     }
-    for (const Instance& component : made_of.components)
-      place(name, component, placement, inner.contains(component.object) ? inner[component.object] : role);
+    for (std::size_t n = 0; n < made_of.components.size(); ++n) {
+      const std::optional<Role> own = stated(parts, made_of.components, n, role, which);
+      place(name, made_of.components[n], placement, own.value_or(role), own.has_value());
+    }
   }
 
   ZipArchive archive_;

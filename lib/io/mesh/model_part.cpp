@@ -152,6 +152,7 @@ class ModelReader {
   void begin(const XmlElement& element) {
     ++depth_;
     metadata_.clear();
+    text_.clear();
     if (element.space != core) {
       begin_of_extension(element);
     } else if (element.name == "vertex" && object_ != nullptr) {
@@ -173,12 +174,15 @@ class ModelReader {
       found_ = true;
     }
   }
-  // Cura says "True" of what a mesh is.
   void text(std::string_view piece) {
-    if (!metadata_.empty() && piece == "True" && role_of(metadata_) != Role::refused) object_->type = metadata_;
+    if (!metadata_.empty()) text_ += piece;
   }
   void end() {
+    // Cura says "True" of what a mesh is.
+    if (!metadata_.empty() && trimmed(text_) == "True" && role_of(metadata_) != Role::refused)
+      object_->type = metadata_;
     metadata_.clear();
+    text_.clear();
     if (depth_-- != object_depth_ || object_ == nullptr) return;
     const std::size_t before = object_->triangles.size();
     append_beams(beams_, *object_);
@@ -296,6 +300,7 @@ class ModelReader {
   BeamEnd end_;                                // of its beams that say nothing else
   double least_mm_ = 0;                        // shorter beams are none
   std::string metadata_;                       // that is open, of an object
+  std::string text_;                           // and what it says
   int depth_ = 0;
   int object_depth_ = 0;
   std::size_t triangles_ = 0;

@@ -97,9 +97,10 @@ class Bench {
 using Margin = std::function<double(double multiple)>;
 
 /// The multiple, up to `reach`, at which the margin is lost, to 2 %: by doubling, then by secants that step a little
-/// beyond the root, to both sides in turn. 0: none.
+/// beyond the root, to both sides in turn. 0: none. One that is below `least` is given as that: a step of the model
+/// there, as where an aperture begins, would be halved for ever.
 double end(const Margin& margin, double at_low, double at_high, double reach) {
-  constexpr double sure = 0.02;
+  constexpr double sure = 0.02, least = 0.01;
   double low = 0, high = 1;
   while (at_high > 0) {
     if (high >= reach) return 0;
@@ -107,7 +108,7 @@ double end(const Margin& margin, double at_low, double at_high, double reach) {
     at_low = at_high;
     at_high = margin(high *= 2);
   }
-  for (bool beyond = true; high - low > sure * high;) {
+  for (bool beyond = true; high - low > sure * high && high > least;) {
     const double root = low + (high - low) * at_low / std::max(at_low - at_high, 1e-12);
     const double tenth = 0.1 * (high - low);
     const double x = std::clamp(root + (beyond ? 0.4 : -0.4) * sure * high, low + tenth, high - tenth);

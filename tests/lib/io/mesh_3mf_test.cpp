@@ -128,15 +128,20 @@ TEST_CASE("3MF: volumes of slicers are added, taken away or left out, as PrusaSl
   const auto part = [](int id, const std::string& subtype) {
     return "<part id=\"" + std::to_string(id) + "\" subtype=\"" + subtype + "\"/>";
   };
+  const std::string other = "<object id=\"2\" type=\"other\">" + mesh_xml(box()) + "</object>";  // whatever is no part
   const std::string components =
-      object(1, mesh_xml(box())) + object(2, mesh_xml(box())) + object(3, mesh_xml(box())) +
-      object(8, "<components>" + component(1) + component(2) + component(3) + "</components>");
+      object(1, mesh_xml(box())) + other + object(3, mesh_xml(box())) +
+      object(8, "<components>" + component(1) + component(2) + component(3) + "</components>") +
+      object(9, "<components>" + component(1) + component(1) + "</components>");
   CHECK(with(model(components, item(8)), "Metadata/model_settings.config",
              "<object id=\"8\">" + part(1, "normal_part") + part(2, "negative_part") + part(3, "modifier_part") +
                  "</object>") == std::pair(6.0, 6.0));
+  CHECK(with(model(components, item(9)), "Metadata/model_settings.config",
+             "<object id=\"9\">" + part(1, "normal_part") + part(1, "negative_part") + "</object>") ==
+        std::pair(6.0, 6.0));
   const std::string cura =
       object(1, mesh_xml(box())) + object(2,
-                                          "<metadatagroup><metadata name=\"cura:cutting_mesh\">True</metadata>"
+                                          "<metadatagroup><metadata name=\"cura:cutting_mesh\">\n True</metadata>"
                                           "</metadatagroup>" +
                                               mesh_xml(box()));
   CHECK(volume(mesh_of(package(model(cura, item(1) + item(2))))) == doctest::Approx(6));
