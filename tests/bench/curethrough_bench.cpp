@@ -2,8 +2,6 @@
 // The correction of a part of 1920 x 1080 x 1000 voxels, without reading and writing: the work per slice.
 #include <benchmark/benchmark.h>
 
-#include <vector>
-
 #include "resin/curethrough/slice_correction.hpp"
 
 namespace {
@@ -16,15 +14,11 @@ constexpr int slices = 200;
 const vam::resin::PartColumns& part() {
   static const auto built = [] {
     vam::resin::PartColumns columns(width, height, slices, vam::resin::ExposureMode::continuous);
-    std::vector<float> slice(static_cast<std::size_t>(width) * height);
-    for (int k = 0; k < slices; ++k) {
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          slice[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] =
-              (k + x / 8 + y / 8) % 60 < 40 ? 1 : 0;
-        }
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const std::size_t column = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+        for (int k = 0; k < slices; ++k) columns.fill(column, k, 1, (k + x / 8 + y / 8) % 60 < 40);
       }
-      columns.append(1, slice.data(), 0.5F);
     }
     return columns;
   }();
@@ -43,17 +37,6 @@ void corrected_slice(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * slices * width * height);
 }
 BENCHMARK(corrected_slice)->Unit(benchmark::kMillisecond);
-
-void packed_slice(benchmark::State& state) {
-  const std::vector<float> slab(static_cast<std::size_t>(width) * height * 16, 0.7F);
-  for (auto _ : state) {
-    vam::resin::PartColumns columns(width, height, 64, vam::resin::ExposureMode::continuous);
-    for (int k = 0; k < 4; ++k) columns.append(16, slab.data(), 0.5F);
-    benchmark::DoNotOptimize(columns.solid(0, 0));
-  }
-  state.SetItemsProcessed(state.iterations() * 64 * width * height);
-}
-BENCHMARK(packed_slice)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -22,7 +22,6 @@
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/slice_place.hpp"
-#include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/gaps.hpp"
 #include "resin/curethrough/slice_correction.hpp"
 #include "session/printer.hpp"

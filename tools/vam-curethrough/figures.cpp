@@ -30,10 +30,7 @@ std::vector<std::pair<Heights, resin::FeatureErrors>> grouped(const std::vector<
     if (taken++ % each == 0) groups.push_back({{h, h}, {}});
     auto& [heights, sum] = groups.back();
     heights.second = h;
-    sum.features += e.features;
-    sum.under += e.under;
-    sum.through += e.through;
-    sum.worst = std::max(sum.worst, e.worst);
+    sum.add(e);
   }
   return groups;
 }

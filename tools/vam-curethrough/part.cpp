@@ -62,7 +62,7 @@ PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
     }
     return [this](const io::VoxelBlock& block) {
       io::check_values(options_.path, facts_, block);
-      block.values != nullptr ? take_values(block) : fill(block);
+      take(block);
     };
   });
   const double factor = model::stretch_z(facts_.metadata);
@@ -72,29 +72,22 @@ PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
   }
 }
 
-void PartFile::take_values(const io::VoxelBlock& block) {
+void PartFile::take(const io::VoxelBlock& block) {
   const Box box(block, grid());
   const int count = box.z1 - box.z0;
-  if (count <= 0) return;
   const int first = upside_down() ? grid().nz - box.z1 : box.z0;
-  for (int y = box.y0; y < box.y1; ++y) {
+  for (int y = box.y0; y < box.y1 && count > 0; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
+      if (block.values == nullptr) {
+        columns_->fill(pixel(x, y), first, count, block.value >= least_);
+        continue;
+      }
       const int corner = ((x - block.i) * 8 + (y - block.j)) * 8 + (box.z0 - block.k);
       const float* column = block.values + corner;
       std::uint64_t bits = 0;
       for (int b = 0; b < count; ++b) bits |= static_cast<std::uint64_t>(column[b] >= least_) << b;
       columns_->put(pixel(x, y), first, count, upside_down() ? reversed(bits, count) : bits);
     }
-  }
-}
-
-void PartFile::fill(const io::VoxelBlock& block) {
-  const Box box(block, grid());
-  if (box.z1 <= box.z0) return;
-  const int first = upside_down() ? grid().nz - box.z1 : box.z0;
-  const bool solid = block.value >= least_;
-  for (int y = box.y0; y < box.y1; ++y) {
-    for (int x = box.x0; x < box.x1; ++x) columns_->fill(pixel(x, y), first, box.z1 - box.z0, solid);
   }
 }
 

@@ -36,8 +36,7 @@ class PartFile {
   void write(io::SparseVolume& volume, int first, int count, std::vector<float>& slices) const;
 
  private:
-  void take_values(const io::VoxelBlock& block);
-  void fill(const io::VoxelBlock& block);
+  void take(const io::VoxelBlock& block);
   [[nodiscard]] std::size_t pixel(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid().nx) + x;
   }

@@ -85,4 +85,10 @@ int burst_slices(const CureLimits& limits) {
   return whole < 1e6 ? std::max(1, static_cast<int>(whole)) : 0;
 }
 
+int extra_slices(int last_slice, int slices, const CureLimits& limits) {
+  if (last_slice < 0) return 0;
+  const int last_node = last_slice + (limits.exposure == ExposureMode::continuous ? 1 : 0);
+  return std::max(0, last_node + burst_slices(limits) - slices);
+}
+
 }  // namespace vam::resin

@@ -73,6 +73,10 @@ struct CureLimits {
 /// The fewest slices at phi_max that raise the dose from 0 to 1; 0 when no number does.
 [[nodiscard]] int burst_slices(const CureLimits& limits);
 
+/// Slices after the `slices` of a part that the burst below its deepest one, last_slice, needs; 0 for an empty part
+/// (-1) or without a burst.
+[[nodiscard]] int extra_slices(int last_slice, int slices, const CureLimits& limits);
+
 /// Below this, differences of Omega are rounding: what counts as cured is Omega >= 1 - dose_tolerance.
 inline constexpr double dose_tolerance = 1e-6;
 

@@ -19,14 +19,16 @@ Cure cure_of(double centre_dose, bool solid) {
   return cured ? Cure::through : Cure::empty;
 }
 
+void FeatureErrors::add(const FeatureErrors& other) {
+  features += other.features;
+  under += other.under;
+  through += other.through;
+  worst = std::max(worst, other.worst);
+}
+
 FeatureErrors CureTotals::all() const {
   FeatureErrors sum;
-  for (const FeatureErrors& errors : by_height) {
-    sum.features += errors.features;
-    sum.under += errors.under;
-    sum.through += errors.through;
-    sum.worst = std::max(sum.worst, errors.worst);
-  }
+  for (const FeatureErrors& errors : by_height) sum.add(errors);
   return sum;
 }
 
@@ -38,12 +40,9 @@ CureMap::CureMap(int width, int height, int slices, const CureLimits& limits)
 // Books the pending feature; `extra` is what was cured below it when it is the last of its column.
 void CureMap::settle(Pixel& pixel, float extra, CureTotals& totals) {
   if (pixel.pending == 0) return;
-  FeatureErrors& errors = totals.by_height[pixel.pending];
   const double through = static_cast<double>(pixel.above) + static_cast<double>(extra);
-  ++errors.features;
-  errors.under += pixel.under;
-  errors.through += through;
-  errors.worst = std::max(errors.worst, static_cast<double>(pixel.under) + through);
+  const auto under = static_cast<double>(pixel.under);
+  totals.by_height[pixel.pending].add({1, under, through, under + through});
   pixel.pending = 0;
 }
 
@@ -95,12 +94,7 @@ CureTotals CureMap::finish() {
     sum.correct += row.correct;
     sum.through += row.through;
     sum.under += row.under;
-    for (std::size_t h = 0; h < sum.by_height.size(); ++h) {
-      sum.by_height[h].features += row.by_height[h].features;
-      sum.by_height[h].under += row.by_height[h].under;
-      sum.by_height[h].through += row.by_height[h].through;
-      sum.by_height[h].worst = std::max(sum.by_height[h].worst, row.by_height[h].worst);
-    }
+    for (std::size_t h = 0; h < sum.by_height.size(); ++h) sum.by_height[h].add(row.by_height[h]);
   }
   return sum;
 }

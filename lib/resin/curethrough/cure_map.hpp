@@ -24,6 +24,7 @@ struct FeatureErrors {
   double through = 0;
   double worst = 0;  // largest error of one feature
   [[nodiscard]] double mean() const { return features > 0 ? (under + through) / static_cast<double>(features) : 0; }
+  void add(const FeatureErrors& other);
 };
 
 struct CureTotals {

@@ -5,7 +5,6 @@
 #include <bit>
 
 #include "base/compute/parallel.hpp"
-#include "base/error.hpp"
 #include "base/index.hpp"
 
 namespace vam::resin {
@@ -70,40 +69,6 @@ void PartColumns::unpack(int first, int count, float* out) const {
   parallel_for(height_, [&](int y) { unpack_row(y, first, count, out + product(y, width_), pixels_); });
 }
 
-void PartColumns::append(int count, const float* values, float threshold) {
-  if (filled_ + count > slices_) throw Error{Fault::bug, "part columns: more slices than announced"};
-  const auto row_pixels = static_cast<std::size_t>(width_);
-  staged_.resize(pixels_);
-  for (int done = 0; done < count;) {
-    const int bit = filled_ % word_bits;
-    const int batch = std::min(count - done, word_bits - bit);
-    parallel_for(height_, [&](int y) {
-      const std::size_t start = product(y, row_pixels);
-      std::uint64_t* word = staged_.data() + start;
-      for (int k = 0; k < batch; ++k) {
-        const float* value = values + static_cast<std::size_t>(done + k) * pixels_ + start;
-        for (std::size_t x = 0; x < row_pixels; ++x) {
-          word[x] |= static_cast<std::uint64_t>(value[x] >= threshold) << static_cast<unsigned>(bit + k);
-        }
-      }
-    });
-    filled_ += batch;
-    done += batch;
-    if (filled_ % word_bits == 0 || filled_ == slices_) flush();
-  }
-}
-
-void PartColumns::flush() {
-  const auto index = static_cast<std::size_t>(filled_ - 1) / 64;
-  parallel_for(height_, [&](int y) {
-    const std::size_t start = product(y, width_);
-    for (std::size_t p = start; p < start + width_; ++p) {
-      words_[p * stride_ + index] = staged_[p];
-      staged_[p] = 0;
-    }
-  });
-}
-
 // A plane belongs to a feature when the slice before or after it does.
 std::uint64_t PartColumns::node_word(const std::uint64_t* words, std::size_t index) const {
   const std::uint64_t here = words[index];
@@ -146,7 +111,6 @@ PartSurvey survey(const PartColumns& part) {
   std::vector<PartSurvey> rows(part.height());
   parallel_for(part.height(), [&](int y) {
     PartSurvey& row = rows[y];
-    row.gaps.resize(part.slices() + 1);
     const std::size_t start = product(y, part.width());
     for (std::size_t p = start; p < start + part.width(); ++p) {
       int begin = part.next_slice(p, 0, true);
@@ -156,17 +120,14 @@ PartSurvey survey(const PartColumns& part) {
         ++row.features;
         row.last_slice = std::max(row.last_slice, end - 1);
         begin = part.next_slice(p, end, true);
-        if (begin < part.slices()) ++row.gaps[begin - end];
       }
     }
   });
   PartSurvey sum;
-  sum.gaps.resize(part.slices() + 1);
   for (const PartSurvey& row : rows) {
     sum.columns += row.columns;
     sum.features += row.features;
     sum.last_slice = std::max(sum.last_slice, row.last_slice);
-    for (std::size_t g = 0; g < sum.gaps.size(); ++g) sum.gaps[g] += row.gaps[g];
   }
   return sum;
 }

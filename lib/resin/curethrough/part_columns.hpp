@@ -27,9 +27,6 @@ class PartColumns {
   void put(std::size_t column, int first, int count, std::uint64_t bits);
   /// Any number of slices of a column, all in the part or all out of it.
   void fill(std::size_t column, int first, int count, bool solid);
-  /// The same by the next `count` slices, dense, one after the other: a voxel is in the part where its value reaches
-  /// `threshold`. Throws Fault::bug when more than `slices` come.
-  void append(int count, const float* values, float threshold);
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
@@ -42,10 +39,6 @@ class PartColumns {
   /// The same of row y alone, slice first + i at out + i * stride.
   void unpack_row(int y, int first, int count, float* out, std::size_t stride) const;
 
-  /// Is slice n of this column in the part?
-  [[nodiscard]] bool solid(std::size_t column, int n) const {
-    return (column_words(column)[n / 64] >> (n % 64) & 1U) != 0;
-  }
   /// The run that holds this node; a run outside that reaches the last node has last = nodes() - 1.
   [[nodiscard]] NodeRun run(std::size_t column, int node) const;
   /// The first slice >= n that is in the part (or not, when `solid` is false); slices() when there is none.
@@ -55,7 +48,6 @@ class PartColumns {
   [[nodiscard]] std::uint64_t bits(std::size_t column, int first) const;
   [[nodiscard]] const std::uint64_t* column_words(std::size_t column) const { return words_.data() + column * stride_; }
   [[nodiscard]] std::uint64_t node_word(const std::uint64_t* words, std::size_t index) const;
-  void flush();
   int width_;
   int height_;
   int slices_;
@@ -63,17 +55,14 @@ class PartColumns {
   bool planes_;  // a node is a plane between slices
   std::size_t pixels_;
   std::size_t stride_;  // words per column
-  int filled_ = 0;
   std::vector<std::uint64_t> words_;
-  std::vector<std::uint64_t> staged_;  // the 64 slices being filled, one word per column
 };
 
-/// What the part asks of a print, by the length of its gaps in slices.
+/// What the part asks of a print.
 struct PartSurvey {
-  std::size_t columns = 0;        // that hold any part
-  std::size_t features = 0;       // runs of slices in the part, over all columns
-  int last_slice = -1;            // the deepest slice in the part
-  std::vector<std::size_t> gaps;  // gaps[g] = gaps of g slices between two features of a column
+  std::size_t columns = 0;   // that hold any part
+  std::size_t features = 0;  // runs of slices in the part, over all columns
+  int last_slice = -1;       // the deepest slice in the part
 };
 [[nodiscard]] PartSurvey survey(const PartColumns& part);
 

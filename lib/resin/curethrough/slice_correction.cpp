@@ -17,8 +17,6 @@ namespace {
 
 const CorrectionKernels& kernels() { return VAM_KERNEL(correction_kernels, simd_level()); }
 
-constexpr int guess_bins = 4096;
-
 }  // namespace
 
 ColumnCursor::ColumnCursor(const PartColumns& part, const TargetDose& dose)
@@ -49,17 +47,12 @@ void ColumnCursor::place(int y, int node) {
   for (std::size_t p = start(y); p < start(y + 1); ++p) place_column(p, node);
 }
 
-void ColumnCursor::step_down(int y, int node) {
-  if (!kernels().any_equal(last_.data() + start(y), node - 1, part_.width())) return;
+void ColumnCursor::step(int y, int node, bool down) {
+  const std::vector<int>& edges = down ? last_ : first_;
+  const int left = down ? node - 1 : node + 1;
+  if (!kernels().any_equal(edges.data() + start(y), left, part_.width())) return;
   for (std::size_t p = start(y); p < start(y + 1); ++p) {
-    if (last_[p] == node - 1) place_column(p, node);
-  }
-}
-
-void ColumnCursor::step_up(int y, int node) {
-  if (!kernels().any_equal(first_.data() + start(y), node + 1, part_.width())) return;
-  for (std::size_t p = start(y); p < start(y + 1); ++p) {
-    if (first_[p] == node + 1) place_column(p, node);
+    if (edges[p] == left) place_column(p, node);
   }
 }
 
@@ -96,7 +89,7 @@ void SliceCorrection::next(Image& slice) {
   const int node = ++done_;
   const CorrectionKernels& kernel = kernels();
   parallel_for(part_.height(), [&](int y) {
-    cursor_.step_down(y, node);
+    cursor_.step(y, node, true);
     kernel.forward({dose_.table(), cursor_.below(y), cursor_.above(y), omega_.data() + product(y, part_.width()),
                     slice.row(y), part_.width(), node, limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
   });
@@ -108,7 +101,6 @@ LevelCorrection::LevelCorrection(const PartColumns& part, const CureLimits& limi
       limits_(limits),
       dose_(limits, limit, slices),
       cursor_(part, dose_),
-      first_guess_(guess_bins + 1),
       omega_(part.columns()),
       left_(slices) {
   if (levels.size() < 2 || levels.size() > 65536 || !std::is_sorted(levels.begin(), levels.end())) {
@@ -116,23 +108,7 @@ LevelCorrection::LevelCorrection(const PartColumns& part, const CureLimits& limi
                                  " intensities that do not rise; give 2 to 65536 rising ones"};
   }
   for (const float level : levels) phi_.push_back(static_cast<double>(level) * limits.phi_max);
-  std::size_t lowest = 0;
-  for (int bin = 0; bin <= guess_bins; ++bin) {
-    const double phi = limits.phi_max * bin / guess_bins;
-    while (lowest + 1 < phi_.size() && phi_[lowest] < phi) ++lowest;
-    // One below, so that rounding of the bin number cannot skip the right level.
-    first_guess_[bin] = static_cast<int>(lowest > 0 ? lowest - 1 : 0);
-  }
   parallel_for(part_.height(), [&](int y) { cursor_.place(y, slices); });
-}
-
-// The lowest level with at least this Phi. Half the dose tolerance is rounding, not a reason for the next level.
-int LevelCorrection::level_for(double phi) const {
-  const double need = phi - 0.5 * dose_tolerance / limits_.gain;
-  const double bin = std::clamp(need / limits_.phi_max * guess_bins, 0.0, static_cast<double>(guess_bins));
-  int level = first_guess_[static_cast<std::size_t>(bin)];
-  while (level + 1 < count_of(phi_) && phi_[level] < need) ++level;
-  return level;
 }
 
 void LevelCorrection::previous(std::vector<std::uint16_t>& slice) {
@@ -141,14 +117,16 @@ void LevelCorrection::previous(std::vector<std::uint16_t>& slice) {
   const int node = --left_;
   const CorrectionKernels& kernel = kernels();
   parallel_for(part_.height(), [&](int y) {
-    cursor_.step_up(y, node);
+    cursor_.step(y, node, false);
     const std::size_t start = product(y, part_.width());
     std::vector<float> wanted(part_.width());
     double* omega = omega_.data() + start;
     kernel.wanted({dose_.table(), cursor_.below(y), cursor_.above(y), omega, wanted.data(), part_.width(), node,
                    limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
     for (int x = 0; x < part_.width(); ++x) {
-      const int level = level_for(static_cast<double>(wanted[x]));
+      // The lowest level that is enough; half the dose tolerance is rounding, not a reason for the next one.
+      const double need = static_cast<double>(wanted[x]) - 0.5 * dose_tolerance / limits_.gain;
+      const auto level = std::lower_bound(phi_.begin(), phi_.end() - 1, need) - phi_.begin();
       slice[start + x] = static_cast<std::uint16_t>(level);
       omega[x] = limits_.next(phi_[level], omega[x]);
     }

@@ -16,10 +16,10 @@ class ColumnCursor {
  public:
   ColumnCursor(const PartColumns& part, const TargetDose& dose);
 
-  /// Moves the columns of row y to `node`, one step from where they were (down: towards the window), or to the start.
+  /// Places the columns of row y, or moves them to `node` by one step from where they were, down being towards the
+  /// window.
   void place(int y, int node);
-  void step_down(int y, int node);
-  void step_up(int y, int node);
+  void step(int y, int node, bool down);
 
   [[nodiscard]] const int* below(int y) const { return below_.data() + start(y); }
   [[nodiscard]] const int* above(int y) const { return above_.data() + start(y); }
@@ -72,13 +72,11 @@ class LevelCorrection {
   void previous(std::vector<std::uint16_t>& slice);
 
  private:
-  [[nodiscard]] int level_for(double phi) const;
   const PartColumns& part_;
   CureLimits limits_;
   TargetDose dose_;
   ColumnCursor cursor_;
-  std::vector<double> phi_;       // of each level
-  std::vector<int> first_guess_;  // lowest level to try, by Phi in equal bins
+  std::vector<double> phi_;  // of each level
   std::vector<double> omega_;
   int left_;
 };

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"
-#include "resin/curethrough/column_correction.hpp"
+#include "resin/curethrough/slice_correction.hpp"
 
 namespace vam::resin {
 
@@ -24,6 +24,12 @@ void check(const std::vector<double>& values, double least, const char* name) {
   }
 }
 
+PartColumns column_of(const std::vector<std::uint8_t>& part, ExposureMode exposure) {
+  PartColumns column(1, 1, count_of(part), exposure);
+  for (int n = 0; n < count_of(part); ++n) column.fill(0, n, 1, part[n] != 0);
+  return column;
+}
+
 StudyPoint judge(const std::vector<std::uint8_t>& part, const Study& study, const CureTotals& plain, double factor,
                  double omega_max) {
   StudyPoint point;
@@ -34,12 +40,17 @@ StudyPoint judge(const std::vector<std::uint8_t>& part, const Study& study, cons
   const CureLimits limits = limits_of(assumed);
   point.printable = burst_slices(limits) > 0 && limits.settled(limits.phi_min) < 1;
   if (!point.printable) return point;
-  point.extra_slices = extra_slices(part, limits);
-  CorrectedColumn column = correct_column(part, limits, {omega_max}, point.extra_slices);
+  const PartColumns column = column_of(part, assumed.exposure);
+  point.extra_slices = extra_slices(survey(column).last_slice, count_of(part), limits);
+  SliceCorrection correction(column, limits, {omega_max}, count_of(part) + point.extra_slices);
   // The same light in units of the dose that really cures.
   const double scale = assumed.full_cure_dose_mj_cm3 / study.process.full_cure_dose_mj_cm3;
-  for (double& phi : column.phi) phi *= scale;
-  const CureTotals corrected = judge_column(part, column.phi, limits_of(study.process));
+  std::vector<double> phi;
+  for (Image slice; count_of(phi) < correction.slices();) {
+    correction.next(slice);
+    phi.push_back(scale * limits.phi_max * static_cast<double>(slice(0, 0)));
+  }
+  const CureTotals corrected = judge_column(part, phi, limits_of(study.process));
 
   const double slice_um = study.process.slice_um;
   for (std::size_t h = 1; h < plain.by_height.size(); ++h) {
@@ -62,6 +73,12 @@ std::vector<std::uint8_t> graded_ladder(const std::vector<int>& heights) {
   }
   if (!heights.empty()) part.insert(part.end(), heights.back(), std::uint8_t{0});
   return part;
+}
+
+std::vector<double> plain_column(const std::vector<std::uint8_t>& part, const CureLimits& limits) {
+  std::vector<double> phi;
+  for (const std::uint8_t solid : part) phi.push_back(solid != 0 ? limits.phi_max : limits.phi_min);
+  return phi;
 }
 
 std::vector<StudyPoint> run_study(const std::vector<std::uint8_t>& part, const Study& study) {

@@ -13,6 +13,9 @@ namespace vam::resin {
 /// A column with one feature of each height, in slices; before each a gap of the same height, and one after the last.
 [[nodiscard]] std::vector<std::uint8_t> graded_ladder(const std::vector<int>& heights);
 
+/// The conventional column: phi_max in the part, phi_min elsewhere.
+[[nodiscard]] std::vector<double> plain_column(const std::vector<std::uint8_t>& part, const CureLimits& limits);
+
 struct Study {
   Process process;                   // full_cure_dose_mj_cm3 is the dose that really cures: what the print is judged by
   double gel_dose_mj_cm3 = 0;        // D_c: what dose_factors multiply

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/compute/parallel.hpp"
-#include "resin/curethrough/column_correction.hpp"
+#include "lib/resin/corrected_column.hpp"
 #include "testing.hpp"
 
 using namespace vam;
@@ -42,10 +42,11 @@ std::vector<std::uint8_t> column_of(const std::vector<float>& values, int slices
   return column;
 }
 
-resin::PartColumns part_of(const std::vector<float>& values, int slices, ExposureMode exposure, int batch) {
+resin::PartColumns part_of(const std::vector<float>& values, int slices, ExposureMode exposure) {
   resin::PartColumns part(width, height, slices, exposure);
-  for (int k = 0; k < slices; k += batch) {
-    part.append(std::min(batch, slices - k), values.data() + static_cast<std::size_t>(k * width * height), 0.5F);
+  for (int p = 0; p < width * height; ++p) {
+    const auto column = column_of(values, slices, p);
+    for (int k = 0; k < slices; ++k) part.fill(static_cast<std::size_t>(p), k, 1, column[k] != 0);
   }
   return part;
 }
@@ -60,10 +61,10 @@ TEST_CASE("runs of a column are found from any of their nodes") {
   for (const int slices : {1, 63, 64, 65, 200}) {
     for (const auto exposure : {ExposureMode::continuous, ExposureMode::layered}) {
       const auto values = random_part(slices, static_cast<unsigned>(slices));
-      const resin::PartColumns part = part_of(values, slices, exposure, 16);
+      const resin::PartColumns part = part_of(values, slices, exposure);
       for (int p = 0; p < width * height; ++p) {
         const auto slice_bits = column_of(values, slices, p);
-        const auto nodes = resin::nodes_of(slice_bits, exposure);
+        const auto nodes = test::nodes_of(slice_bits, exposure);
         REQUIRE(static_cast<int>(nodes.size()) == part.nodes());
         for (int n = 0; n < part.nodes(); ++n) {
           const auto same = [&](int m) { return nodes[m] == nodes[n]; };
@@ -85,7 +86,6 @@ TEST_CASE("columns filled piece by piece, in any order, are those of dense slice
   for (const int slices : {1, 63, 64, 65, 200}) {
     CAPTURE(slices);
     const auto values = random_part(slices, static_cast<unsigned>(slices));
-    const resin::PartColumns judge = part_of(values, slices, ExposureMode::layered, 16);
     resin::PartColumns part(width, height, slices, ExposureMode::layered);
     std::mt19937 random(3);
     for (int p = 0; p < width * height; ++p) {
@@ -103,7 +103,7 @@ TEST_CASE("columns filled piece by piece, in any order, are those of dense slice
         part.put(static_cast<std::size_t>(p), first, count, bits);
       }
       for (int n = 0; n < slices; ++n) {
-        REQUIRE(part.solid(static_cast<std::size_t>(p), n) == judge.solid(static_cast<std::size_t>(p), n));
+        REQUIRE(part.next_slice(static_cast<std::size_t>(p), n, column[n] != 0) == n);
       }
     }
     const std::size_t size = width * height;
@@ -117,24 +117,18 @@ TEST_CASE("columns filled piece by piece, in any order, are those of dense slice
   }
 }
 
-TEST_CASE("a survey counts features and gaps") {
+TEST_CASE("a survey counts columns and features") {
   const int slices = 150;
   const auto values = random_part(slices, 9);
-  const resin::PartSurvey survey = resin::survey(part_of(values, slices, ExposureMode::continuous, 50));
+  const resin::PartSurvey survey = resin::survey(part_of(values, slices, ExposureMode::continuous));
   resin::PartSurvey expected;
-  expected.gaps.resize(slices + 1);
   for (int p = 0; p < width * height; ++p) {
     const auto bits = column_of(values, slices, p);
-    int end = -1;
     bool any = false;
     for (int k = 0; k < slices; ++k) {
       if (bits[k] == 0) continue;
       any = true;
-      if (k == 0 || bits[k - 1] == 0) {
-        ++expected.features;
-        if (end >= 0) ++expected.gaps[k - end];
-      }
-      end = k + 1;
+      expected.features += k == 0 || bits[k - 1] == 0;
       expected.last_slice = std::max(expected.last_slice, k);
     }
     expected.columns += any;
@@ -142,7 +136,6 @@ TEST_CASE("a survey counts features and gaps") {
   CHECK(survey.columns == expected.columns);
   CHECK(survey.features == expected.features);
   CHECK(survey.last_slice == expected.last_slice);
-  CHECK(survey.gaps == expected.gaps);
 }
 
 TEST_CASE("slices in printing order are the columns' exact solutions, on any number of threads") {
@@ -150,7 +143,7 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
     const int slices = 130;
     const resin::CureLimits limits = limits_for(exposure);
     const auto values = random_part(slices, 77);
-    const resin::PartColumns part = part_of(values, slices, exposure, 16);
+    const resin::PartColumns part = part_of(values, slices, exposure);
     const int extra = resin::extra_slices(resin::survey(part).last_slice, slices, limits);
     CHECK(extra == resin::burst_slices(limits) - (exposure == ExposureMode::layered ? 1 : 0));
     for (const double omega_max : {1.0, 2.5, std::numeric_limits<double>::infinity()}) {
@@ -168,8 +161,8 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
       set_threads(0);
       CHECK(runs[0] == runs[1]);
       for (int p = 0; p < width * height; ++p) {
-        const resin::CorrectedColumn column =
-            resin::correct_column(column_of(values, slices, p), limits, {omega_max}, extra);
+        const test::CorrectedColumn column =
+            test::correct_column(column_of(values, slices, p), limits, {omega_max}, extra);
         for (int k = 0; k < slices + extra; ++k) {
           const double phi = runs[0][k * width * height + p] * limits.phi_max;
           // float storage of a value up to phi_max: half a unit in the last place
@@ -185,7 +178,7 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
     const int slices = 130;
     const resin::CureLimits limits = limits_for(exposure);
     const auto values = random_part(slices, 3);
-    const resin::PartColumns part = part_of(values, slices, exposure, 16);
+    const resin::PartColumns part = part_of(values, slices, exposure);
     const int extra = resin::extra_slices(resin::survey(part).last_slice, slices, limits);
     std::vector<float> levels;
     const double dark = limits.phi_min / limits.phi_max;
@@ -198,11 +191,11 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
     for (int k = slices + extra; k-- > 0;) correction.previous(stack[k]);
     for (int p = 0; p < width * height; ++p) {
       const auto bits = column_of(values, slices, p);
-      const resin::CorrectedColumn column = resin::correct_column(bits, limits, {1}, extra);
+      const test::CorrectedColumn column = test::correct_column(bits, limits, {1}, extra);
       std::vector<double> phi;
       for (const auto& slice : stack) phi.push_back(levels[slice[p]] * limits.phi_max);
       const std::vector<double> omega = resin::dose_at_nodes(phi, limits);
-      const auto nodes = resin::nodes_of(bits, exposure);
+      const auto nodes = test::nodes_of(bits, exposure);
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         if (nodes[n] != 0) CHECK(omega[n] >= 1 - resin::dose_tolerance);
         // Where the light above the least is already there the next levels are the darkest: the surplus decays from at
@@ -214,7 +207,7 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
 }
 
 TEST_CASE("an intensity range that cannot print is refused with a remedy") {
-  const resin::PartColumns part = part_of(random_part(40, 1), 40, ExposureMode::continuous, 8);
+  const resin::PartColumns part = part_of(random_part(40, 1), 40, ExposureMode::continuous);
   resin::CureLimits limits = limits_for(ExposureMode::continuous);
   limits.phi_max = 0.5;
   CHECK_THROWS_WITH_AS(resin::require_printable(limits),

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "resin/curethrough/stack_dose.hpp"
 
-#include "resin/curethrough/column_correction.hpp"
+#include "lib/resin/corrected_column.hpp"
 #include "resin/curethrough/cure_map.hpp"
+#include "resin/curethrough/sweep.hpp"
 #include "testing.hpp"
 
 using namespace vam;
@@ -81,7 +82,7 @@ TEST_CASE("height errors of the paper's ladder") {
   CHECK(plain.all().under == doctest::Approx(u).epsilon(1e-5));
   CHECK(plain.under == 3);  // voxel centres 0.5, 1.5 and 2.5 slices above the edge; u = 2.7
 
-  const auto column = resin::correct_column(part, limits, {1}, 0);
+  const auto column = test::correct_column(part, limits, {1}, 0);
   const auto corrected = resin::judge_column(part, column.phi, limits);
   CHECK(corrected.correct == 20);
   CHECK(corrected.through == 0);

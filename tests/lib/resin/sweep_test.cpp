@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "resin/curethrough/column_correction.hpp"
+#include "lib/resin/corrected_column.hpp"
 #include "resin/curethrough/gaps.hpp"
 #include "testing.hpp"
 
@@ -55,8 +55,8 @@ TEST_CASE("the least dose in a gap is the one that a correction reaches") {
     for (int gap = 2; gap < 60; gap += 3) {
       std::vector<std::uint8_t> part(static_cast<std::size_t>(gap + 20), 0);
       for (std::size_t n = 0; n < 10; ++n) part[n] = part[part.size() - 1 - n] = 1;
-      const auto column = resin::correct_column(part, limits, {1}, 8);
-      REQUIRE(column.feasible());
+      const auto column = test::correct_column(part, limits, {1}, 8);
+      REQUIRE(test::violation(part, column.phi, limits, 1) == "");
       double least = 1;
       for (std::size_t n = 0; n < part.size(); ++n) least = std::min(least, column.omega[n]);
       CHECK(resin::lowest_gap_dose(limits, gap) == doctest::Approx(least).epsilon(1e-9));
@@ -72,11 +72,12 @@ TEST_CASE("gaps of a part: those that fuse, those at the limit and those that ar
   const std::vector<std::vector<int>> gaps{{1}, {3}, {40}, {1, 3}, {}, {}};
   const int width = static_cast<int>(gaps.size());
   const int slices = 70;
-  std::vector<float> values(static_cast<std::size_t>(width * slices), 0.0F);
+  resin::PartColumns part(width, 1, slices, resin::ExposureMode::continuous);
   for (int x = 0; x + 1 < width; ++x) {
     int n = 4;
     const auto put = [&](int count) {
-      for (const int end = n + count; n < end; ++n) values[n * width + x] = 1;
+      part.fill(static_cast<std::size_t>(x), n, count, true);
+      n += count;
     };
     put(5);
     for (const int gap : gaps[x]) {
@@ -84,8 +85,6 @@ TEST_CASE("gaps of a part: those that fuse, those at the limit and those that ar
       put(5);
     }
   }
-  resin::PartColumns part(width, 1, slices, resin::ExposureMode::continuous);
-  part.append(slices, values.data(), 0.5F);
   const resin::CureLimits limits = resin::limits_of({});
   const resin::GapReport report = resin::judge_gaps(part, limits, 0.5);
   CHECK(report.mask.values == std::vector<float>{2, 1, 0, 2, 0, 0});
