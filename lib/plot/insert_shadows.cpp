@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "plot/private/insert_sections.hpp"
+#include "plot/private/insert_shadows.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
-#include <utility>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
@@ -45,46 +43,26 @@ float hidden_share(const InsertSlice& slice, int x, int y) {
   return static_cast<float>(hidden) / directions;
 }
 
-Image axial_shadow(const io::SparseVolume& insert, int k) {
-  const model::Grid& grid = insert.grid();
-  std::vector<float> values(grid.slice_size());
-  insert.read_slices(k, 1, values.data());
-  const InsertSlice slice{grid.nx, grid.ny, values.data()};
-  Image shadow(grid.nx, grid.ny);
-  if (std::none_of(values.begin(), values.end(), model::half_covered)) return shadow;
-  parallel_for(grid.ny, [&](int row) {
-    for (int x = 0; x < grid.nx; ++x) shadow(x, row) = hidden_share(slice, x, grid.ny - 1 - row);
-  });
-  return shadow;
-}
-
-Image upright_shadow(const io::SparseVolume& insert, Plane plane, int index) {
-  const model::Grid& grid = insert.grid();
-  const bool coronal = plane == Plane::coronal;
-  Image shadow(coronal ? grid.nx : grid.ny, grid.nz);
-  parallel_for(grid.nz, [&](int row) {
-    std::vector<float> values(grid.slice_size());
-    insert.read_slices(grid.nz - 1 - row, 1, values.data());
-    if (std::none_of(values.begin(), values.end(), model::half_covered)) return;
-    const InsertSlice slice{grid.nx, grid.ny, values.data()};
-    for (int at = 0; at < shadow.width; ++at) {
-      shadow(at, row) = coronal ? hidden_share(slice, at, index) : hidden_share(slice, index, at);
-    }
-  });
-  return shadow;
-}
-
 }  // namespace
 
-std::vector<InsertSection> insert_sections(const io::SparseVolume& insert, Plane plane,
-                                           const std::vector<int>& indices) {
-  std::vector<Image> coverage = planes(insert, plane, indices);
-  std::vector<InsertSection> sections;
-  for (std::size_t n = 0; n < indices.size(); ++n) {
-    sections.push_back({std::move(coverage[n]), plane == Plane::axial ? axial_shadow(insert, indices[n])
-                                                                      : upright_shadow(insert, plane, indices[n])});
+std::vector<Image> insert_shadows(const io::SparseVolume& insert, Plane plane, const std::vector<int>& indices) {
+  const model::Grid& grid = insert.grid();
+  std::vector<Image> shadows;
+  for (const int index : indices) {
+    Image& shadow = shadows.emplace_back(plane_shape(grid, plane));
+    const auto slice_of = [&](int row) { return plane == Plane::axial ? index : grid.nz - 1 - row; };
+    parallel_for(shadow.height, [&](int y) {
+      std::vector<float> values(grid.slice_size());
+      insert.read_slices(slice_of(y), 1, values.data());
+      if (std::none_of(values.begin(), values.end(), model::half_covered)) return;
+      const InsertSlice slice{grid.nx, grid.ny, values.data()};
+      for (int x = 0; x < shadow.width; ++x) {
+        const auto [i, j] = plane_column(grid, plane, index, x, y);
+        shadow(x, y) = hidden_share(slice, i, j);
+      }
+    });
   }
-  return sections;
+  return shadows;
 }
 
 }  // namespace vam::plot

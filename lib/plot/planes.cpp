@@ -12,11 +12,6 @@ namespace {
 
 std::size_t across_axis(Plane plane) { return plane == Plane::axial ? 2 : plane == Plane::coronal ? 1 : 0; }
 
-Image empty_plane(const model::Grid& grid, Plane plane) {
-  if (plane == Plane::axial) return {grid.nx, grid.ny};
-  return plane == Plane::coronal ? Image(grid.nx, grid.nz) : Image(grid.ny, grid.nz);
-}
-
 // One slice's part of a section: all of an axial one, one row of the others. Upwards is towards row 0.
 void take(const model::Grid& grid, Plane plane, const float* slice, int k, int index, Image& image) {
   const auto at = [&](int i, int j) { return slice[flat_index(j, grid.nx, i)]; };
@@ -30,6 +25,11 @@ void take(const model::Grid& grid, Plane plane, const float* slice, int k, int i
 }
 
 }  // namespace
+
+Image plane_shape(const model::Grid& grid, Plane plane) {
+  if (plane == Plane::axial) return {grid.nx, grid.ny};
+  return plane == Plane::coronal ? Image(grid.nx, grid.nz) : Image(grid.ny, grid.nz);
+}
 
 int plane_count(const model::Grid& grid, Plane plane) {
   return plane == Plane::axial ? grid.nz : plane == Plane::coronal ? grid.ny : grid.nx;
@@ -62,7 +62,7 @@ std::array<int, 2> plane_column(const model::Grid& grid, Plane plane, int index,
 
 std::vector<Image> planes(const io::SparseVolume& volume, Plane plane, const std::vector<int>& indices) {
   const model::Grid& grid = volume.grid();
-  std::vector<Image> images(indices.size(), empty_plane(grid, plane));
+  std::vector<Image> images(indices.size(), plane_shape(grid, plane));
   constexpr int slab = 8;
   std::vector<float> slices(grid.slice_size() * slab);
   for (int k0 = 0; k0 < grid.nz; k0 += slab) {
@@ -85,7 +85,7 @@ std::vector<std::vector<ContourPiece>> outlines(const io::SparseVolume& target, 
   std::vector<int> indices;
   for (const double mm : places_mm) indices.push_back(plane_index(from, plane, mm));
   const auto sections = planes(target, plane, indices);
-  const Image shape = empty_plane(grid, plane);
+  const Image shape = plane_shape(grid, plane);
   const Spot from_mm = plane_origin_mm(from, plane);
   const Spot to_mm = plane_origin_mm(grid, plane);
   std::vector<std::vector<ContourPiece>> result(places_mm.size());

@@ -33,6 +33,9 @@ struct PlaneAxes {
 /// The mm at the middle of the first column and of the lowest row.
 [[nodiscard]] Spot plane_origin_mm(const model::Grid& grid, Plane plane);
 
+/// A section without values.
+[[nodiscard]] Image plane_shape(const model::Grid& grid, Plane plane);
+
 /// The i and j of the voxel at pixel (x, y) of the section at that index.
 [[nodiscard]] std::array<int, 2> plane_column(const model::Grid& grid, Plane plane, int index, int x, int y);
 

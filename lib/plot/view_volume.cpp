@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "plot/private/insert_sections.hpp"
+#include "plot/private/insert_shadows.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"
 
@@ -14,10 +14,10 @@ namespace {
 bool is_coverage(const std::string& grid) { return grid == "target" || grid == "insert" || grid == "weight"; }
 
 void add_insert(ImageFigure& figure, const io::SparseVolume& insert, Plane plane, const std::vector<int>& indices) {
-  std::vector<InsertSection> hidden = insert_sections(insert, plane, indices);
+  std::vector<Image> hidden = planes(insert, plane, indices), shadows = insert_shadows(insert, plane, indices);
   for (std::size_t n = 0; n < hidden.size(); ++n) {
-    figure.panels[n].hatched = std::move(hidden[n].coverage);
-    figure.panels[n].shaded = std::move(hidden[n].shadow);
+    figure.panels[n].hatched = std::move(hidden[n]);
+    figure.panels[n].shaded = std::move(shadows[n]);
   }
   figure.hatched_name = "insert";
   const auto is_shaded = [](const Panel& panel) {

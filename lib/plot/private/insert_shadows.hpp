@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An opaque insert in the sections of a volume, and the shadow it throws.
+// The shadow that an opaque insert throws in the sections of a volume.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,9 @@
 
 namespace vam::plot {
 
-struct InsertSection {
-  Image coverage;  // of the insert, as the sections of planes()
-  Image shadow;    // fraction [0, 1] of the stage angles from which the insert hides a voxel, for parallel light that
-                   // stays level; 0 in the insert
-};
-
-/// Sections at these indices, in their order, row 0 at the top. Angles are sampled every 7.5 degrees.
-[[nodiscard]] std::vector<InsertSection> insert_sections(const io::SparseVolume& insert, Plane plane,
-                                                         const std::vector<int>& indices);
+/// Of the sections of planes(): the fraction [0, 1] of the stage angles from which the insert hides a voxel, for
+/// parallel light that stays level; 0 in the insert. Angles are sampled every 7.5 degrees.
+[[nodiscard]] std::vector<Image> insert_shadows(const io::SparseVolume& insert, Plane plane,
+                                                const std::vector<int>& indices);
 
 }  // namespace vam::plot

@@ -8,7 +8,7 @@
 #include "io/image/image_file.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "lib/io/scratch.hpp"
-#include "plot/private/insert_sections.hpp"
+#include "plot/private/insert_shadows.hpp"
 #include "testing.hpp"
 
 using namespace vam::io;
@@ -334,19 +334,18 @@ TEST_CASE("an insert is hatched, and hides what is behind it from the angles tha
     if (std::hypot(i - 40, j - 40) <= 8) slices[81 * 81 + static_cast<std::size_t>(j) * 81 + i] = 1;
   }
   insert.write_slices(0, 3, slices.data());
-  const auto axial = insert_sections(insert, Plane::axial, {0, 1});
-  CHECK(axial[0].shadow(60, 40) == 0);  // the insert is in the slice above
-  CHECK(axial[1].coverage(40, 40) == 1);
-  CHECK(axial[1].shadow(40, 40) == 0);
+  const auto axial = insert_shadows(insert, Plane::axial, {0, 1});
+  CHECK(axial[0](60, 40) == 0);  // the insert is in the slice above
+  CHECK(planes(insert, Plane::axial, {1})[0](40, 40) == 1);
+  CHECK(axial[1](40, 40) == 0);
   for (const int far : {14, 20, 32}) {  // sampled every 7.5 degrees, the rim rough by half a voxel of `far`
     const double want = std::asin(8.0 / far) / std::numbers::pi;
-    CHECK(std::abs(static_cast<double>(axial[1].shadow(40 + far, 40)) - want) <
-          1.0 / 48 + 0.5 / far / std::numbers::pi);
-    CHECK(std::abs(axial[1].shadow(40, 40 - far) - axial[1].shadow(40 + far, 40)) < 0.03F);
+    CHECK(std::abs(static_cast<double>(axial[1](40 + far, 40)) - want) < 1.0 / 48 + 0.5 / far / std::numbers::pi);
+    CHECK(std::abs(axial[1](40, 40 - far) - axial[1](40 + far, 40)) < 0.03F);
   }
-  const auto upright = insert_sections(insert, Plane::coronal, {40});
-  CHECK(upright[0].shadow(60, 1) == axial[1].shadow(60, 40));
-  CHECK(upright[0].shadow(60, 0) == 0);
+  const auto upright = insert_shadows(insert, Plane::coronal, {40});
+  CHECK(upright[0](60, 1) == axial[1](60, 40));
+  CHECK(upright[0](60, 0) == 0);
 
   SparseVolume target = ball(grid);
   const ImageFigure figure = view_volume(target, nullptr, {}, &insert);
