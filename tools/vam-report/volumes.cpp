@@ -23,15 +23,20 @@ struct SectionOverlays {
   const io::SparseVolume* insert = nullptr;
 };
 
-std::string sections(const io::SparseVolume& volume, const std::string& file, const SectionOverlays& within,
-                     plot::Plane plane, int count) {
+plot::ViewOptions options_for(const io::SparseVolume& volume, const std::string& name, plot::Plane plane, int count) {
   plot::ViewOptions options;
-  options.name = file;
+  options.name = name;
   options.plane = plane;
   options.sheet = std::min(count, plot::plane_count(volume.grid(), plane));
   options.size = shown_px;
-  options.critical = within.critical;
   options.stretch_z = model::stretch_z(volume.metadata);
+  return options;
+}
+
+std::string sections(const io::SparseVolume& volume, const std::string& file, const SectionOverlays& within,
+                     plot::Plane plane, int count) {
+  plot::ViewOptions options = options_for(volume, file, plane, count);
+  options.critical = within.critical;
   const plot::PlaneAxes axes = plot::plane_axes(plane);
   const std::string title = volume.name() + ", sections across " + axes.across;
   return series(title, frames_of(plot::view_volume(volume, within.target, options, within.insert)),
@@ -79,13 +84,8 @@ std::string section_views(const Volumes& volumes, int count, bool outlined, std:
 std::string cure_views(const Volumes& volumes, const score::ScoreOptions& how, double threshold, int count) {
   const io::SparseVolume& dose = *volumes.find("dose");
   const io::SparseVolume* insert = volumes.find("insert");
-  plot::ViewOptions options;
-  options.name = "dose";
-  options.sheet = std::min(count, plot::plane_count(dose.grid(), options.plane));
-  options.size = shown_px;
-  options.stretch_z = model::stretch_z(dose.metadata);
-  const plot::ImageFigure sheet =
-      plot::view_cure(dose, *volumes.find("target"), threshold, how.circle, options, insert);
+  const plot::ImageFigure sheet = plot::view_cure(dose, *volumes.find("target"), threshold, how.circle,
+                                                  options_for(dose, "dose", plot::Plane::axial, count), insert);
   return series("Part as printed, sections across z", frames_of(sheet), "The shares are of all sections.");
 }
 
