@@ -104,10 +104,11 @@ DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, c
 }
 
 std::vector<PrinterDeviation> balanced_corners() {
-  std::vector<PrinterDeviation> corners(8);
-  for (unsigned row = 0; row < corners.size(); ++row) {
-    for (unsigned column = 0; column < corners[row].size(); ++column) {
-      corners[row][column] = std::popcount(row & (column + 1)) % 2 == 0 ? 1 : -1;  // Sylvester
+  std::vector<PrinterDeviation> corners(16);
+  for (unsigned n = 0; n < corners.size(); ++n) {
+    for (unsigned column = 0; column < corners[n].size(); ++column) {
+      const bool is_odd = std::popcount(n / 2 & (column + 1)) % 2 != 0;  // Sylvester
+      corners[n][column] = is_odd == (n % 2 != 0) ? 1 : -1;
     }
   }
   return corners;

@@ -64,8 +64,8 @@ struct DeviatingPrinter {
 [[nodiscard]] DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances,
                                        const PrinterDeviation& by);
 
-/// Eight corners of the box of tolerances in which every two of the first robust_kinds meet in all four ways when the
-/// opposite corners are added: the rows of Hadamard's matrix of order 8.
+/// Corners of the box of tolerances, each followed by the opposite one, in which every two of the first robust_kinds
+/// meet in all four ways: the rows of Hadamard's matrix of order 8.
 [[nodiscard]] std::vector<PrinterDeviation> balanced_corners();
 
 /// Printer n of a seeded sequence: each deviation even in -1...1, the same on every machine.

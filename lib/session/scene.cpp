@@ -15,7 +15,6 @@
 #include "model/dose/dose_metrics.hpp"
 #include "model/dose/dose_spread.hpp"
 #include "model/grid_size.hpp"
-#include "model/magnification.hpp"
 #include "optics/lit_fraction.hpp"
 #include "optics/writable_radius.hpp"
 #include "tomo/fbp.hpp"
@@ -29,8 +28,7 @@ model::Printer modelled(model::Printer printer, const JobOptions& options) {
   return printer;
 }
 
-}  // namespace
-
+/// In the vial of that printer.
 light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const JobOptions& options) {
   light::VialSetup setup = light::vial_setup(modelled(printer, options), scene.grid, scene.turn.angles,
                                              scene.circle.radius * scene.grid.voxel_mm);
@@ -41,8 +39,6 @@ light::VialSetup light_of(const model::Printer& printer, const Scene& scene, con
   setup.first_row_mm = scene.first_row_mm;
   return setup;
 }
-
-namespace {
 
 /// A wobble that was measured and that the projections do not follow.
 void warn_of_wobble(const model::Printer& printer, double voxel_mm) {
@@ -197,31 +193,10 @@ std::unique_ptr<light::Operator> make_light(const Scene& scene, const JobOptions
   return light::make_operator(beam_of(scene, options, !inserts.empty()), inserts);
 }
 
-namespace {
-
-/// The voxels are those of the part as it was sliced for the printer as set.
-optimize::Scenario make_scenario(const Scene& scene, const JobOptions& options, std::span<const Slab> inserts,
-                                 const model::PrinterDeviation& by) {
-  const model::DeviatingPrinter off = model::deviate(scene.printer, *options.printer_tolerances, by);
-  light::VialSetup setup = light_of(off.printer, scene, options);
-  setup.angle_offset_rad += off.angle_offset_rad;
-  setup.z_scale = model::vertical_magnification(scene.printer);
-  return {light::make_operator(setup, inserts), blur_px(off.printer.resin, diffusion_s(scene, options), scene, options),
-          off.intensity};
-}
-
-}  // namespace
-
-std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const JobOptions& options,
-                                               std::span<const Slab> inserts) {
-  std::vector<optimize::Scenario> bank;
-  for (const model::PrinterDeviation& corner : model::balanced_corners()) {
-    model::PrinterDeviation opposite = corner;
-    for (double& one : opposite) one = -one;
-    bank.push_back(make_scenario(scene, options, inserts, corner));
-    bank.push_back(make_scenario(scene, options, inserts, opposite));
-  }
-  return bank;
+optimize::TolerantPrinter tolerant(const Scene& scene, const JobOptions& options, const model::Tolerances& tolerances,
+                                   double seconds) {
+  return {scene.printer, tolerances, [&](const model::Printer& printer) { return light_of(printer, scene, options); },
+          [&, seconds](const model::Resin& resin) { return blur_px(resin, seconds, scene, options); }};
 }
 
 }  // namespace vam::session

@@ -41,9 +41,6 @@ struct Scene {
 /// Warns of a part beyond the writable radius, and of a wobble in the calibration records that the poses leave out.
 void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOptions& options);
 
-/// In the vial of that printer; its resin is clear with optimize.absorption_model none.
-[[nodiscard]] light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const JobOptions& options);
-
 /// Time of diffusion that the light compensates for.
 [[nodiscard]] double diffusion_s(const Scene& scene, const JobOptions& options);
 /// Standard deviation in voxels of the blur by beam and resin in that time; 0 if neglected.
@@ -54,9 +51,8 @@ void warn_of(const Scene& scene, const io::SparseVolume& target, const JobOption
 [[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const JobOptions& options,
                                                           std::span<const Slab> inserts = {});
 
-/// Printers off their settings by the tolerances of --robust, as their light falls on the same voxels: corners of the
-/// box of tolerances, each followed by the opposite one.
-[[nodiscard]] std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const JobOptions& options,
-                                                             std::span<const Slab> inserts);
+/// The printer with these tolerances, whose dose diffuses for so long. Scene and options are referred to.
+[[nodiscard]] optimize::TolerantPrinter tolerant(const Scene& scene, const JobOptions& options,
+                                                 const model::Tolerances& tolerances, double seconds);
 
 }  // namespace vam::session

@@ -104,19 +104,21 @@ optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVo
   task.certify = options.certify.empty() ? 0 : optimize::certify_iterations;
   if (!options.tradeoff.empty()) task.front = make_show(scene.printer, options);
   if (options.printer_tolerances) {
-    task.scenarios = [&](std::span<const Slab> inserts) { return session::make_scenarios(scene, options, inserts); };
+    task.scenarios = [&](std::span<const Slab> inserts) {
+      return optimize::corner_scenarios(
+          session::tolerant(scene, options, *options.printer_tolerances, session::diffusion_s(scene, options)),
+          inserts);
+    };
   }
   return task;
 }
 
 optimize::Trial make_trial(const session::Scene& scene, double seconds, double threshold, const Options& options) {
   optimize::Trial trial;
-  trial.printer = scene.printer;
-  trial.tolerances = options.printer_tolerances ? *options.printer_tolerances : io::expected_tolerances(scene.printer);
-  trial.setup = [&](const model::Printer& printer) { return session::light_of(printer, scene, options); };
+  trial.printer = session::tolerant(
+      scene, options, options.printer_tolerances ? *options.printer_tolerances : io::expected_tolerances(scene.printer),
+      seconds);
   trial.grid = scene.grid;
-  trial.seconds = seconds;
-  trial.blur = options.blur;
   trial.threshold = options.printer_tolerances ? options.demands.window.threshold() : threshold;
   trial.printers = options.printer_tolerances ? options.yield_printers : 0;
   trial.ends = options.sensitivity;

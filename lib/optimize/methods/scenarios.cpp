@@ -8,6 +8,7 @@
 #include "base/compute/per_slice.hpp"
 #include "base/random.hpp"
 #include "light/operators/blurred_operator.hpp"
+#include "model/magnification.hpp"
 
 namespace vam::optimize {
 
@@ -33,6 +34,22 @@ void dim(std::span<Slab> images, double intensity) {
 }
 
 }  // namespace
+
+Scenario scenario_of(const TolerantPrinter& printer, const model::PrinterDeviation& by, std::span<const Slab> inserts) {
+  const model::DeviatingPrinter off = model::deviate(printer.printer, printer.tolerances, by);
+  light::VialSetup setup = printer.setup(off.printer);
+  setup.angle_offset_rad += off.angle_offset_rad;
+  setup.z_scale = model::vertical_magnification(printer.printer);
+  light::displace(setup, off.vial_x_mm, off.vial_y_mm, off.sinking_mm);
+  return {light::make_operator(setup, inserts), printer.blur_px(off.printer.resin), off.intensity, off.rim};
+}
+
+std::vector<Scenario> corner_scenarios(const TolerantPrinter& printer, std::span<const Slab> inserts) {
+  std::vector<Scenario> all;
+  for (const model::PrinterDeviation& corner : model::balanced_corners())
+    all.push_back(scenario_of(printer, corner, inserts));
+  return all;
+}
 
 Scenarios::Scenarios(const light::Operator& nominal, std::vector<Scenario> bank, int slices) : nominal_(nominal) {
   for (Scenario& one : bank) {

@@ -2,13 +2,16 @@
 // Forward models of printers that deviate from their settings, applied to the frames of the nominal printer.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/index.hpp"
-#include "light/operators/operator.hpp"
+#include "light/operators/make_operator.hpp"
+#include "model/printer.hpp"
+#include "model/tolerances.hpp"
 
 namespace vam::optimize {
 
@@ -17,7 +20,21 @@ struct Scenario {
   std::unique_ptr<light::Operator> light;
   double blur_px = 0;    // standard deviation of what beam and resin smear
   double intensity = 1;  // of the lamp, as a multiple of its setting
+  double rim = 0;        // intensity that the image's corners lack, of its middle's
 };
+
+/// A printer whose settings are known to tolerances, in light on the voxels of a part that was sliced for it as set.
+struct TolerantPrinter {
+  model::Printer printer;
+  model::Tolerances tolerances{};
+  std::function<light::VialSetup(const model::Printer& printer)> setup;
+  std::function<double(const model::Resin& resin)> blur_px;
+};
+/// Throws as model::deviate().
+[[nodiscard]] Scenario scenario_of(const TolerantPrinter& printer, const model::PrinterDeviation& by,
+                                   std::span<const Slab> inserts);
+/// Of model::balanced_corners().
+[[nodiscard]] std::vector<Scenario> corner_scenarios(const TolerantPrinter& printer, std::span<const Slab> inserts);
 
 /// The scenarios of a pass, in pairs off the settings in opposite ways.
 class Scenarios {

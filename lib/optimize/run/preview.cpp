@@ -51,9 +51,10 @@ Preview preview(const PreviewTask& wanted) {
   task.count_pieces = true;
   task.limit.of_even = usual_of_even;
   task.raising = usual_raising;
-  const auto blur_px = [&](double seconds) {
-    return model::spread_mm(wanted.printer.resin, seconds) / lit.grid.voxel_mm;
+  const auto blur_of = [&](const model::Resin& resin, double seconds) {
+    return model::spread_mm(resin, seconds) / lit.grid.voxel_mm;
   };
+  const auto blur_px = [&](double seconds) { return blur_of(wanted.printer.resin, seconds); };
   task.blur_px = blur_px(model::seconds_of(wanted.printer.stage, wanted.printer.stage.turns));
   task.make = [](double max_intensity) {
     MethodOptions how;
@@ -77,18 +78,15 @@ Preview preview(const PreviewTask& wanted) {
   const double seconds = judge_exposed(task, *light, frames, aimed, wanted.seconds, blur_px, made.outcome);
   made.beside = prints_at(task, *light, frames,
                           {{(1 - verdict::dose_margin) * threshold, (1 + verdict::dose_margin) * threshold}});
-  Trial trial;
-  trial.printer = wanted.printer;
-  trial.tolerances = wanted.tolerances;
-  trial.setup = setup_of;
-  trial.grid = lit.grid;
-  trial.seconds = seconds;
-  trial.threshold = threshold;
-  trial.ends = true;
+  Trial trial{.printer = {wanted.printer, wanted.tolerances, setup_of,
+                          [&](const model::Resin& resin) { return blur_of(resin, seconds); }},
+              .grid = lit.grid,
+              .threshold = threshold,
+              .ends = true};
   made.trials = run_trials(trial, task, frames);
   for (const int angles : {120, 180, 240, 360, 720}) {
     if (setup.hold_rad == 0) break;
-    trial.setup = [&](const model::Printer& printer) { return setup_for(printer, angles); };
+    trial.printer.setup = [&](const model::Printer& printer) { return setup_for(printer, angles); };
     const model::DoseMetrics held = print_as_set(trial, task, frames).figures;
     made.by_angles.emplace_back(angles, held.pw / held.max_dose);
   }

@@ -9,9 +9,6 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "light/grids/poses.hpp"
-#include "light/operators/make_operator.hpp"
-#include "model/dose/dose_spread.hpp"
-#include "model/magnification.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/private/shown_pass.hpp"
 #include "optimize/target/exclusions.hpp"
@@ -26,22 +23,15 @@ constexpr std::uint64_t seed = 13;
 class Bench {
  public:
   Bench(const Trial& trial, const VolumeTask& task, std::span<const Image> frames)
-      : trial_(trial), frames_(frames), input_(read(trial, task)) {
+      : trial_(trial), frames_(frames), setup_(trial.printer.setup(trial.printer.printer)), input_(read(trial, task)) {
     if (!input_.inserts.empty()) exclude(input_.problem, input_.inserts);
   }
 
   [[nodiscard]] Printed print(const model::PrinterDeviation& by) const {
-    const model::DeviatingPrinter off = model::deviate(trial_.printer, trial_.tolerances, by);
-    light::VialSetup setup = trial_.setup(off.printer);
-    setup.angle_offset_rad += off.angle_offset_rad;
-    setup.z_scale = model::vertical_magnification(trial_.printer);  // of which the part was sliced
-    light::displace(setup, off.vial_x_mm, off.vial_y_mm, off.sinking_mm);
-    const auto clear = light::make_operator(setup, input_.inserts);
-    const double blur_mm = trial_.blur ? model::spread_mm(off.printer.resin, trial_.seconds) : 0;
-    const PassLight light(*clear, nullptr, blur_mm / trial_.grid.voxel_mm, trial_.grid.nz);
-    const Frames frames(frames_, clear->image());
-    const auto shown = [&](int k) { return dimmed(frames[k], z_mm(setup, k), off.rim); };
-    return judged(dose_of(all(), light, shown), off.intensity);
+    const Scenario off = scenario_of(trial_.printer, by, input_.inserts);
+    const PassLight light(*off.light, nullptr, off.blur_px, trial_.grid.nz);
+    const Frames frames(frames_, off.light->image());
+    return judged(dose_of(all(), light, [&](int k) { return dimmed(frames[k], k, off.rim); }), off.intensity);
   }
 
   [[nodiscard]] Printed print(std::size_t tolerance, double multiple) const {
@@ -51,19 +41,15 @@ class Bench {
   }
 
   /// Whether the vial may be moved, as its rays are known in its place only where the part is near its wall.
-  [[nodiscard]] bool may_move() const {
-    return light::may_move(trial_.printer, trial_.setup(trial_.printer).radius_mm);
-  }
+  [[nodiscard]] bool may_move() const { return light::may_move(trial_.printer.printer, setup_.radius_mm); }
 
  private:
-  /// Of a row of light, in the plane of the rotation axis.
-  [[nodiscard]] static double z_mm(const light::VialSetup& setup, int k) {
-    return (setup.rows > 0 ? setup.first_row_mm : setup.grid.z_mm(0)) + k * setup.grid.voxel_mm;
-  }
-
-  [[nodiscard]] Image dimmed(Image image, double z, double rim) const {
+  /// Row k of light, where its height in the plane of the rotation axis is in the projector's image.
+  [[nodiscard]] Image dimmed(Image image, int k, double rim) const {
     if (rim == 0) return image;
-    const model::Projector& p = trial_.printer.projector;
+    const double low_mm = setup_.rows > 0 ? setup_.first_row_mm : setup_.grid.z_mm(0);
+    const double z = low_mm + k * setup_.grid.voxel_mm;
+    const model::Projector& p = trial_.printer.printer.projector;
     const double half_x = 0.5 * (p.columns - 1), half_y = 0.5 * (p.rows - 1);
     const double y = p.axis_row - z / p.pixel_mm - half_y;
     for (int x = 0; x < image.width; ++x) {
@@ -91,6 +77,7 @@ class Bench {
 
   const Trial& trial_;
   std::span<const Image> frames_;
+  light::VialSetup setup_;  // of the printer as set
   PassInput input_;
 };
 
@@ -122,10 +109,10 @@ double end(const Margin& margin, double at_low, double at_high, double reach) {
 
 std::vector<Single> singles_of(const Trial& trial, const Bench& bench) {
   std::vector<Single> all;
-  for (std::size_t i = 0; i < trial.tolerances.size(); ++i) {
+  for (std::size_t i = 0; i < trial.printer.tolerances.size(); ++i) {
     const auto kind = static_cast<model::ToleranceKind>(i);
     const bool moves = kind == model::ToleranceKind::vial_x || kind == model::ToleranceKind::vial_y;
-    if (trial.tolerances[i] == 0 || (moves && !bench.may_move())) continue;
+    if (trial.printer.tolerances[i] == 0 || (moves && !bench.may_move())) continue;
     const Printed plus = bench.print(i, 1);
     all.push_back({i, model::tolerance_table[i].one_way ? plus : bench.print(i, -1), plus});
   }
@@ -149,7 +136,7 @@ void find_ends(std::vector<Single>& singles, const Trial& trial, const Bench& be
   }
   const auto share = [](const Single& one) { return one.ends_at == 0 ? farthest_end : std::abs(one.ends_at); };
   std::stable_sort(singles.begin(), singles.end(), [&](const auto& a, const auto& b) { return share(a) < share(b); });
-  for (Single& one : singles) one.ends_at *= trial.tolerances[one.tolerance];
+  for (Single& one : singles) one.ends_at *= trial.printer.tolerances[one.tolerance];
 }
 
 std::string amount(double value, const model::Tolerance& of) {
@@ -170,7 +157,7 @@ Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Im
   const Bench bench(trial, task, frames);
   Progress progress("judging", trial.printers);
   Trials trials;
-  trials.tolerances = trial.tolerances;
+  trials.tolerances = trial.printer.tolerances;
   trials.nominal = bench.print({});
   trials.singles = singles_of(trial, bench);
   trials.costliest = std::min_element(trials.singles.begin(), trials.singles.end(), is_costlier)->tolerance;

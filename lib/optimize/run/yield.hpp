@@ -3,17 +3,16 @@
 // the print: the dose of each printer is computed by its own forward model.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/image.hpp"
 #include "base/text/json_fwd.hpp"
-#include "light/rays/vial_setup.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/tolerances.hpp"
+#include "optimize/methods/scenarios.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
@@ -21,12 +20,8 @@ namespace vam::optimize {
 /// What is judged: frames for the printer as set, one image a slice, in fluence; doses at grid and circle of the
 /// target.
 struct Trial {
-  model::Printer printer;
-  model::Tolerances tolerances{};
-  std::function<light::VialSetup(const model::Printer& printer)> setup;
+  TolerantPrinter printer;
   model::Grid grid;
-  double seconds = 0;  // during which the dose diffuses; blur false: nothing smears
-  bool blur = true;
   double threshold = 0.8;  // dose at which the resin sets
   int printers = 0;        // of the yield
   bool ends = false;       // find the deviations that end the print

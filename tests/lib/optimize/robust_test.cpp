@@ -30,18 +30,10 @@ light::VialSetup setup_of(const model::DeviatingPrinter& off) {
   return setup;
 }
 
-std::vector<Scenario> bank(const model::Tolerances& tolerances) {
-  std::vector<Scenario> all;
-  for (const model::PrinterDeviation& corner : model::balanced_corners()) {
-    for (const double sign : {1.0, -1.0}) {
-      model::PrinterDeviation by = corner;
-      for (double& one : by) one *= sign;
-      const auto off = model::deviate({}, tolerances, by);
-      all.push_back({light::make_operator(setup_of(off)), off.printer.resin.psf_mm / grid.voxel_mm, off.intensity});
-    }
-  }
-  return all;
-}
+const TolerantPrinter tolerant{{},
+                               coarse,
+                               [](const model::Printer& printer) { return setup_of({.printer = printer}); },
+                               [](const model::Resin& resin) { return resin.psf_mm / grid.voxel_mm; }};
 
 /// A ring with a bar across it, round about the axis and in the middle slices.
 void target(int k, int count, float* out) {
@@ -61,7 +53,7 @@ VolumeTask make_task(std::vector<Image>& frames, bool robust) {
   task.circle = circle;
   task.limits = {.iterations = 24, .until = {}, .patience = 0};
   task.make = [robust](double) { return robust ? make_robust({}) : make_method("apg", {}); };
-  if (robust) task.scenarios = [](std::span<const Slab>) { return bank(coarse); };
+  if (robust) task.scenarios = [](std::span<const Slab>) { return corner_scenarios(tolerant, {}); };
   task.write = [&frames](int, const Image& image) { frames.push_back(image); };
   return task;
 }
@@ -75,8 +67,7 @@ Printing print(bool robust) {
   Printing made;
   const VolumeTask task = make_task(made.frames, robust);
   optimise(task, *light::make_operator(setup_of({})));
-  const auto setup = [](const model::Printer& printer) { return setup_of({.printer = printer}); };
-  Trial trial{.tolerances = coarse, .setup = setup, .grid = grid, .printers = 12};
+  const Trial trial{.printer = tolerant, .grid = grid, .printers = 12};
   made.trials = run_trials(trial, task, made.frames);
   return made;
 }
@@ -91,7 +82,7 @@ double least_margin(const Trials& trials) {
 
 TEST_CASE("a scenario's gradient is the transpose of its dose") {
   const auto nominal = light::make_operator(setup_of({}));
-  const Scenarios scenarios(*nominal, bank(coarse), slices);
+  const Scenarios scenarios(*nominal, corner_scenarios(tolerant, {}), slices);
   std::vector<Slab> g = slabs(2, nominal->sinogram().width, nominal->sinogram().height);
   std::vector<Slab> x = slabs(2, size, size);
   for (auto* images : {&g, &x}) {
@@ -121,7 +112,7 @@ TEST_CASE("a scenario's gradient is the transpose of its dose") {
 
 TEST_CASE("every pair has its turn once a round") {
   const auto nominal = light::make_operator(setup_of({}));
-  const Scenarios scenarios(*nominal, bank(coarse), slices);
+  const Scenarios scenarios(*nominal, corner_scenarios(tolerant, {}), slices);
   for (const int round : {0, 1, 2}) {
     std::vector<int> seen;
     for (int i = 0; i < scenarios.count() / 2; ++i) {
@@ -141,7 +132,7 @@ TEST_CASE("prints made for tolerances keep a wider margin under each of them") {
   CHECK(least_margin(robust.trials) > least_margin(plain.trials));
   CHECK(robust.trials.good >= plain.trials.good);
   CHECK(robust.trials.printers == 12);
-  const Json json = report(robust.trials, coarse);
+  const Json json = report(robust.trials);
   CHECK(json["single"].size() == 6);
   CHECK(json["yield"] == static_cast<double>(robust.trials.good) / 12);
 }

@@ -21,10 +21,13 @@ model::Printer near_printer() {
 }
 
 Trial trial_of(const model::Printer& printer) {
-  Trial trial{.printer = printer};
-  trial.tolerances[static_cast<std::size_t>(model::ToleranceKind::index)] = index_error;
+  Trial trial;
+  trial.printer = {printer,
+                   {},
+                   [](const model::Printer& off) { return light::vial_setup(off, grid, angles, 0); },
+                   [](const model::Resin&) { return 0.0; }};
+  trial.printer.tolerances[static_cast<std::size_t>(model::ToleranceKind::index)] = index_error;
   trial.grid = grid;
-  trial.setup = [](const model::Printer& off) { return light::vial_setup(off, grid, angles, 0); };
   return trial;
 }
 
@@ -37,7 +40,7 @@ double dose_of_own_row(const Trial& trial, int lit) {
     if (k <= lit && lit < k + count) out[(lit - k) * size * size + size * size / 2] = 1;
   };
   task.circle = {0.5 * (size - 1), 0.5 * (size - 1), 0.5 * size};
-  std::vector<Image> frames(slices, Image(trial.printer.projector.columns, angles));
+  std::vector<Image> frames(slices, Image(trial.printer.printer.projector.columns, angles));
   std::fill(frames[lit].values.begin(), frames[lit].values.end(), 1.0F);
   return run_trials(trial, task, frames).singles.at(0).minus.figures.min_part;
 }
