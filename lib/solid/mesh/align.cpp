@@ -9,7 +9,6 @@
 #include "base/log/progress.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/private/icp.hpp"
-#include "solid/mesh/private/overlap_search.hpp"
 
 namespace vam::solid {
 
@@ -21,6 +20,12 @@ struct Start {
   double rms;
   Motion pose;
 };
+
+std::vector<Start> starts_from(const std::vector<Motion>& poses) {
+  std::vector<Start> starts;
+  for (const Motion& pose : poses) starts.push_back({0, pose});
+  return starts;
+}
 
 // Fewer and fewer starts are refined more and more.
 template <class RmsOf>
@@ -47,22 +52,22 @@ struct Task {
   std::vector<Vector3d> reference_points;
 
   [[nodiscard]] double size() const { return box.largest_side(); }
+  /// The error after it. A rigid one finds no scale.
+  double icp(const std::vector<Vector3d>& points, bool rigid, int most, Motion& start,
+             double reach = everywhere) const {
+    AlignOptions how = options;
+    how.with_scale = options.with_scale && !rigid;
+    return run_icp(points, reference, how, most, size(), start, reach).rms_mm;
+  }
 };
 
 Alignment align_whole(const Task& task, Motion& pose) {
-  AlignOptions rigid = task.options;
-  rigid.with_scale = false;
-  const auto icp = [&](const auto& points, const AlignOptions& how, int most, Motion& start) {
-    return run_icp(points, task.reference, how, most, task.size(), start).rms_mm;
-  };
-  std::vector<Start> starts;
-  for (const Motion& start : starting_poses(task.all, task.reference_points, task.options.with_scale))
-    starts.push_back({0, start});
+  std::vector<Start> starts = starts_from(starting_poses(task.all, task.reference_points, task.options.with_scale));
   keep_best(starts, 96, [&](Motion& start) { return pair_up(task.few, start, task.reference).rms; });
-  keep_best(starts, 12, [&](Motion& start) { return icp(task.few, rigid, 6, start); });
-  keep_best(starts, 3, [&](Motion& start) { return icp(task.few, rigid, 20, start); });
+  keep_best(starts, 12, [&](Motion& start) { return task.icp(task.few, true, 6, start); });
+  keep_best(starts, 3, [&](Motion& start) { return task.icp(task.few, true, 20, start); });
   // The best at a tenth of the points, then all points from there.
-  keep_best(starts, 1, [&](Motion& start) { return icp(task.some, task.options, task.options.max_iterations, start); });
+  keep_best(starts, 1, [&](Motion& start) { return task.icp(task.some, false, task.options.max_iterations, start); });
   pose = starts.front().pose;
   return run_icp(task.all, task.reference, task.options, task.options.max_iterations, task.size(), pose);
 }
@@ -102,10 +107,8 @@ std::vector<Motion> symmetries(const Task& task) {
   std::vector<Motion> found;
   std::vector<Motion> starts = starting_poses(task.reference_points, task.reference_points, false);
   std::vector<char> symmetric(starts.size());
-  AlignOptions rigid = task.options;
-  rigid.with_scale = false;
   parallel_for(count_of(starts), [&](int i) {
-    run_icp(few, task.reference, rigid, 15, task.size(), starts[i]);  // principal axes of a cube are any
+    task.icp(few, true, 15, starts[i]);  // principal axes of a cube are any
     const Pairs pairs = pair_up(few, starts[i], task.reference);
     symmetric[i] = *std::max_element(pairs.far.begin(), pairs.far.end()) < alike * task.size() ? 1 : 0;
   });
@@ -191,18 +194,12 @@ std::vector<Eigen::Matrix3d> other_rotations(const Task& task, const Motion& pos
 Alignment align_part(const Task& task, const Motion& whole) {
   constexpr double reach = 0.05;  // of the size
   const double reach_mm = reach * task.size();
-  AlignOptions rigid = task.options;
-  rigid.with_scale = false;
-  const auto icp = [&](const auto& points, const AlignOptions& how, int most, Motion& start) {
-    return run_icp(points, task.reference, how, most, task.size(), start, reach_mm).rms_mm;
-  };
   const OverlapSearch search(task.box, task.reference);
   const auto found_from = [&](const std::vector<Motion>& poses) {
-    std::vector<Start> starts;
-    for (const Motion& start : poses) starts.push_back({0, start});
-    keep_best(starts, 200, [&](Motion& start) { return icp(task.few, rigid, 6, start); });
+    std::vector<Start> starts = starts_from(poses);
+    keep_best(starts, 200, [&](Motion& start) { return task.icp(task.few, true, 6, start, reach_mm); });
     keep_distinct(task, starts, 80);
-    keep_best(starts, 80, [&](Motion& start) { return icp(task.few, rigid, 20, start); });
+    keep_best(starts, 80, [&](Motion& start) { return task.icp(task.few, true, 20, start, reach_mm); });
     return starts;
   };
   std::vector<Motion> poses = search.poses(task.few, even_rotations(), 1, 400);
@@ -214,7 +211,7 @@ Alignment align_part(const Task& task, const Motion& whole) {
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });
   keep_distinct(task, starts, 24);
   keep_best(starts, 24,
-            [&](Motion& start) { return icp(task.some, task.options, task.options.max_iterations, start); });
+            [&](Motion& start) { return task.icp(task.some, false, task.options.max_iterations, start, reach_mm); });
   Motion pose = starts.front().pose;
   Alignment found =
       run_icp(task.all, task.reference, task.options, task.options.max_iterations, task.size(), pose, reach_mm);

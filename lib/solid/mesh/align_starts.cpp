@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/mesh/private/align_starts.hpp"
-
 #include <algorithm>
 #include <array>
 #include <numbers>
+
+#include "solid/mesh/private/icp.hpp"
 
 namespace vam::solid {
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/mesh/distance_band.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::solid {
 

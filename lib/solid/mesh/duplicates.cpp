@@ -9,8 +9,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "solid/mesh/private/topology.hpp"
-#include "solid/mesh/private/weld.hpp"
-#include "solid/mesh/private/winding.hpp"
+#include "solid/mesh/private/triangle_tree.hpp"
 
 namespace vam::solid {
 
@@ -48,6 +47,47 @@ std::vector<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
   return keys;
 }
 
+std::vector<char> marks(const std::vector<std::size_t>& numbers, std::size_t count) {
+  std::vector<char> all(count, 0);
+  for (const std::size_t number : numbers) all[number] = 1;
+  return all;
+}
+
+// An edge of triangles that are asked for, and of others. A balance is of those that run up less those that run down.
+struct AskedEdge {
+  std::vector<std::size_t> patch;  // of those that are asked for
+  std::size_t others = 0;
+  long balance = 0;  // of the others
+  long with = 0;     // of all
+};
+
+// Visits the edges of triangles that are asked for, without the others that are dropped.
+template <class Visit>
+void for_asked_edges(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<char>& asked,
+                     const Visit& visit) {
+  std::vector<Triangle> rest;
+  std::vector<std::size_t> original;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (drop[t] != 0 && asked[t] == 0) continue;
+    rest.push_back(mesh.triangles[t]);
+    original.push_back(t);
+  }
+  EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
+    AskedEdge found;
+    for (const HalfEdge& half : edge) {
+      const std::size_t t = original[half.triangle];
+      found.with += half.rising ? 1 : -1;
+      if (asked[t] != 0) {
+        found.patch.push_back(t);
+      } else {
+        ++found.others;
+        found.balance += half.rising ? 1 : -1;
+      }
+    }
+    if (!found.patch.empty()) visit(found);
+  });
+}
+
 // Which of the triangles left over from copies that cancel are needless: a patch of them is when the other triangles
 // meet it and are closed if it is removed, as where two solids touch, or when it is a surface of its own within the
 // others, as where one solid fills a cavity of another. A patch that closes a hole stays, and so does a surface of its
@@ -56,24 +96,10 @@ class Patches {
  public:
   Patches(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& cancelling)
       : mesh_(mesh), patches_(mesh.triangles.size()), keep_(mesh.triangles.size(), 0), met_(mesh.triangles.size(), 0) {
-    std::vector<char> doubtful(mesh.triangles.size(), 0);
-    for (const std::size_t t : cancelling) doubtful[t] = 1;
-    std::vector<Triangle> rest;
-    std::vector<std::size_t> original;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (drop[t] != 0) continue;
-      rest.push_back(mesh.triangles[t]);
-      original.push_back(t);
-      if (doubtful[t] == 0) rest_.push_back(mesh.triangles[t]);
-    }
-    EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
-      std::vector<std::size_t> patch;
-      for (const HalfEdge& half : edge) {
-        const std::size_t t = original[half.triangle];
-        if (doubtful[t] != 0) patch.push_back(t);
-      }
-      if (!patch.empty()) join(patch, edge.size() - patch.size());
-    });
+    const std::vector<char> doubtful = marks(cancelling, drop.size());
+    for (std::size_t t = 0; t < drop.size(); ++t)
+      if (drop[t] == 0 && doubtful[t] == 0) rest_.push_back(mesh.triangles[t]);
+    for_asked_edges(mesh, drop, doubtful, [&](const AskedEdge& edge) { join(edge.patch, edge.others); });
   }
 
   [[nodiscard]] bool needless(std::size_t triangle) {
@@ -135,30 +161,8 @@ class Copies {
  public:
   Copies(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& copies)
       : patches_(mesh.triangles.size()), gain_(mesh.triangles.size(), 0) {
-    std::vector<char> copy(mesh.triangles.size(), 0);
-    for (const std::size_t t : copies) copy[t] = 1;
-    std::vector<Triangle> rest;
-    std::vector<std::size_t> original;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (drop[t] != 0 && copy[t] == 0) continue;
-      rest.push_back(mesh.triangles[t]);
-      original.push_back(t);
-    }
-    EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
-      long balance = 0;  // without the copies
-      long with = 0;
-      std::vector<std::size_t> patch;
-      for (const HalfEdge& half : edge) {
-        const std::size_t t = original[half.triangle];
-        with += half.rising ? 1 : -1;
-        if (copy[t] == 0) {
-          balance += half.rising ? 1 : -1;
-        } else {
-          patch.push_back(t);
-        }
-      }
-      if (!patch.empty()) join(patch, balance, with);
-    });
+    for_asked_edges(mesh, drop, marks(copies, drop.size()),
+                    [&](const AskedEdge& edge) { join(edge.patch, edge.balance, edge.with); });
   }
 
   [[nodiscard]] bool needed(std::size_t triangle) { return gain_[patches_.of(triangle)] > 0; }

@@ -13,6 +13,13 @@ Bounds bounding_box(const model::TriangleSoup& mesh) {
   return box;
 }
 
+double area_of(const model::TriangleSoup& mesh) {
+  double twice = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    twice += length(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
+  return 0.5 * twice;
+}
+
 Affine scaling(const Point& s) { return {{Point{s[0], 0, 0}, Point{0, s[1], 0}, Point{0, 0, s[2]}}, {}}; }
 
 namespace {

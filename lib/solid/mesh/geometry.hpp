@@ -46,6 +46,7 @@ struct Bounds {
 
 /// Of the corners of all triangles.
 [[nodiscard]] Bounds bounding_box(const model::TriangleSoup& mesh);
+[[nodiscard]] double area_of(const model::TriangleSoup& mesh);
 
 /// p -> linear * p + shift.
 struct Affine {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/mesh/private/icp.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 
-#include "base/compute/parallel.hpp"
 #include "base/stats/median.hpp"
+#include "solid/mesh/private/triangle_tree.hpp"
 #include "solid/mesh/surface_samples.hpp"
 
 namespace vam::solid {
@@ -54,20 +53,16 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Sur
   Pairs pairs{std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<Vector3d>(n),
               std::vector<double>(n),   std::vector<double>(n),   0};
   constexpr std::size_t chunk = 256;
-  const auto chunks = static_cast<int>((n + chunk - 1) / chunk);
-  parallel_for(chunks, [&](int c) {
-    const std::size_t begin = static_cast<std::size_t>(c) * chunk;
-    int start = 0;
-    for (std::size_t i = begin; i < std::min(n, begin + chunk); ++i) {
-      pairs.moved[i] = pose(points[i]);
-      const ClosestPoint foot = reference.closest(from_eigen(pairs.moved[i]), start);
-      start = foot.triangle;
-      pairs.foot[i] = to_eigen(foot.point);
-      pairs.normal[i] = to_eigen(foot.normal);
-      pairs.distance[i] = (pairs.moved[i] - pairs.foot[i]).dot(pairs.normal[i]);
-      pairs.far[i] = (pairs.moved[i] - pairs.foot[i]).norm();
-    }
-  });
+  const auto pair = [&](std::size_t i, int& start) {
+    pairs.moved[i] = pose(points[i]);
+    const ClosestPoint foot = reference.closest(from_eigen(pairs.moved[i]), start);
+    start = foot.triangle;
+    pairs.foot[i] = to_eigen(foot.point);
+    pairs.normal[i] = to_eigen(foot.normal);
+    pairs.distance[i] = (pairs.moved[i] - pairs.foot[i]).dot(pairs.normal[i]);
+    pairs.far[i] = (pairs.moved[i] - pairs.foot[i]).norm();
+  };
+  for_chunks(n, pair, chunk);
   double sum = 0;
   for (const double far : pairs.far) sum += std::pow(std::min(far, reach), 2);
   pairs.rms = std::sqrt(sum / static_cast<double>(n));

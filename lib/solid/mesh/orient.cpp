@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/mesh/private/orient.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 
 #include "solid/mesh/private/topology.hpp"
-#include "solid/mesh/private/winding.hpp"
+#include "solid/mesh/private/triangle_tree.hpp"
 
 namespace vam::solid {
 

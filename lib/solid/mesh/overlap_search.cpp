@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/mesh/private/overlap_search.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,6 +6,7 @@
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
+#include "solid/mesh/private/icp.hpp"
 
 namespace vam::solid {
 

@@ -58,28 +58,18 @@ struct Crossings {
   double each = 0;
 };
 
-double area_of(const model::TriangleSoup& mesh) {
-  double twice = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) twice += length(twice_area(corners(mesh, t)));
-  return 0.5 * twice;
-}
-
 /// To one side, at least and at most so far.
 void look_across(const SurfaceTree& surface, const SeparateSolids& solids, const std::vector<SurfaceSample>& samples,
                  double side, double least, double most, Ways& found) {
   found.resize(samples.size());
-  constexpr int at_once = 1000;
-  parallel_for((count_of(samples) + at_once - 1) / at_once, [&](int block) {
-    const int end = std::min(count_of(samples), (block + 1) * at_once);
-    for (int i = block * at_once; i < end; ++i) {
-      const SurfaceSample& sample = samples[i];
-      const Vector3 along = side * sample.normal;
-      const auto hit = surface.tree->first_hit(sample.point, along, least, most);
-      if (!hit) continue;
-      const Vector3 normal = twice_area(surface.tree->triangles[hit->triangle]);
-      found[i] = Crossing{sample.point, along, hit->distance, dot(normal, sample.normal) / length(normal),
-                          !solids.are_one(sample.triangle, surface.place(hit->triangle))};
-    }
+  for_chunks(samples.size(), [&](std::size_t i, int) {
+    const SurfaceSample& sample = samples[i];
+    const Vector3 along = side * sample.normal;
+    const auto hit = surface.tree->first_hit(sample.point, along, least, most);
+    if (!hit) return;
+    const Vector3 normal = twice_area(surface.tree->triangles[hit->triangle]);
+    found[i] = Crossing{sample.point, along, hit->distance, dot(normal, sample.normal) / length(normal),
+                        !solids.are_one(sample.triangle, surface.place(hit->triangle))};
   });
 }
 
@@ -111,6 +101,18 @@ void leave_outer(Crossings& all, const SurfaceTree& surface, double voxel_mm) {
   all = std::move(some);
 }
 
+using Place = std::array<int, 3>;
+
+/// Of cubes of that side, the one that holds the point.
+Place block_of(const Vector3& point, double side) {
+  return {floor_int(point[0] / side), floor_int(point[1] / side), floor_int(point[2] / side)};
+}
+
+/// The n-th of a place and its 26 neighbours.
+Place beside(const Place& place, int n) {
+  return {place[0] + n % 3 - 1, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1};
+}
+
 /// The voxels of a grid, which goes on beyond its ends, and the part that is on them.
 class Voxels {
  public:
@@ -119,7 +121,7 @@ class Voxels {
   [[nodiscard]] bool has_void_near(const Vector3& point) const {
     constexpr int neighbours = 27;
     for (int n = 0; n < neighbours; ++n) {
-      const std::array<int, 3> step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+      const Place step = beside({}, n);
       Vector3 centre{};
       for (std::size_t d = 0; d < 3; ++d) {
         const double at = std::round((point[d] - grid_.origin_mm[d]) / grid_.voxel_mm) + step[d];
@@ -155,21 +157,6 @@ model::ThinPlaces summary(std::vector<Crossing> crossings, std::size_t n, double
   return {area_mm2, at->distance, at->at(0.5 * at->distance)};
 }
 
-/// Cubes of that side.
-class Blocks {
- public:
-  using Place = std::array<int, 3>;
-  explicit Blocks(double side) : side_(side) {}
-  [[nodiscard]] Place place(const Vector3& point) const {
-    Place at{};
-    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = floor_int(point[axis] / side_);
-    return at;
-  }
-
- private:
-  double side_;
-};
-
 /// Of a cube of three voxels or more, in which a plane has a dozen samples.
 double side_of_block(double each, double voxel_mm) { return std::max(3 * voxel_mm, std::sqrt(12 * each)); }
 
@@ -180,17 +167,17 @@ Ways without_lone(Ways ways, const Crossings& all, double voxel_mm) {
   struct Block {
     int samples = 0, ways = 0;
   };
-  const Blocks blocks_of(side_of_block(all.each, voxel_mm) / 3);
-  std::map<Blocks::Place, Block> blocks;
+  const double side = side_of_block(all.each, voxel_mm) / 3;
+  std::map<Place, Block> blocks;
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    Block& block = blocks[blocks_of.place(all.samples[i].point)];
+    Block& block = blocks[block_of(all.samples[i].point, side)];
     ++block.samples;
     block.ways += ways[i] && ways[i]->is_between_faces(voxel_mm) ? 1 : 0;
   }
-  const auto around = [&](const Blocks::Place& place) {  // in 27 blocks
+  const auto around = [&](const Place& place) {  // in 27 blocks
     Block sum;
     for (int n = 0; n < 27; ++n) {
-      const auto block = blocks.find({place[0] + n % 3 - 1, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1});
+      const auto block = blocks.find(beside(place, n));
       if (block == blocks.end()) continue;
       sum.samples += block->second.samples;
       sum.ways += block->second.ways;
@@ -199,7 +186,7 @@ Ways without_lone(Ways ways, const Crossings& all, double voxel_mm) {
   };
   for (std::size_t i = 0; i < ways.size(); ++i) {
     if (!ways[i]) continue;
-    const Block block = around(blocks_of.place(all.samples[i].point));
+    const Block block = around(block_of(all.samples[i].point, side));
     if (share * block.ways < block.samples) ways[i].reset();
   }
   return ways;
@@ -223,10 +210,10 @@ model::ThinPlaces relief(const Crossings& all, double voxel_mm) {
     [[nodiscard]] bool has_relief() const { return 10 * ridges >= samples && 10 * grooves >= samples; }
   };
   constexpr double much = 120;  // faces of a voxel: less lies along an edge, as at the foot of an oblique wall
-  const Blocks blocks_of(side_of_block(all.each, voxel_mm));
-  std::map<Blocks::Place, Block> blocks;
+  const double side = side_of_block(all.each, voxel_mm);
+  std::map<Place, Block> blocks;
   for (std::size_t i = 0; i < all.samples.size(); ++i) {
-    Block& block = blocks[blocks_of.place(all.samples[i].point)];
+    Block& block = blocks[block_of(all.samples[i].point, side)];
     ++block.samples;
     for (const auto& [crossing, count] :
          {std::pair{&all.inwards[i], &block.ridges}, std::pair{&all.outwards[i], &block.grooves}}) {

@@ -11,9 +11,7 @@
 #include "base/stats/median.hpp"
 #include "base/text/text.hpp"
 #include "base/vector3.hpp"
-#include "solid/mesh/private/orient.hpp"
 #include "solid/mesh/private/topology.hpp"
-#include "solid/mesh/private/weld.hpp"
 
 namespace vam::solid {
 

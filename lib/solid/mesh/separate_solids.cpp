@@ -5,7 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "base/compute/parallel.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "solid/mesh/private/topology.hpp"
@@ -54,19 +53,15 @@ class Pieces {
 /// For each triangle in the box: one crossed triangle of each other piece.
 std::vector<std::vector<int>> crossed(const model::TriangleSoup& mesh, const Pieces& pieces, const Bounds& box) {
   std::vector<std::vector<int>> found(mesh.triangles.size());
-  constexpr int at_once = 1000;
-  const int count = count_of(mesh.triangles);
-  parallel_for((count + at_once - 1) / at_once, [&](int block) {
-    for (int t = block * at_once; t < std::min(count, (block + 1) * at_once); ++t) {
-      const TriangleCorners c = corners(mesh, static_cast<std::size_t>(t));
-      Bounds own;
-      for (const Vector3& corner : c) own.add(corner);
-      bool apart = false;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        apart = apart || own.low[axis] > box.high[axis] || own.high[axis] < box.low[axis];
-      for (std::size_t side = 0; side < 3 && !apart; ++side)
-        pieces.add_others(pieces.piece(t), c[side], c[(side + 1) % 3], found[t]);
-    }
+  for_chunks(found.size(), [&](std::size_t t, int) {
+    const TriangleCorners c = corners(mesh, t);
+    Bounds own;
+    for (const Vector3& corner : c) own.add(corner);
+    bool apart = false;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      apart = apart || own.low[axis] > box.high[axis] || own.high[axis] < box.low[axis];
+    for (std::size_t side = 0; side < 3 && !apart; ++side)
+      pieces.add_others(pieces.piece(static_cast<int>(t)), c[side], c[(side + 1) % 3], found[t]);
   });
   return found;
 }
@@ -94,18 +89,14 @@ void SeparateSolids::find(const SurfaceTree& surface, const Bounds& shared, cons
   const Pieces pieces_alone(surface, roots(connected));
   const std::vector<std::vector<int>> crossing = crossed(mesh_, pieces_alone, shared);
   std::vector<std::vector<int>> touching(samples.size());
-  constexpr int at_once = 1000;
-  const int count = count_of(samples);
-  parallel_for((count + at_once - 1) / at_once, [&](int block) {
-    for (int i = block * at_once; i < std::min(count, (block + 1) * at_once); ++i) {
-      const Vector3 near = near_mm * samples[i].normal;
-      pieces_alone.add_others(pieces_alone.piece(samples[i].triangle), samples[i].point - near, samples[i].point + near,
-                              touching[i]);
-    }
+  for_chunks(samples.size(), [&](std::size_t i, int) {
+    const Vector3 near = near_mm * samples[i].normal;
+    pieces_alone.add_others(pieces_alone.piece(samples[i].triangle), samples[i].point - near, samples[i].point + near,
+                            touching[i]);
   });
   for (int t = 0; t < count_of(crossing); ++t)
     for (const int other : crossing[t]) join(point_of(t), point_of(other));
-  for (int i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < samples.size(); ++i)
     for (const int other : touching[i]) join(point_of(samples[i].triangle), point_of(other));
 
   solid_ = roots(connected);

@@ -1,30 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/mesh/signed_distance.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "solid/mesh/private/triangle_tree.hpp"
-#include "solid/mesh/private/winding.hpp"
 
 namespace vam::solid {
-
-namespace {
-
-// In parallel; `start` is the triangle of the point before, as neighbours in a list are mostly neighbours in space.
-template <class Work>
-void for_chunks(std::size_t count, const Work& work) {
-  constexpr std::size_t chunk = 1024;
-  parallel_for(static_cast<int>((count + chunk - 1) / chunk), [&](int c) {
-    const std::size_t begin = static_cast<std::size_t>(c) * chunk;
-    int start = 0;
-    for (std::size_t i = begin; i < std::min(count, begin + chunk); ++i) work(i, start);
-  });
-}
-
-}  // namespace
 
 struct Surface::State {
   std::shared_ptr<const TriangleTree> tree;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A reference surface that answers "how far, and on which side?".
+// A reference surface that answers "how far, and on which side?", also on a grid.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vector3.hpp"
+#include "model/grid.hpp"
 #include "model/mesh.hpp"
 
 namespace vam::solid {
@@ -39,5 +40,9 @@ class Surface {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Signed distances in mm at the voxels of the grid, positive outside, cut off at +-band_mm; x fastest, then y, then z.
+/// Blocks of voxels that lie farther away are not searched voxel by voxel.
+[[nodiscard]] model::Volume distance_band(const Surface& surface, const model::Grid& grid, double band_mm);
 
 }  // namespace vam::solid

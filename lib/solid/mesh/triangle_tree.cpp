@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/mesh/private/triangle_tree.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
-#include "base/compute/parallel.hpp"
 #include "base/index.hpp"
 
 namespace vam::solid {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/mesh/private/winding.hpp"
-
 #include <algorithm>
 #include <numbers>
+
+#include "solid/mesh/private/triangle_tree.hpp"
 
 namespace vam::solid {
 

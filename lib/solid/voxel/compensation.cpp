@@ -6,7 +6,6 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"
-#include "solid/mesh/distance_band.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"

@@ -17,7 +17,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"
-#include "base/vector3.hpp"
+#include "solid/mesh/geometry.hpp"
 #include "solid/mesh/repair.hpp"
 
 namespace vam::solid {
@@ -27,17 +27,10 @@ namespace {
 using Point3 = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using Surface = CGAL::Surface_mesh<Point3>;
 
-double area_mm2(const model::TriangleSoup& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    area += 0.5 * length(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
-  return area;
-}
-
 void require_size(const model::TriangleSoup& mesh, double alpha_mm, const std::string& subject) {
   constexpr double most = 2e6;
   constexpr double triangle_bytes = 2e3;
-  const double per_alpha = 2.1 * area_mm2(mesh);
+  const double per_alpha = 2.1 * area_of(mesh);
   const double triangles = per_alpha / (alpha_mm * alpha_mm);
   if (triangles > most) {
     throw Error{Fault::data, subject + ": its wrap of " + format_number(alpha_mm, 3) + " mm would have " +
@@ -49,18 +42,18 @@ void require_size(const model::TriangleSoup& mesh, double alpha_mm, const std::s
                  "use a larger --wrap");
 }
 
-model::TriangleSoup soup_of(const Surface& surface) {
-  model::TriangleSoup soup;
+/// Behind what the soup has.
+void append(const Surface& surface, model::TriangleSoup& soup) {
+  const int first = count_of(soup.points);
   for (const auto vertex : vertices(surface)) {
     const Point3& p = surface.point(vertex);
     soup.points.push_back({p.x(), p.y(), p.z()});
   }
   for (const auto face : faces(surface)) {
     const auto side = halfedge(face, surface);
-    const auto corner = [&](const auto& at) { return static_cast<int>(source(at, surface)); };
+    const auto corner = [&](const auto& at) { return first + static_cast<int>(source(at, surface)); };
     soup.triangles.push_back({corner(side), corner(next(side, surface)), corner(prev(side, surface))});
   }
-  return soup;
 }
 
 std::vector<Point3> points_of(const model::TriangleSoup& mesh) {
@@ -72,7 +65,9 @@ std::vector<Point3> points_of(const model::TriangleSoup& mesh) {
 model::TriangleSoup wrap_of(const model::TriangleSoup& mesh, const WrapSize& size) {
   Surface surface;
   CGAL::alpha_wrap_3(points_of(mesh), mesh.triangles, size.alpha_mm, size.offset_mm, surface);
-  return soup_of(surface);
+  model::TriangleSoup soup;
+  append(surface, soup);
+  return soup;
 }
 
 }  // namespace
@@ -84,7 +79,7 @@ Wrap wrapped(const model::TriangleSoup& mesh, const WrapSize& size, const std::s
   made.open_edges = close_holes(lidded, 2 * size.alpha_mm);
   require_size(lidded, size.alpha_mm, subject);
   made.mesh = wrap_of(lidded, size);
-  if (area_mm2(made.mesh) > both_sides * area_mm2(lidded)) {
+  if (area_of(made.mesh) > both_sides * area_of(lidded)) {
     close_holes(lidded);
     made.mesh = wrap_of(lidded, size);
   }
@@ -135,10 +130,7 @@ model::TriangleSoup difference(model::TriangleSoup mesh, model::TriangleSoup tak
       body = std::move(rest);
     }
     body.collect_garbage();
-    const model::TriangleSoup soup = soup_of(body);
-    const int first = count_of(left.points);
-    left.points.insert(left.points.end(), soup.points.begin(), soup.points.end());
-    for (const auto& [a, b, c] : soup.triangles) left.triangles.push_back({first + a, first + b, first + c});
+    append(body, left);
   }
   if (left.triangles.empty()) not_cut(subject, "nothing is left of it");
   return left;

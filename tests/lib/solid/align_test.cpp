@@ -7,7 +7,7 @@
 #include "base/random.hpp"
 #include "lib/meshes.hpp"
 #include "solid/mesh/geometry.hpp"
-#include "solid/mesh/private/winding.hpp"
+#include "solid/mesh/private/triangle_tree.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/mesh/surface_samples.hpp"
 #include "solid/shapes/shapes.hpp"

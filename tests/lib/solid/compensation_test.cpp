@@ -4,7 +4,6 @@
 #include "solid/voxel/compensation.hpp"
 
 #include "oracle/bench_views.hpp"
-#include "solid/mesh/distance_band.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/mesh/surface_samples.hpp"
 #include "solid/voxel/isosurface.hpp"

@@ -1,14 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Point-to-plane ICP from a given start [CM92; physics §13.3].
+// Private to align: where to start from when nothing is known of the pose, where a part of a print may lie on the
+// design when moments say nothing, and point-to-plane ICP from there [CM92; physics §13.3].
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Dense>
+#include <memory>
 #include <vector>
 
 #include "solid/mesh/align.hpp"
-#include "solid/mesh/private/align_starts.hpp"
+#include "solid/mesh/geometry.hpp"
+#include "solid/mesh/signed_distance.hpp"
 
 namespace vam::solid {
+
+struct Motion {
+  double scale = 1;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& x) const { return scale * (rotation * x) + shift; }
+};
+
+[[nodiscard]] Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points);
+
+/// The 24 rotations that map a cube onto itself.
+[[nodiscard]] std::vector<Eigen::Matrix3d> cube_rotations();
+
+/// Poses that take the principal axes of the one to those of the other, in all ways that their second moments cannot
+/// tell apart; with_scale: their spread, too.
+[[nodiscard]] std::vector<Motion> starting_poses(const std::vector<Eigen::Vector3d>& print,
+                                                 const std::vector<Eigen::Vector3d>& reference, bool with_scale);
+
+/// Rotations spread evenly [ALEXA22], about 20 degrees apart, and the 24 of a cube.
+[[nodiscard]] std::vector<Eigen::Matrix3d> even_rotations();
+
+/// Tries rotations with all shifts on a grid that keep the points within the design's box, by the mean distance of 48
+/// of them to the design, distances cut off at a twentieth of its size.
+class OverlapSearch {
+ public:
+  OverlapSearch(const Bounds& box, const Surface& design);
+  ~OverlapSearch();
+
+  /// The `count` best poses; of each rotation the `shifts` best, at least two steps of the grid apart.
+  [[nodiscard]] std::vector<Motion> poses(const std::vector<Eigen::Vector3d>& print,
+                                          const std::vector<Eigen::Matrix3d>& rotations, std::size_t shifts,
+                                          std::size_t count) const;
+
+ private:
+  class DistanceGrid;
+  Bounds box_;
+  std::unique_ptr<DistanceGrid> distance_;
+};
 
 [[nodiscard]] Similarity to_similarity(const Motion& pose);
 

@@ -8,7 +8,6 @@
 
 #include "model/mesh.hpp"
 #include "solid/mesh/private/triangle_tree.hpp"
-#include "solid/mesh/private/winding.hpp"
 #include "solid/mesh/repair.hpp"
 #include "solid/mesh/surface_samples.hpp"
 

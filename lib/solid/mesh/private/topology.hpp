@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who shares an edge with whom in a triangle soup with welded points.
+// Who shares an edge with whom in a triangle soup with welded points, and the steps of its repair: points that are
+// meant to be one become one; triangles that are none, or there twice, go; components are oriented.
 #pragma once
 
 #include <array>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "model/mesh.hpp"
+#include "solid/mesh/geometry.hpp"
 
 namespace vam::solid {
 
@@ -53,5 +55,32 @@ struct Measure {
 };
 void add(Measure& measure, const model::TriangleSoup& mesh, const Triangle& triangle,
          const std::array<double, 3>& origin);
+
+/// Gives points with the same coordinates one index and removes unused points. Returns how many went.
+long weld_equal_points(model::TriangleSoup& mesh);
+
+/// Joins each of `candidates` (point indices) to an earlier candidate within `distance`, if there is one. Returns how
+/// many points went. Candidates are few (border points), so the time is that of a sort.
+long weld_near_points(model::TriangleSoup& mesh, std::span<const int> candidates, double distance);
+
+/// Removes triangles that use a point twice. Returns how many went.
+long drop_degenerate(model::TriangleSoup& mesh);
+
+/// Of triangles with the same three points keeps one, with the orientation that most of them have, and further ones
+/// where these balance edges, as where two overlapping solids end in one face. Where as many run
+/// one way round as the other they cancel: patches of such go altogether if the other triangles are closed without
+/// them. Returns how many went.
+long drop_duplicates(model::TriangleSoup& mesh);
+
+struct Orientation {
+  long flipped = 0;
+  long components = 0;
+  long cavities = 0;
+  long unorientable = 0;        // edges with two triangles that cannot agree
+  std::vector<Bounds> outward;  // boxes of the components, but for those that face inwards
+};
+
+/// Orients in place; see repair().
+Orientation orient(model::TriangleSoup& mesh);
 
 }  // namespace vam::solid
