@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -31,11 +30,28 @@ using model::Kind;
 using model::Space;
 using model::StackInfo;
 
-constexpr std::array kinds = {Kind::sinogram, Kind::frames};
+constexpr std::pair<Kind, const char*> kinds[] = {{Kind::sinogram, "sinogram"}, {Kind::frames, "frames"}};
+constexpr std::pair<Space, const char*> spaces[] = {
+    {Space::virtual_, "virtual"}, {Space::projector, "projector"}, {Space::camera, "camera"}};
 constexpr const char* poses_name = "vam:poses";
 constexpr const char* piece_name = "vam:piece";
 constexpr double farthest_mm = 2000;  // from the lens's height
-constexpr std::array spaces = {Space::virtual_, Space::projector, Space::camera};
+
+/// A number of the whole stack, and how large it may be beside a vial.
+constexpr struct {
+  const char* name;
+  double StackInfo::*member;
+  double most;
+} numbers[] = {{"vam:pixel_mm", &StackInfo::pixel_mm, 100},
+               {"vam:row_mm", &StackInfo::row_mm, 100},
+               {"vam:z_mm", &StackInfo::z_start_mm, farthest_mm},
+               {"vam:angle_start_deg", &StackInfo::angle_start_deg, 1e7},
+               {"vam:angle_step_deg", &StackInfo::angle_step_deg, 360}};
+
+template <class Named, class Value>
+std::string name_in(const Named& named, Value value) {
+  return std::find_if(std::begin(named), std::end(named), [&](const auto& one) { return one.first == value; })->second;
+}
 
 void set_text(Imf::Header& header, const char* name, const std::string& text) {
   header.insert(name, Imf::StringAttribute(text));
@@ -44,11 +60,6 @@ void set_number(Imf::Header& header, const char* name, double value) {
   header.insert(name, Imf::DoubleAttribute(value));
 }
 void set_integer(Imf::Header& header, const char* name, int value) { header.insert(name, Imf::IntAttribute(value)); }
-
-std::optional<std::string> text(const Imf::Header& header, const char* name) {
-  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
-  return found != nullptr ? std::optional(found->value()) : std::nullopt;
-}
 
 // Other programs that pass a file on may store a number in another type.
 std::optional<double> number(const Imf::Header& header, const char* name) {
@@ -60,13 +71,7 @@ std::optional<double> number(const Imf::Header& header, const char* name) {
   return value;
 }
 
-std::string joined_lines(const std::vector<std::string>& lines) {
-  std::string all;
-  for (const std::string& line : lines) all += (all.empty() ? "" : "\n") + line;
-  return all;
-}
-
-std::vector<std::string> split(const std::string& all) {
+std::vector<std::string> lines_of(const std::string& all) {
   std::vector<std::string> lines;
   std::istringstream stream(all);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -87,17 +92,12 @@ model::Piece checked_piece(const std::string& text) {
 
 }  // namespace
 
-std::string kind_name(Kind kind) { return kind == Kind::sinogram ? "sinogram" : "frames"; }
+std::string kind_name(Kind kind) { return name_in(kinds, kind); }
+std::string space_name(Space space) { return name_in(spaces, space); }
 
-std::string space_name(Space space) {
-  switch (space) {
-    case Space::projector:
-      return "projector";
-    case Space::camera:
-      return "camera";
-    default:
-      return "virtual";
-  }
+std::optional<std::string> text(const Imf::Header& header, const char* name) {
+  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
+  return found != nullptr ? std::optional(found->value()) : std::nullopt;
 }
 
 ImageInfo implied(const StackInfo& info, int index) {
@@ -116,18 +116,10 @@ std::string part_name(const StackInfo& info, int index) {
 }
 
 std::string implausible(const StackInfo& info) {
-  struct Bound {
-    const char* name;
-    double value, most;
-  };
-  constexpr double most_pitch_mm = 100, least_pitch_mm = 1e-6, most_turned_deg = 1e7;
-  for (const Bound& bound : {Bound{"vam:pixel_mm", info.pixel_mm, most_pitch_mm},
-                             {"vam:row_mm", info.row_mm, most_pitch_mm},
-                             {"vam:z_mm", info.z_start_mm, farthest_mm},
-                             {"vam:angle_start_deg", info.angle_start_deg, most_turned_deg},
-                             {"vam:angle_step_deg", info.angle_step_deg, 360}}) {
-    if (std::abs(bound.value) <= bound.most) continue;
-    return std::string(bound.name) + " is " + format_number(bound.value) + ", beyond " + format_number(bound.most);
+  constexpr double least_pitch_mm = 1e-6;
+  for (const auto& [name, member, most] : numbers) {
+    if (std::abs(info.*member) <= most) continue;
+    return std::string(name) + " is " + format_number(info.*member) + ", beyond " + format_number(most);
   }
   for (const double pitch_mm : {info.pixel_mm, std::abs(info.row_mm)}) {
     if (pitch_mm == 0 || pitch_mm >= least_pitch_mm) continue;
@@ -141,12 +133,9 @@ void set_common(Imf::Header& header, const StackInfo& info) {
   set_text(header, "vam:kind", kind_name(info.kind));
   set_text(header, "vam:space", space_name(info.space));
   set_integer(header, "vam:count", info.count);
-  set_number(header, "vam:pixel_mm", info.pixel_mm);
-  set_number(header, "vam:row_mm", info.row_mm);
-  set_number(header, "vam:angle_start_deg", info.angle_start_deg);
-  set_number(header, "vam:angle_step_deg", info.angle_step_deg);
+  for (const auto& one : numbers) set_number(header, one.name, info.*one.member);
   set_text(header, "vam:units", info.units);
-  set_text(header, "vam:history", joined_lines(info.history));
+  set_text(header, "vam:history", join(info.history, "\n"));
   if (!info.piece.whole()) set_text(header, piece_name, model::piece_text(info.piece));
 }
 
@@ -177,25 +166,24 @@ StackInfo stack_info(const Imf::Header& header) {
   StackInfo info;
   const auto kind = text(header, "vam:kind");
   if (!kind) throw std::runtime_error("has no vam:kind, so it is not a stack that these tools wrote");
-  const auto* same_kind = std::find_if(kinds.begin(), kinds.end(), [&](Kind k) { return kind_name(k) == *kind; });
-  if (same_kind == kinds.end()) throw std::runtime_error("vam:kind is " + excerpt(*kind) + ", not sinogram or frames");
-  info.kind = *same_kind;
+  const auto* same_kind =
+      std::find_if(std::begin(kinds), std::end(kinds), [&](const auto& one) { return one.second == *kind; });
+  if (same_kind == std::end(kinds))
+    throw std::runtime_error("vam:kind is " + excerpt(*kind) + ", not sinogram or frames");
+  info.kind = same_kind->first;
   const auto space = text(header, "vam:space").value_or("");
-  const auto* same_space = std::find_if(spaces.begin(), spaces.end(), [&](Space s) { return space_name(s) == space; });
-  if (same_space == spaces.end()) {
+  const auto* same_space =
+      std::find_if(std::begin(spaces), std::end(spaces), [&](const auto& one) { return one.second == space; });
+  if (same_space == std::end(spaces)) {
     throw std::runtime_error("vam:space is " + excerpt(space) + ", not virtual, projector or camera");
   }
-  info.space = *same_space;
+  info.space = same_space->first;
   info.count = static_cast<int>(number(header, "vam:count").value_or(0));
-  info.pixel_mm = number(header, "vam:pixel_mm").value_or(0);
+  for (const auto& one : numbers) info.*one.member = number(header, one.name).value_or(0);
   if (info.pixel_mm <= 0) throw std::runtime_error("vam:pixel_mm is missing or not positive");
-  info.row_mm = number(header, "vam:row_mm").value_or(0);
-  info.z_start_mm = number(header, "vam:z_mm").value_or(0);
-  info.angle_start_deg = number(header, "vam:angle_start_deg").value_or(0);
-  info.angle_step_deg = number(header, "vam:angle_step_deg").value_or(0);
   if (const std::string why = implausible(info); !why.empty()) throw std::runtime_error(why);
   info.units = text(header, "vam:units").value_or(info.units);
-  info.history = split(checked_history(text(header, "vam:history").value_or("")));
+  info.history = lines_of(checked_history(text(header, "vam:history").value_or("")));
   if (const auto poses = text(header, poses_name)) info.poses = model::parse_poses(*poses);
   if (const auto piece = text(header, piece_name)) info.piece = checked_piece(*piece);
   for (auto it = header.begin(); it != header.end(); ++it) {
@@ -219,11 +207,9 @@ void require_alike(const Imf::Header& header, const StackInfo& first, const Stac
   };
   compare("vam:space", space_name(own.space), space_name(first.space));
   compare("vam:units", excerpt(own.units), excerpt(first.units));
-  for (const auto& [name, member] : {std::pair{"vam:pixel_mm", &StackInfo::pixel_mm},
-                                     {"vam:row_mm", &StackInfo::row_mm},
-                                     {"vam:angle_start_deg", &StackInfo::angle_start_deg},
-                                     {"vam:angle_step_deg", &StackInfo::angle_step_deg}}) {
-    if (own.*member != first.*member) compare(name, format_number(own.*member, 9), format_number(first.*member, 9));
+  for (const auto& [name, member, most] : numbers) {
+    if (member != &StackInfo::z_start_mm && own.*member != first.*member)
+      compare(name, format_number(own.*member, 9), format_number(first.*member, 9));
   }
   const auto printer = [](const StackInfo& info) { return model::stated_text(info.extra, "vam:printer"); };
   for (const auto& [name, same] :

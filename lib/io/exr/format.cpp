@@ -224,7 +224,7 @@ Image decode_single(const std::string& bytes) {
   require_whole(header);
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width > max_side || height > max_side || width * height > max_pixels) {
+  if (!is_size(width, height)) {
     throw std::runtime_error("has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, too many");
   }
   const std::string name = only_channel(header);

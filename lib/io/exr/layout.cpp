@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/exr/private/layout.hpp"
-
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfPartType.h>
 
@@ -47,7 +45,7 @@ Layout checked_layout(const Imf::Header& part) {
   const auto& window = part.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || height < 1 || width > max_side || height > max_side || width * height > max_pixels) {
+  if (!is_size(width, height)) {
     throw std::runtime_error("has an image of " + std::to_string(width) + " x " + std::to_string(height) +
                              " pixels; 1 to 65536 per axis and up to 2^28 in all can be read");
   }

@@ -59,8 +59,7 @@ bool plausible(const StackInfo& info, std::size_t images) {
   if (!piece.whole() && (model::parse_piece(model::piece_text(piece)) != piece || piece.images.count() != info.count)) {
     return false;
   }
-  return info.width > 0 && info.width <= exr::max_side && info.height > 0 && info.height <= exr::max_side &&
-         std::int64_t{info.width} * info.height <= exr::max_pixels && static_cast<std::size_t>(info.count) == images &&
+  return exr::is_size(info.width, info.height) && static_cast<std::size_t>(info.count) == images &&
          (info.kind == model::Kind::sinogram || info.kind == model::Kind::frames) &&
          (info.space == model::Space::virtual_ || info.space == model::Space::projector ||
           info.space == model::Space::camera);

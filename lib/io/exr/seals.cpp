@@ -17,11 +17,6 @@ namespace {
 
 constexpr const char* follows = "follows";
 
-std::string stated(const Imf::Header& header, const char* name) {
-  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
-  return found != nullptr ? found->value() : "";
-}
-
 }  // namespace
 
 Digest facts_digest(const model::StackInfo& info, int index, const model::ImageInfo& about) {
@@ -68,8 +63,8 @@ void set_seals(Imf::Header& header, const Digest& facts, const std::optional<Dig
 }
 
 std::optional<PartSeals> seals_of(const Imf::Header& header, const std::string& part) {
-  const std::string facts = stated(header, facts_seal_key);
-  const std::string values = stated(header, values_seal_key);
+  const std::string facts = text(header, facts_seal_key).value_or("");
+  const std::string values = text(header, values_seal_key).value_or("");
   if (facts.empty() && values.empty()) return std::nullopt;
   PartSeals seals;
   Digest of_values;

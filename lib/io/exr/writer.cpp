@@ -18,7 +18,6 @@
 #include "base/text/text.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/format.hpp"
-#include "io/exr/private/layout.hpp"
 #include "io/exr/private/seals.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/finite.hpp"
@@ -107,9 +106,8 @@ StackWriter::State::State(const std::string& path, const StackInfo& stack, std::
       late(options.late) {
   info.extra[version_name] = FormatKind("stack").version();
   if (out.is_stream()) compression = Imf::NO_COMPRESSION;
-  const bool sane = info.width > 0 && info.height > 0 && info.count > 0 && info.width <= exr::max_side &&
-                    info.height <= exr::max_side && std::int64_t{info.width} * info.height <= exr::max_pixels;
-  if (!sane || about.size() != static_cast<std::size_t>(info.count)) {
+  if (!exr::is_size(info.width, info.height) || info.count < 1 ||
+      about.size() != static_cast<std::size_t>(info.count)) {
     throw Error{Fault::data, out.name() + ": a stack of " + std::to_string(info.count) + " images of " +
                                  std::to_string(info.width) + " x " + std::to_string(info.height) +
                                  " pixels cannot be written; at most 65536 per axis and 2^28 in all"};

@@ -4,6 +4,7 @@
 
 #include <OpenEXR/ImfHeader.h>
 
+#include <optional>
 #include <string>
 
 #include "model/stack.hpp"
@@ -39,6 +40,8 @@ void require_alike(const Imf::Header& header, const model::StackInfo& first, con
 /// Throws std::runtime_error for a sinogram of several slices that do not lie one above the other.
 void require_pitch(const model::StackInfo& info);
 
+/// Nothing where there is no attribute of that name and type.
+[[nodiscard]] std::optional<std::string> text(const Imf::Header& header, const char* name);
 [[nodiscard]] std::string kind_name(model::Kind kind);
 [[nodiscard]] std::string space_name(model::Space space);
 

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "model/stack.hpp"
 
 namespace vam::io::exr {
 
@@ -38,8 +39,11 @@ std::string channel_remedy(const Imf::ChannelList& channels);
 void require_whole(const Imf::Header& header);
 
 /// Refused beyond these, before memory is taken.
-inline constexpr int max_side = 1 << 16;                               // pixels
-inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;      // of one image: 1 GiB as float
+inline constexpr int max_side = 1 << 16;                           // pixels
+inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;  // of one image: 1 GiB as float
+[[nodiscard]] constexpr bool is_size(std::int64_t width, std::int64_t height) {
+  return width >= 1 && height >= 1 && width <= max_side && height <= max_side && width * height <= max_pixels;
+}
 inline constexpr std::size_t max_header_bytes = std::size_t{1} << 24;  // of one part
 
 template <class Number>
@@ -87,5 +91,22 @@ void decode(const Imf::Header& layout, const Chunks& chunks, Image& image);
 
 /// decode() of such an image. Throws std::runtime_error for a row of another size.
 void decode_rows(const Imf::Header& layout, const Chunks& chunks, Image& image);
+
+struct Layout {
+  Imf::Header header;  // window, channels, compression, line order
+  std::string key;     // the same, serialized: parts of equal keys share one Layout
+  int width = 0;
+  int height = 0;
+  int chunks = 0;
+  std::size_t max_chunk_bytes = 0;  // OpenEXR stores a chunk uncompressed where compression does not help
+};
+
+/// Throws std::runtime_error with what cannot be read: tiles, sizes beyond max_side and max_pixels, subsampled
+/// channels, no channel Y, an unknown compression.
+[[nodiscard]] Layout checked_layout(const Imf::Header& part);
+
+/// "pixel 3, 4 of image 2 is 1e+30, more than 1e9, ..." of the first value that is not finite, or of projections is no
+/// intensity; empty where there is none.
+[[nodiscard]] std::string objection(const Image& image, std::size_t index, model::Space space);
 
 }  // namespace vam::io::exr

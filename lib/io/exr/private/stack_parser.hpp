@@ -13,7 +13,6 @@
 
 #include "base/image.hpp"
 #include "io/exr/private/format.hpp"
-#include "io/exr/private/layout.hpp"
 #include "io/exr/private/seals.hpp"
 #include "io/stream/stream.hpp"
 #include "model/stack.hpp"
