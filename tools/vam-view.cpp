@@ -8,7 +8,7 @@
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
-#include "io/vdb/nrrd.hpp"
+#include "io/vdb/vdb.hpp"
 #include "manual_page.hpp"
 #include "model/metadata.hpp"
 #include "plot/save.hpp"
@@ -17,10 +17,8 @@
 #include "session/grey_target.hpp"
 #include "session/printer.hpp"
 #include "session/volumes.hpp"
-#include "vam-view/bodies.hpp"
-#include "vam-view/movie.hpp"
+#include "vam-view/figures.hpp"
 #include "vam-view/options.hpp"
-#include "vam-view/trace.hpp"
 
 namespace {
 

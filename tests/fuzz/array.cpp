@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "fuzz/fuzz.hpp"
-#include "io/array/private/array_formats.hpp"
 #include "io/image/tiff_pages.hpp"
 
 namespace {

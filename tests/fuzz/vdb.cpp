@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fuzz/fuzz.hpp"
-#include "io/stream/private/shared_buffers.hpp"
+#include "io/stream/private/sandbox.hpp"
 #include "io/vdb/private/serialisation.hpp"
 
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-view/movie.hpp"
-
 #include <algorithm>
 #include <vector>
 
@@ -15,7 +13,7 @@
 #include "plot/render.hpp"
 #include "session/surface.hpp"
 #include "solid/mesh/geometry.hpp"
-#include "vam-view/sight.hpp"
+#include "vam-view/figures.hpp"
 
 namespace vam::view_tool {
 

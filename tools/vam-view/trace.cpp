@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-view/trace.hpp"
-
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -11,6 +9,7 @@
 #include "base/error.hpp"
 #include "io/settings/csv_table.hpp"
 #include "plot/curves.hpp"
+#include "vam-view/figures.hpp"
 
 namespace vam::view_tool {
 

@@ -15,7 +15,6 @@
 #include "base/system_error.hpp"
 #include "io/array/array_file.hpp"
 #include "io/array/private/array.hpp"
-#include "io/array/private/array_formats.hpp"
 #include "io/image/tiff_pages.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/sandboxed_reader.hpp"

@@ -18,7 +18,7 @@
 #include "base/shared_library.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/array/private/array_formats.hpp"
+#include "io/array/private/array.hpp"
 
 // Every function of libhdf5 that is called.
 // clang-format off

@@ -10,7 +10,7 @@
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "io/array/array_file.hpp"
-#include "io/array/private/array_formats.hpp"
+#include "io/array/private/array.hpp"
 
 namespace vam::io {
 

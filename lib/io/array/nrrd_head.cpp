@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/text/format_version.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/array/private/array_formats.hpp"
+#include "io/array/private/array.hpp"
 
 namespace vam::io::arrays {
 
 namespace {
 
-/// A field, and its value where it has but one.
-bool is_known(const std::string& name, const std::string& value) {
-  static const std::map<std::string, std::string> fields{
-      {"type", ""},         {"dimension", "3"},       {"encoding", "raw"}, {"endian", "little"},
-      {"sizes", ""},        {"content", ""},          {"kinds", ""},       {"space", "3D-right-handed"},
-      {"space units", ""},  {"space directions", ""}, {"labels", ""},      {"units", ""},
-      {"space origin", ""}, {"axis mins", ""},        {"spacings", ""},    {"centerings", ""}};
-  const auto field = fields.find(name);
-  return field != fields.end() && (field->second.empty() || field->second == value);
-}
+constexpr std::size_t required = 5;
+/// Fields, and the value of those that have but one; the first are required.
+constexpr std::pair<const char*, const char*> known[] = {
+    {"type", ""},      {"sizes", ""}, {"dimension", "3"},           {"encoding", "raw"}, {"endian", "little"},
+    {"content", ""},   {"kinds", ""}, {"space", "3D-right-handed"}, {"space units", ""}, {"space directions", ""},
+    {"labels", ""},    {"units", ""}, {"space origin", ""},         {"axis mins", ""},   {"spacings", ""},
+    {"centerings", ""}};
 
 /// The edge of cubes along x, y and z: "(E,0,0) (0,E,0) (0,0,E)" or "E E E"; 0 for anything else.
 double edge_of(const std::string& text) {
@@ -51,15 +51,16 @@ Head take_nrrd_head(Bytes& bytes, double& voxel_mm) {
     if (line.starts_with('#') || line.find(":=") != std::string::npos) continue;
     const std::string name = line.substr(0, line.find(": "));
     const std::string value = line.substr(std::min(name.size() + 2, line.size()));
-    if (!is_known(name, value)) refuse("its header has " + excerpt(line));
+    if (std::none_of(std::begin(known), std::end(known), [&](const auto& field) {
+          return name == field.first && (*field.second == '\0' || value == field.second);
+        }))
+      refuse("its header has " + excerpt(line));
     if (!fields.try_emplace(name, value).second) refuse("its header states " + excerpt(name) + " twice");
   }
   const bool bits = fields["type"] == "uint8";
-  for (const char* name : {"type", "sizes", "dimension", "encoding", "endian"}) {
-    if (fields[name].empty() && !(bits && name == std::string("endian"))) {
-      refuse("its header has no '" + std::string(name) + "'");
-    }
-  }
+  for (const auto& [name, only] : std::span(known).first<required>())
+    if (fields[name].empty() && !(bits && name == std::string("endian")))
+      refuse(std::string("its header has no '") + name + "'");
   if (!bits && fields["type"] != "float") refuse("has values of type " + excerpt(fields["type"]));
   std::vector<std::uint64_t> shape;
   std::istringstream sizes(fields["sizes"]);  // the fastest first

@@ -2,8 +2,11 @@
 // A mesh as a 3MF package: one object, in millimetres.
 #include <zip.h>
 
+#include <initializer_list>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -49,64 +52,45 @@ std::string model_xml(const model::TriangleSoup& mesh, const std::vector<std::st
   return xml + "</triangles>\n</mesh></object>\n </resources>\n <build><item objectid=\"1\"/></build>\n</model>\n";
 }
 
-struct Discard {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
-};
-
-struct Free {
-  void operator()(zip_source_t* source) const { zip_source_free(source); }
-};
-
 [[noreturn]] void failed(const std::string& why) {
   throw Error{Fault::memory, "3MF: the package cannot be put together (" + why + ")"};
 }
 
-/// `content` must outlive the archive.
-void add(zip_t* archive, const char* name, const std::string& content) {
+/// The bytes of an archive of these files.
+std::string package(std::initializer_list<std::pair<const char*, std::string_view>> files) {
   constexpr zip_uint16_t first_day = (1 << 5) | 1;  // of 1980: the same bytes at any time
-  zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
-  if (source == nullptr) failed(zip_strerror(archive));
-  const zip_int64_t index = zip_file_add(archive, name, source, ZIP_FL_ENC_UTF_8);
-  if (index < 0) {
-    zip_source_free(source);
-    failed(zip_strerror(archive));
-  }
-  zip_file_set_dostime(archive, static_cast<zip_uint64_t>(index), 0, first_day, 0);
-}
-
-std::string contents(zip_source_t* source) {
-  zip_stat_t about;
-  if (zip_source_stat(source, &about) != 0 || zip_source_open(source) != 0) failed("its memory");
-  std::string bytes(about.size, '\0');
-  const zip_int64_t got = zip_source_read(source, bytes.data(), bytes.size());
-  zip_source_close(source);
-  if (got != static_cast<zip_int64_t>(bytes.size())) failed("its end");
-  return bytes;
-}
-
-std::string package(const std::string& model) {
-  const std::string types = content_types;
-  const std::string root = relations;
-  zip_error_t error;
-  zip_error_init(&error);
-  const std::unique_ptr<zip_source_t, Free> made(zip_source_buffer_create(nullptr, 0, 0, &error));
-  if (made == nullptr) failed(zip_error_strerror(&error));
-  std::unique_ptr<zip_t, Discard> archive(zip_open_from_source(made.get(), ZIP_TRUNCATE, &error));
-  if (archive == nullptr) failed(zip_error_strerror(&error));
+  const std::unique_ptr<zip_source_t, decltype(&zip_source_free)> made(zip_source_buffer_create(nullptr, 0, 0, nullptr),
+                                                                       zip_source_free);
+  if (made == nullptr) failed("its memory");
+  std::unique_ptr<zip_t, decltype(&zip_discard)> archive(zip_open_from_source(made.get(), ZIP_TRUNCATE, nullptr),
+                                                         zip_discard);
+  if (archive == nullptr) failed("its begin");
   zip_source_keep(made.get());  // the archive frees it, too
-  add(archive.get(), "[Content_Types].xml", types);
-  add(archive.get(), "_rels/.rels", root);
-  add(archive.get(), "3D/3dmodel.model", model);
+  for (const auto& [name, content] : files) {
+    zip_source_t* source = zip_source_buffer(archive.get(), content.data(), content.size(), 0);
+    const zip_int64_t index = zip_file_add(archive.get(), name, source, ZIP_FL_ENC_UTF_8);
+    if (index < 0) zip_source_free(source);
+    if (index < 0) failed(zip_strerror(archive.get()));
+    zip_file_set_dostime(archive.get(), static_cast<zip_uint64_t>(index), 0, first_day, 0);
+  }
   if (zip_close(archive.get()) != 0) failed(zip_strerror(archive.get()));
   (void)archive.release();  // closing has freed it
-  return contents(made.get());
+  zip_stat_t about;
+  if (zip_source_stat(made.get(), &about) != 0 || zip_source_open(made.get()) != 0) failed("its memory");
+  std::string bytes(about.size, '\0');
+  const zip_int64_t got = zip_source_read(made.get(), bytes.data(), bytes.size());
+  zip_source_close(made.get());
+  if (got != static_cast<zip_int64_t>(bytes.size())) failed("its end");
+  return bytes;
 }
 
 }  // namespace
 
 void write_3mf(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments) {
   OutputFile file(path);
-  file.write(package(model_xml(mesh, comments)));
+  const std::string model = model_xml(mesh, comments);
+  file.write(
+      package({{"[Content_Types].xml", content_types}, {"_rels/.rels", relations}, {"3D/3dmodel.model", model}}));
   file.commit();
 }
 

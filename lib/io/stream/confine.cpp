@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/stream/private/confine.hpp"
-
 #include <fcntl.h>
 #include <seccomp.h>
 #include <sys/prctl.h>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "base/compute/memory.hpp"
+#include "io/stream/private/sandbox.hpp"
 
 namespace vam::io {
 

@@ -104,11 +104,13 @@ void OutputFile::write(const void* bytes, std::size_t size) {
   position_ += size;
 }
 
-void OutputFile::send(const char* bytes, std::size_t size) {
+void OutputFile::send(const char* bytes, std::size_t size, std::optional<std::uint64_t> offset) {
   while (size > 0) {
-    const ssize_t sent = ::write(descriptor_, bytes, size);
+    const ssize_t sent =
+        offset ? pwrite(descriptor_, bytes, size, static_cast<off_t>(*offset)) : ::write(descriptor_, bytes, size);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0) fail(Fault::io, name_, "cannot write", errno);
+    if (offset) *offset += static_cast<std::uint64_t>(sent);
     bytes += sent;
     size -= static_cast<std::size_t>(sent);
   }
@@ -121,15 +123,7 @@ void OutputFile::flush() {
 
 void OutputFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
   flush();
-  const char* from = static_cast<const char*>(bytes);
-  while (size > 0) {
-    const ssize_t sent = pwrite(descriptor_, from, size, static_cast<off_t>(offset));
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) fail(Fault::io, name_, "cannot write", errno);
-    from += sent;
-    offset += static_cast<std::uint64_t>(sent);
-    size -= static_cast<std::size_t>(sent);
-  }
+  send(static_cast<const char*>(bytes), size, offset);
 }
 
 void OutputFile::commit() {

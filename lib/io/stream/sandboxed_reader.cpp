@@ -18,8 +18,7 @@
 #include "base/compute/memory.hpp"
 #include "base/error.hpp"
 #include "base/system_error.hpp"
-#include "io/stream/private/confine.hpp"
-#include "io/stream/private/shared_buffers.hpp"
+#include "io/stream/private/sandbox.hpp"
 
 namespace vam::io {
 

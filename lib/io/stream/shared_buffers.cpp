@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The two ends of what a child sends.
-#include "io/stream/private/shared_buffers.hpp"
-
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+
+#include "io/stream/private/sandbox.hpp"
 
 namespace vam::io {
 

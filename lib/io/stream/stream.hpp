@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -88,7 +89,7 @@ class OutputFile {
  private:
   void open_special(const std::string& path);
   void flush();
-  void send(const char* bytes, std::size_t size);
+  void send(const char* bytes, std::size_t size, std::optional<std::uint64_t> offset = std::nullopt);
   void publish();
   void discard() noexcept;
   std::string name_;

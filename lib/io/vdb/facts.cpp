@@ -12,7 +12,6 @@
 
 #include "base/index.hpp"
 #include "base/text/format_version.hpp"
-#include "io/stream/seal.hpp"
 #include "model/metadata.hpp"
 
 namespace vam::io {

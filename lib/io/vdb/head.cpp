@@ -12,7 +12,7 @@
 
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream_buffers.hpp"
-#include "io/vdb/private/archive.hpp"
+#include "io/vdb/private/serialisation.hpp"
 
 namespace vam::io {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/vdb/nrrd.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -8,7 +6,9 @@
 #include "base/text/format_version.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
+#include "io/exr/stack.hpp"
 #include "io/stream/stream.hpp"
+#include "io/vdb/vdb.hpp"
 
 namespace vam::io {
 

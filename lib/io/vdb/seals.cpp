@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/vdb/private/seals.hpp"
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>

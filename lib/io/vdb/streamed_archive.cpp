@@ -16,9 +16,7 @@
 
 #include "base/text/printable.hpp"
 #include "io/stream/finite.hpp"
-#include "io/vdb/private/archive.hpp"
 #include "io/vdb/private/facts.hpp"
-#include "io/vdb/private/seals.hpp"
 #include "io/vdb/private/serialisation.hpp"
 
 namespace vam::io {

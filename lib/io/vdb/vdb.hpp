@@ -13,6 +13,8 @@
 
 namespace vam::io {
 
+class StackReader;
+
 /// One float grid. `name` is target, insert, weight, dose, scatter or sdf. Slices are dense row-major images (x
 /// fastest, then y), one after the other.
 class SparseVolume {
@@ -108,5 +110,13 @@ void write_volume(const std::string& path, SparseVolume& volume);
 
 /// The smallest box of the volume's grid that holds all voxels whose value is above that.
 [[nodiscard]] model::VoxelBox covered_box(const SparseVolume& volume, float above);
+
+/// Writes the dense box of a volume as NRRD, raw floats behind a text header: x fastest, right-handed, mm. "-" is
+/// stdout. Constant memory beside the volume. Throws Error: no_output, io.
+void write_nrrd(const std::string& path, const SparseVolume& volume);
+
+/// Writes a whole stack front to back, columns fastest: (column, angle, slice) of sinograms, (column, row, frame) of
+/// frames, each axis with its spacing and unit. Throws what reading throws, and no_output, io.
+void write_nrrd(const std::string& path, StackReader& stack);
 
 }  // namespace vam::io

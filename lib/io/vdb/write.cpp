@@ -21,7 +21,6 @@
 #include "io/stream/stream_buffers.hpp"
 #include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/leaf_store.hpp"
-#include "io/vdb/private/seals.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "io/array/array_file.hpp"
-#include "io/array/private/array_formats.hpp"
 #include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"

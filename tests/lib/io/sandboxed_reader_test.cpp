@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "io/stream/private/confine.hpp"
+#include "io/stream/private/sandbox.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"
 

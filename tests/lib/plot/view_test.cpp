@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "io/image/image_file.hpp"
-#include "io/vdb/nrrd.hpp"
+#include "io/vdb/vdb.hpp"
 #include "lib/io/scratch.hpp"
 #include "plot/private/insert_shadows.hpp"
 #include "testing.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to the VDB files: the messages by which the parsing child process returns volumes. Each begins with its
 // Record.
+// Archives come off a file or a pipe; each head is validated before it is passed to OpenVDB.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -8,8 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <istream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -97,5 +101,18 @@ void receive_records(Receiver& in, Taker& taker) {
     }
   }
 }
+
+/// Calls `archive` at the start of each archive until the file ends; it must read its archive whole. Throws
+/// std::runtime_error, to stand behind the file's name, for what is empty, cut off or not OpenVDB; and what the reader
+/// throws.
+void for_archives(InputFile& file, const std::function<void(std::istream&)>& archive);
+
+/// Whether an archive begins there.
+[[nodiscard]] bool is_archive(std::span<const char> bytes);
+
+/// Walks the head of an archive (file metadata, first grid's descriptor and metadata) as far as `bytes` show it.
+/// OpenVDB takes the memory that a size there asks for before it finds that the bytes do not follow.
+/// Throws std::runtime_error: not VDB, a format newer than the library's, a size or count that cannot be.
+void check_head(std::span<const char> bytes);
 
 }  // namespace vam::io
