@@ -30,9 +30,7 @@
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
 #include "solid/voxel/trapped_resin.hpp"
-#include "vam-slice/lift.hpp"
 #include "vam-slice/options.hpp"
-#include "vam-slice/overprint.hpp"
 #include "vam-slice/part.hpp"
 
 namespace {
@@ -58,10 +56,15 @@ double largest_mm(const solid::Part& part, double stretch_z) {
   return std::max({size[0], size[1], size[2] / stretch_z});
 }
 
+/// Whether the user has said how large the file is, or it is no file.
+bool is_size_known(const cli::App& app, const solid::Part& part) {
+  return !part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit");
+}
+
 void judge_size(const cli::App& app, const Options& options, const solid::Part& part, const solid::FillSummary& content,
                 const model::Grid& grid, const solid::Writable& room) {
-  const bool known = !part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit");
-  const std::string doubt = solid::size_doubt(part, content, grid, options.placement.stretch_z, room, known);
+  const std::string doubt =
+      solid::size_doubt(part, content, grid, options.placement.stretch_z, room, is_size_known(app, part));
   // What was to fit is to be printed: vam-optimize takes no target without such a voxel.
   if (options.placement.fit_writable && !model::half_covered(content.most)) {
     throw Error{Fault::data, part.subject + ": at the size that fits, " +
@@ -85,7 +88,7 @@ solid::PlacementAdvice advice_for(const cli::App& app, const Options& options, c
                                   const solid::Part& part, const solid::Writable& room) {
   solid::PlacementAdvice advice = slice_tool::advice(options);
   if (part.extent.radius_mm > model::resin_radius_mm(printer.vial)) advice.beyond.clear();
-  if (!part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit")) return advice;
+  if (is_size_known(app, part)) return advice;
   const std::string unit = solid::finer_unit(largest_mm(part, options.placement.stretch_z), room);
   if (!unit.empty()) advice.unit = unit + " --unit states it; else ";
   return advice;

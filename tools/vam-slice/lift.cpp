@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-slice/lift.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +6,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "light/grids/blurred_faces.hpp"
+#include "vam-slice/part.hpp"
 
 namespace vam::slice_tool {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-slice/overprint.hpp"
-
 #include <string>
 #include <vector>
 
@@ -8,6 +6,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "solid/voxel/insert_fit.hpp"
+#include "vam-slice/part.hpp"
 
 namespace vam::slice_tool {
 
