@@ -26,14 +26,12 @@ namespace vam::io {
 namespace {
 
 model::StackInfo frames_of(int width, int height, int count) {
-  model::StackInfo info;
-  info.kind = model::Kind::frames;
-  info.space = model::Space::projector;
-  info.width = width;
-  info.height = height;
-  info.count = count;
-  info.units = "fraction of full grey";
-  return info;
+  return {.kind = model::Kind::frames,
+          .space = model::Space::projector,
+          .width = width,
+          .height = height,
+          .count = count,
+          .units = "fraction of full grey"};
 }
 
 class StackSource : public ImageSource {
@@ -65,9 +63,7 @@ class VideoSource : public ImageSource {
     GreyImage grey;
     if (!reader_.next(grey)) return false;
     image = fractions(grey);
-    about = {};
-    about.has_time = true;
-    about.time_s = times_s_[std::min(taken_++, times_s_.size() - 1)];
+    about = {.time_s = times_s_[std::min(taken_++, times_s_.size() - 1)], .has_time = true};
     return true;
   }
   [[nodiscard]] std::vector<double> times_s() const override { return times_s_; }
@@ -113,10 +109,7 @@ std::vector<model::ImageInfo> read_frame_index(const std::string& path, const Im
     if (at == images.count() || cells[0] != std::filesystem::path(images.path(at)).filename()) {
       throw damaged(excerpt(cells[0]) + " is not image " + std::to_string(at) + " of the folder");
     }
-    model::ImageInfo& about = index.emplace_back();
-    about.time_s = *time_s;
-    about.angle_deg = *angle_deg;
-    about.has_time = about.has_angle = true;
+    index.push_back({.angle_deg = *angle_deg, .time_s = *time_s, .has_angle = true, .has_time = true});
   }
   if (count_of(index) < images.count()) {
     throw damaged("the last line, of " + std::to_string(index.size()) + " for " + std::to_string(images.count()) +

@@ -93,12 +93,7 @@ void FrameFolder::commit(std::span<const model::ImageInfo> frames, const std::st
 namespace {
 
 model::ImageInfo about(const ProjectorFrame& frame) {
-  model::ImageInfo info;
-  info.angle_deg = frame.angle_deg;
-  info.has_angle = true;
-  info.time_s = frame.time_s;
-  info.has_time = true;
-  return info;
+  return {.angle_deg = frame.angle_deg, .time_s = frame.time_s, .has_angle = true, .has_time = true};
 }
 
 class FolderSink : public FrameSink {

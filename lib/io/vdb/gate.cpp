@@ -50,27 +50,6 @@ std::optional<ValueRange> promise_of(const std::string& name, TargetKind target)
   throw Error{Fault::data, input_name(path) + ": grid " + excerpt(name) + " " + why};
 }
 
-void require_facts(const std::string& path, const VolumeFacts& facts) {
-  if (!promise_of(facts.name, TargetKind::coverage)) return;
-  if (is_shape(facts.name) && facts.level_set) {
-    refuse(
-        path, facts.name,
-        "is a level set, distances; make coverage of it: vam-sdf or another program makes a mesh, vam-slice slices it");
-  }
-  if (is_shape(facts.name) && facts.background != 0) {
-    refuse(path, facts.name,
-           "has " + format_number(facts.background) +
-               " wherever it stores nothing, solid around the part; its background must be 0");
-  }
-  const model::Grid& grid = facts.grid;
-  const double longest = grid.voxel_mm * std::max({grid.nx, grid.ny, grid.nz});
-  if (longest >= least_mm && longest <= most_mm) return;
-  const bool small = longest < least_mm;
-  refuse(path, facts.name,
-         "is " + format_number(longest) + " mm long, from voxels of " + format_number(grid.voxel_mm) +
-             " mm; is it in " + (small ? "metres? Scale it by 1000" : "micrometres? Scale it by 0.001"));
-}
-
 [[noreturn]] void refuse_voxel(const std::string& path, const std::string& name, const openvdb::Coord& at, float value,
                                const ValueRange& promise) {
   refuse(path, name,
@@ -114,13 +93,34 @@ void require_values(const std::string& path, const SparseVolume& volume, const V
 
 }  // namespace
 
+void check_values(const std::string& path, const VolumeFacts& facts) {
+  if (!promise_of(facts.name, TargetKind::coverage)) return;
+  if (is_shape(facts.name) && facts.level_set) {
+    refuse(
+        path, facts.name,
+        "is a level set, distances; make coverage of it: vam-sdf or another program makes a mesh, vam-slice slices it");
+  }
+  if (is_shape(facts.name) && facts.background != 0) {
+    refuse(path, facts.name,
+           "has " + format_number(facts.background) +
+               " wherever it stores nothing, solid around the part; its background must be 0");
+  }
+  const model::Grid& grid = facts.grid;
+  const double longest = grid.voxel_mm * std::max({grid.nx, grid.ny, grid.nz});
+  if (longest >= least_mm && longest <= most_mm) return;
+  const bool small = longest < least_mm;
+  refuse(path, facts.name,
+         "is " + format_number(longest) + " mm long, from voxels of " + format_number(grid.voxel_mm) +
+             " mm; is it in " + (small ? "metres? Scale it by 1000" : "micrometres? Scale it by 0.001"));
+}
+
 void check_values(const std::string& path, const SparseVolume& volume, TargetKind target) {
   VolumeFacts facts;
   facts.name = volume.name();
   facts.grid = volume.grid();
   facts.background = volume.state().sparse->background();
   facts.level_set = volume.level_set;
-  require_facts(path, facts);
+  check_values(path, facts);
   if (const auto promise = promise_of(volume.name(), target)) require_values(path, volume, *promise);
 }
 
@@ -133,8 +133,6 @@ void check_values(const std::string& path, const std::vector<SparseVolume>& volu
     check_values(path, volume, target);
   }
 }
-
-void check_values(const std::string& path, const VolumeFacts& facts) { require_facts(path, facts); }
 
 void check_values(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block) {
   const auto promise = promise_of(facts.name, TargetKind::coverage);

@@ -189,11 +189,9 @@ TEST_CASE("TIFF of other programs: grey from either end, colours as luma, what i
     const std::string path = folder.write("b.tif", tiff.with(std::string(bytes, '\0')));
     return error_of([&] { (void)read_image(path); }, vam::Fault::data);
   };
-  CHECK(has(refused({1, 1, 16, 2, 1}, 2), "16-bit TIFF is read as grey or RGB"));
-  CHECK(has(refused({1, 1, 16, 2, 2}, 4), "16-bit TIFF is read as grey or RGB"));
-  CHECK(has(refused({1, 1, 16, 5, 4}, 8), "16-bit TIFF is read as grey or RGB"));
-  CHECK(has(refused({1, 1, 16, 1, 1, 2}, 2), "16-bit TIFF is read as grey or RGB"));
-  CHECK(has(refused({1, 1, 16, 1, 2, 1, 2}, 4), "16-bit TIFF is read as grey or RGB"));
+  for (const TiffOf& other :
+       {TiffOf{1, 1, 16, 2, 1}, {1, 1, 16, 2, 2}, {1, 1, 16, 5, 4}, {1, 1, 16, 1, 1, 2}, {1, 1, 16, 1, 2, 1, 2}})
+    CHECK(has(refused(other, std::size_t{2} * other.samples), "16-bit TIFF is read as grey or RGB"));
   CHECK(levels({1, 2, 8, 1, 1, 1, 1, 4}, "\1\2") == Levels{2, 1});  // from the bottom
   CHECK(has(refused({1, 2, 16, 1, 1, 1, 1, 4}, 4), "states that it is turned or mirrored"));
   for (const std::uint32_t exchanged : {5U, 6U, 7U, 8U})

@@ -59,6 +59,13 @@ std::string box_ply() {
          box_off().substr(std::strlen("OFF\n8 6 0\n"));
 }
 
+/// The bytes of a file with that ending.
+std::string written_box(const std::string& ending) {
+  const scratch::Folder folder;
+  vam::io::write_mesh(folder / ("box" + ending), box(), {});
+  return slurp(folder / ("box" + ending));
+}
+
 std::string box_ascii_stl() {
   std::string text = "solid box\n";
   const auto mesh = box();
@@ -175,12 +182,9 @@ TEST_CASE("PLY carries uncertainties, which are read back") {
 }
 
 TEST_CASE("a file truncated anywhere is an error") {
-  const scratch::Folder folder;
-  vam::io::write_stl(folder / "box.stl", box());
-  vam::io::write_ply(folder / "box.ply", box());
-  const std::string stl = slurp(folder / "box.stl");
-  const std::string binary_ply = slurp(folder / "box.ply");
-  for (const auto& bytes : {stl, binary_ply, box_off(), box_ply(), box_ascii_stl(), box_3mf("millimeter", "")}) {
+  const std::string stl = written_box(".stl");
+  for (const auto& bytes :
+       {stl, written_box(".ply"), box_off(), box_ply(), box_ascii_stl(), box_3mf("millimeter", "")}) {
     for (std::size_t size = 0; size + 3 < bytes.size(); size += 7) {
       CAPTURE(bytes.substr(0, 12));
       CAPTURE(size);
@@ -191,9 +195,7 @@ TEST_CASE("a file truncated anywhere is an error") {
 }
 
 TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no faces, foreign files") {
-  const scratch::Folder folder;
-  vam::io::write_stl(folder / "box.stl", box());
-  std::string stl = slurp(folder / "box.stl");
+  std::string stl = written_box(".stl");
   const float nan = NAN;
   std::memcpy(stl.data() + 84 + 12, &nan, sizeof nan);
   CHECK(has(refused(stl), "facet 0 has a corner that is not finite (counted from 0, of 12); the file is damaged"));
@@ -239,7 +241,7 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   CHECK(has(refused("\xff\xfes\0o\0"), "text of 16 bits"));
   CHECK(has(refused(ply_head("4000000000", "", "binary_little_endian")), "states 4000000000 vertex"));
   CHECK(has(refused("OFF\n99999999999 1 0\n"), "states 99999999999 vertices"));
-  CHECK(fault_of([&] { (void)read_mesh(folder / "none.stl"); }) == vam::Fault::no_input);
+  CHECK(fault_of([] { (void)read_mesh("/no/mesh.stl"); }) == vam::Fault::no_input);
 }
 
 TEST_CASE("ASCII STL in capitals, and text behind a mark of its encoding") {
@@ -316,9 +318,7 @@ TEST_CASE("text of a mesh with a byte 0 is damaged, and is told where") {
 }
 
 TEST_CASE("faces beyond the count of a header are refused with both numbers") {
-  const scratch::Folder folder;
-  vam::io::write_stl(folder / "a.stl", box());
-  const std::string stl = slurp(folder / "a.stl");
+  const std::string stl = written_box(".stl");
   for (const std::string& padding : {std::string(49, '\0'), std::string(4096, '\0'), std::string("\r\n")}) {
     CHECK(mesh_of(stl + padding).triangles.size() == 12);
   }
@@ -331,8 +331,7 @@ TEST_CASE("faces beyond the count of a header are refused with both numbers") {
   }
   CHECK(has(refused(box_off() + "3 0 1 2\n# end\n3 0 2 3\n"), "states 6 faces but the file has 8"));
   CHECK(has(refused(box_ply() + "3 0 1 2\n\n"), "states 6 faces but the file has 7"));
-  vam::io::write_ply(folder / "b.ply", box(), {}, {});
-  const std::string ply = slurp(folder / "b.ply");
+  const std::string ply = written_box(".ply");
   CHECK(has(refused(ply + ply.substr(ply.size() - 26)), "states 12 faces but the file has 14"));
   CHECK(mesh_of(ply + "\n").triangles.size() == 12);
   for (const std::string& junk : {std::string("x"), std::string("\n\n\n"), std::string(12, '\0')}) {
