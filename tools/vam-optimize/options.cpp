@@ -237,11 +237,11 @@ void declare_tolerances(cli::App& app, Options& options) {
       .only_with(readers("--robust"))
       .excludes({"--grey-target"});
   app.brief("Print well also if the printer deviates by these, e.g. 'axis=0.5px,lamp=3%'.");
-  app.flag("--sensitivity", options.sensitivity,
-           "State which deviation of the printer ends the print first, and at which value: 40 to 80 times the dose of "
-           "a print are computed, as in some 20 to 40 iterations.")
+  app.flag("--tolerances", options.tolerances,
+           "State which deviation of the printer ends the print first, and at which value. Costs 40 to 80 dose "
+           "computations, as 20 to 40 iterations do.")
       .only_with(in_vial)
-      .excludes({"--grey-target", "--slices", "--delivered"});
+      .excludes({"--robust", "--grey-target", "--slices", "--delivered"});
 }
 
 void declare_grey_levels(cli::App& app, Options& options) {

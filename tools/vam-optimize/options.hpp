@@ -38,7 +38,7 @@ struct Options : session::JobOptions {
   optimize::IntensityLimit limit;
   optimize::Raising raising;
   std::string robust;
-  bool sensitivity = false;
+  bool tolerances = false;
   bool recorded_tolerances = false;  // of the printer, from the calibration records
   std::optional<int> bits;           // the projector's grey levels
   double column_offset_px = 0;

@@ -213,7 +213,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
     if (plan) print.seconds = plan->seconds;
     print.threshold = threshold;
     verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
-    if (options.sensitivity) verdict.words += words_of_ends(*trials);
+    if (options.tolerances) verdict.words += words_of_ends(*trials);
     append_json(report, verdict);
     const bool stated = options.in_vial() && info.piece.whole() && shown.planned;
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words + what_more_buys(outcome) +

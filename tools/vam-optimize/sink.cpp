@@ -16,7 +16,7 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
 }
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
-    : keep_(options.printer_tolerances || options.sensitivity || options.bits || printer.resin.diffusion_mm2_s > 0),
+    : keep_(options.printer_tolerances || options.tolerances || options.bits || printer.resin.diffusion_mm2_s > 0),
       dither_(options.dither),
       out_(options.output, info, options.stack) {
   if (options.bits) levels_.emplace(grey_levels(printer, *options.bits));

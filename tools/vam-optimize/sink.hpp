@@ -17,7 +17,7 @@ namespace vam::optimize_tool {
 [[nodiscard]] resin::GreyLevels grey_levels(const model::Printer& printer, int bits);
 
 /// Into the stack, quantised to the grey levels of the projector on request. What is judged again is kept: with
-/// --robust, --sensitivity, --bits, and where the dose diffuses.
+/// --robust, --tolerances, --bits, and where the dose diffuses.
 class Sink {
  public:
   Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);

@@ -121,7 +121,7 @@ optimize::Trial make_trial(const session::Scene& scene, double seconds, double t
   trial.grid = scene.grid;
   trial.threshold = options.printer_tolerances ? options.demands.window.threshold() : threshold;
   trial.printers = options.printer_tolerances ? options.yield_printers : 0;
-  trial.ends = options.sensitivity;
+  trial.ends = options.tolerances;
   return trial;
 }
 

@@ -34,7 +34,7 @@ void require_independent(const optimize::VolumeTask& task, const light::Operator
 [[nodiscard]] optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVolumes& in,
                                              const Options& options);
 
-/// The printers to judge the frames with, of --robust and --sensitivity, whose doses diffuse for so long. `threshold`:
+/// The printers to judge the frames with, of --robust and --tolerances, whose doses diffuse for so long. `threshold`:
 /// that of the exposure as planned. Scene and options must outlive it.
 [[nodiscard]] optimize::Trial make_trial(const session::Scene& scene, double seconds, double threshold,
                                          const Options& options);

@@ -42,7 +42,7 @@ judge() {  # judge OPTIONS...: whether the print of that light is right everywhe
 }
 for part in 'boat --scale 0.25 --set projector.telecentric=true' 'hollow-cylinder:outer=5,inner=3.6,height=2 --set projector.telecentric=true' 'ladder:rungs=2 --scale 0.6'; do
   lens=$(echo "$part" | grep -o -- '--set .*')
-  vam-slice --shape $part -o part.vdb 2>.log/slice && vam-optimize part.vdb $lens --angles 60 --sensitivity -o light.exr --report ends.json
+  vam-slice --shape $part -o part.vdb 2>.log/slice && vam-optimize part.vdb $lens --angles 60 --tolerances -o light.exr --report ends.json
   vam-dose light.exr --like part.vdb -o as-set.vdb && vam-score as-set.vdb --target part.vdb --absolute --report set.json >.log/score
   threshold=$(python3 -c 'import json; m = json.load(open("set.json")); a, b = m["min_part"], m["max_void"]; print(0.8 if abs(0.8 - (a + b) / 2) <= (a - b) / 4 else (a + b) / 2)')
   python3 deviate.py >ends
@@ -60,5 +60,5 @@ m, t = json.load(open("off.json")), float(sys.argv[2])
 one = [s for s in json.load(open("ends.json"))["robust"]["single"] if s["name"] == sys.argv[1]][0]
 print(abs(min(m["min_part"] / t - 1, 1 - m["max_void"] / t) - one["plus"]["margin_of_threshold"]))' "$name" "$threshold") < 0.001"
 done <all
-fails 64 '.*--sensitivity' vam-optimize part.vdb --geometry parallel --sensitivity -o out.exr
+fails 64 '.*--tolerances' vam-optimize part.vdb --geometry parallel --tolerances -o out.exr
 done_testing
