@@ -120,9 +120,9 @@ void declare_stopping(cli::App& app, Options& options) {
       .brief("Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'.");
   app.option(
       "--patience", "N", options.limits.patience, {0, 1000000},
-      "Stop when IoU + latitude, less what the surface's RMS distance in voxels is beyond 0.1 where apg constrains it, "
-      "has not improved by 1e-4 in this number of iterations. The result is that of the best iteration by this "
-      "figure, of those that meet --until if any does. 0 disables both: the result is that of the last, as with "
+      "Stop when the figure of merit has not improved by 1e-4 in this number of iterations. The figure is IoU + "
+      "latitude; where apg constrains the surface, its RMS distance in voxels beyond 0.1 is subtracted. The result is "
+      "the best iteration, of those that meet --until if any does. 0 disables both: the result is the last, as with "
       "--robust.");
   app.default_is("10; --iterations where that is given").excludes(at_once()).not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
