@@ -136,21 +136,6 @@ void check(const cli::App& app, const Options& o, const model::Printer& printer)
               "--frames: required for a stack, whose header states the number of images; give it, --live or a folder"};
 }
 
-// For whoever watches a capture that keeps no files.
-class Latest {
- public:
-  explicit Latest(std::string path) : path_(std::move(path)) {}
-  void show(const device::CapturedFrame& frame) {
-    if (path_.empty() || frame.time_s < shown_s_ + 1) return;
-    shown_s_ = frame.time_s;
-    io::write_png(path_, frame.levels);
-  }
-
- private:
-  std::string path_;
-  double shown_s_ = -1e300;
-};
-
 // What was lost is reported, whatever else happens; what is missing is an error.
 void conclude(const Options& o, const device::CaptureTally& tally, long wanted) {
   std::string lost;
@@ -202,12 +187,15 @@ void take(const cli::App& app, const Options& options) {
   about["lag_ms"] = 1e3 * plan.latency_s;
   log("begin", about);
   Progress progress("capturing", plan.frames);
-  Latest latest(options.latest);
+  double shown_s = -std::numeric_limits<double>::infinity();
   const device::CaptureSink sink{[&](long place) { return store->wanted(place); },
                                  [&](device::Shot&& shot) {
                                    if (!shot.frame.complete)
                                      log("incomplete", {{"number", shot.frame.number}, {"place", shot.place}});
-                                   latest.show(shot.frame);
+                                   if (!options.latest.empty() && shot.frame.time_s >= shown_s + 1) {
+                                     shown_s = shot.frame.time_s;
+                                     io::write_png(options.latest, shot.frame.levels);
+                                   }
                                    store->keep(std::move(shot));
                                    progress.tick();
                                  },

@@ -40,8 +40,6 @@ class StackStore final : public FrameStore {
     kept_.insert(shot.place);
     writer_.write(fractions(shot.frame.levels), about(shot, info_.z_start_mm));
   }
-  void dropped(long, long) override {}  // the numbers of the frames beside the gap tell
-  void close() override {}
   void commit() override { writer_.commit(); }
 
  private:
@@ -63,9 +61,6 @@ class StreamStore final : public FrameStore {
     writer.write(fractions(shot.frame.levels));
     writer.commit();
   }
-  void dropped(long, long) override {}
-  void close() override {}
-  void commit() override {}
 
  private:
   std::string path_;
@@ -94,7 +89,6 @@ class FolderStore final : public FrameStore {
   }
   void dropped(long first, long last) override { folder_.dropped(first, last); }
   void close() override { folder_.end(); }
-  void commit() override {}
 
  private:
   io::CaptureFolder folder_;

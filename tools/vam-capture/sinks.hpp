@@ -19,11 +19,12 @@ class FrameStore {
   FrameStore& operator=(const FrameStore&) = delete;
   [[nodiscard]] virtual bool wanted(long place) const = 0;
   virtual void keep(device::Shot&& shot) = 0;
-  virtual void dropped(long first, long last) = 0;
+  /// The numbers of the frames beside the gap tell, too.
+  virtual void dropped(long /*first*/, long /*last*/) {}
   /// After the last frame that came, whether all did or a signal ended the capture. Throws Fault::io.
-  virtual void close() = 0;
+  virtual void close() {}
   /// When all frames came. Throws Error: io, no_output.
-  virtual void commit() = 0;
+  virtual void commit() {}
 };
 
 /// Pixels become fractions of full scale. info.count frames make one stack.
