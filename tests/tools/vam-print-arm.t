@@ -193,12 +193,11 @@ fails 65 'killed: already resumed, by .*/rest; resume that one instead' print --
 for tool in vam-check vam-status 'print --run none --resume'; do
   rm -rf spoilt; cp -r killed spoilt; rm spoilt/resumed.json
   fails 65 'spoilt/resumed.json: is gone, but events.jsonl states that /.*/rest resumed this print; restore it$' $tool spoilt
-  for mark in '' '[]' '{"resumed_by":"/x"}' '{"utc":"2026-11-27T10:00:00Z","resumed_by":"'"$PWD/spoilt"'"}' malformed; do
+  for mark in '' '[]' '{"resumed_by":"/x"}' malformed; do
     printf %s "$mark" >spoilt/resumed.json
-    fails 65 'spoilt/resumed.json: (does not say when and by which print|names its own folder)' $tool spoilt
+    fails 65 'spoilt/resumed.json: does not say when and by which print' $tool spoilt
   done
   rm spoilt/resumed.json; mkdir spoilt/resumed.json; fails 65 'spoilt/resumed.json: is not a regular file' $tool spoilt
-  rmdir spoilt/resumed.json; ln -s gone spoilt/resumed.json; fails 65 'spoilt/resumed.json: is a link' $tool spoilt
 done
 ok 'both parts are verified' vam-check killed rest
 mkdir archive; cp -r killed archive; rm archive/killed/resumed.json; sed -i '$d' archive/killed/events.jsonl

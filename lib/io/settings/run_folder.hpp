@@ -61,9 +61,9 @@ using RunSums = std::map<std::string, std::string>;
 [[nodiscard]] RunSums read_run_sums(const std::string& folder);
 
 /// The logs, records and settings of a print that has ended are what they were at its end. Throws Fault::data where one
-/// of the list was changed, is gone or a link, or the list has no hash of those by which light is counted; without a
-/// list, as of a print that was killed, these must not be links, and the settings must be sealed; throws then as
-/// require_run_versions() and require_logs() do, otherwise as read_run_sums().
+/// of the list was changed or is gone, or the list has no hash of those by which light is counted; without a list, as
+/// of a print that was killed, the settings must be sealed; throws then as require_run_versions() and require_logs()
+/// do, otherwise as read_run_sums().
 void require_run_logs(const std::string& folder);
 
 /// Of a print that has not ended: throws Fault::data where the settings are gone that vam-print writes before its
@@ -77,20 +77,13 @@ void require_run(const std::string& folder);
 /// Throws Fault::data where a log, record or report states a version that is not read, or a key twice.
 void require_run_versions(const std::string& folder);
 
-/// What is wrong with a file of the list, as a line; empty: nothing.
-[[nodiscard]] std::string sum_problem(const std::string& folder, const RunSums::value_type& file);
-
-/// What differs, is gone, a link or not in the list, a line each; with `fast` no file of the list is read.
+/// What differs, is gone or not in the list, a line each; with `fast` no file of the list is read.
 /// resumed.json, which a resumption adds, need not be in it, nor sinogram.exr, a link or its copy, which is held to the
 /// hash in the events; warns where it leads nowhere.
 [[nodiscard]] std::vector<std::string> run_damage(const std::string& folder, const RunSums& sums, bool fast);
 
-/// What is wrong with the resumed.json of a run folder, as a line; empty: nothing, or the run was not resumed. It says
-/// when and by which other print, and is there where events.jsonl states it ("resumed", unless "released" follows).
-/// Throws what is no fault of the folder, as a lack of open files.
-[[nodiscard]] std::string resumption_problem(const std::string& run);
-
-/// Throws Fault::data where there is one.
+/// Throws Fault::data where the resumed.json of a run folder does not say when and by which print it was resumed, or is
+/// gone though events.jsonl states it ("resumed", unless "released" follows).
 void require_resumption(const std::string& run);
 
 /// The print that resumed this one, by its resumed.json; empty: none.

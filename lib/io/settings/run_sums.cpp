@@ -56,17 +56,6 @@ bool is_link(const std::string& path) {
   return fs::is_symlink(fs::symlink_status(path, ignored));
 }
 
-// Of a file in a folder, or a folder between, that is a link: what it leads to may change with it. Empty: none is.
-std::string link_problem(const std::string& folder, const std::string& name) {
-  fs::path path(folder);
-  for (const fs::path& part : fs::path(name)) {
-    path /= part;
-    if (is_link(path.string()))
-      return path.string() + ": is a link, where a print writes a file of its own; restore the original file";
-  }
-  return "";
-}
-
 // What is wrong with a file; a lack of the system, as of open files, says nothing of it.
 std::string problem_of_file(const Error& error) {
   if (error.fault != Fault::data && error.fault != Fault::no_input) throw error;
@@ -75,18 +64,25 @@ std::string problem_of_file(const Error& error) {
 
 std::string gone(const std::string& folder, const std::string& name) {
   try {
-    if (has_regular_file(path_in(folder, name))) return link_problem(folder, name);
+    if (has_regular_file(path_in(folder, name))) return "";
   } catch (const Error& error) {  // what stands in its place
     return problem_of_file(error);
   }
   return path_in(folder, name) + ": is gone, but " + list_name + " lists it; restore it";
 }
 
+// What is wrong with a file of the list, as a line; empty: nothing.
+std::string sum_problem(const std::string& folder, const RunSums::value_type& file) {
+  const auto& [name, hash] = file;
+  if (std::string problem = gone(folder, name); !problem.empty()) return problem;
+  if (sha256_of(path_in(folder, name)) == hash) return "";
+  return path_in(folder, name) + ": changed after the print (its hash is not that in " + list_name +
+         "); restore the original file";
+}
+
 // What is wrong with a file that SHA256SUMS does not list.
 std::string unlisted_problem(const std::string& folder, const std::string& name) {
-  const std::string path = path_in(folder, name);
-  if (is_link(path)) return path + ": is a link, which no print leaves; remove it";
-  return path + ": is not in " + list_name +
+  return path_in(folder, name) + ": is not in " + list_name +
          ": it was added after the print, or the list was cut; remove the file, or restore the list";
 }
 
@@ -125,7 +121,6 @@ bool has_run_sums(const std::string& folder) { return has_regular_file(path_in(f
 
 RunSums read_run_sums(const std::string& folder) {
   const std::string path = path_in(folder, list_name);
-  if (const std::string problem = link_problem(folder, list_name); !problem.empty()) throw Error{Fault::data, problem};
   std::vector<std::string> lines = split(read_all(path, Content::text, std::uint64_t{256} << 20), '\n');
   if (!lines.empty() && lines.back().empty()) lines.pop_back();
   RunSums sums;
@@ -142,18 +137,13 @@ RunSums read_run_sums(const std::string& folder) {
 }
 
 void require_run_logs(const std::string& folder) {
-  const std::vector<const char*> counted{"events.jsonl", "flips.jsonl", "printer.toml"};
-  for (const char* name : counted) {  // while the print goes on, too
-    if (!has_regular_file(path_in(folder, name))) continue;
-    if (const std::string problem = link_problem(folder, name); !problem.empty()) throw Error{Fault::data, problem};
-  }
   if (!has_run_sums(folder)) {
     require_run_versions(folder);
     require_sealed_settings(folder);
     return require_logs(folder);
   }
   const RunSums sums = read_run_sums(folder);
-  for (const char* name : counted) {
+  for (const char* name : {"events.jsonl", "flips.jsonl", "printer.toml"}) {
     const bool needed = std::string(name) == "events.jsonl" || has_regular_file(path_in(folder, name));
     if (!needed || sums.contains(name)) continue;
     throw Error{Fault::data, path_in(folder, list_name) + ": has no hash of " + name +
@@ -194,26 +184,20 @@ void require_run_versions(const std::string& folder) {
   }
 }
 
-std::string sum_problem(const std::string& folder, const RunSums::value_type& file) {
-  const auto& [name, hash] = file;
-  if (std::string problem = gone(folder, name); !problem.empty()) return problem;
-  if (sha256_of(path_in(folder, name)) == hash) return "";
-  return path_in(folder, name) + ": changed after the print (its hash is not that in " + list_name +
-         "); restore the original file";
-}
-
 std::vector<std::string> run_damage(const std::string& folder, const RunSums& sums, bool fast) {
   std::vector<std::string> damage;
   const auto add = [&](const std::string& problem) {
-    const auto about = [](const std::string& text) { return text.substr(0, text.find(": ")); };
-    const bool told = !damage.empty() && about(damage.back()) == about(problem);  // of a folder that is a link
-    if (!problem.empty() && !told) damage.push_back(problem);
+    if (!problem.empty()) damage.push_back(problem);
   };
   for (const auto& file : sums) {
     add(fast ? gone(folder, file.first) : sum_problem(folder, file));
   }
   const bool has_logs = damage.empty();
-  if (!sums.contains(resumed_name)) add(resumption_problem(folder));
+  try {
+    if (!sums.contains(resumed_name)) require_resumption(folder);
+  } catch (const Error& error) {
+    add(problem_of_file(error));
+  }
   for (const std::string& name : entries_of(folder)) {
     if (name == list_name || name == resumed_name || sums.contains(name)) continue;
     add(name == sinogram_name ? sinogram_problem(folder, fast || !has_logs) : unlisted_problem(folder, name));
