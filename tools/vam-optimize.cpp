@@ -109,7 +109,7 @@ void run(const cli::App& app, Options& options) {
   }
   const auto [plan, full_scale, threshold, seconds] = judge_printed(task, *light, sink, scene, info, options, outcome);
   std::optional<optimize::Trials> trials;
-  if (options.printer_tolerances || options.sensitivity) {
+  if (options.printer_tolerances || options.tolerances) {
     const double aimed = threshold.value_or(score::aimed_dose(outcome.metrics, options.demands.window.threshold()));
     trials = run_trials(make_trial(scene, seconds, aimed, options), task, sink.kept());
   }

@@ -26,12 +26,14 @@ namespace vam::io {
 namespace {
 
 model::StackInfo frames_of(int width, int height, int count) {
-  return {.kind = model::Kind::frames,
-          .space = model::Space::projector,
-          .width = width,
-          .height = height,
-          .count = count,
-          .units = "fraction of full grey"};
+  model::StackInfo info;
+  info.kind = model::Kind::frames;
+  info.space = model::Space::projector;
+  info.width = width;
+  info.height = height;
+  info.count = count;
+  info.units = "fraction of full grey";
+  return info;
 }
 
 class StackSource : public ImageSource {
