@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/log/progress.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
@@ -15,7 +16,6 @@
 #include "io/settings/printer_file.hpp"
 #include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 
@@ -58,7 +58,7 @@ std::vector<std::string> runs_of(const std::map<std::string, std::vector<Provena
   std::vector<std::string> runs;
   for (const auto& [path, findings] : found) {
     const auto events = std::filesystem::path(path) / "events.jsonl";
-    if (findings.front().damage.empty() && std::filesystem::is_directory(path) && io::has_regular_file(events.string()))
+    if (findings.front().damage.empty() && std::filesystem::is_directory(path) && has_regular_file(events.string()))
       runs.push_back(path);
   }
   return runs;

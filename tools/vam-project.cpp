@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "cli/app.hpp"
@@ -14,7 +15,6 @@
 #include "io/image/frame_sink.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "model/metadata.hpp"

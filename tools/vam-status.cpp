@@ -11,13 +11,13 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/printable.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/flip_log.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "manual_page.hpp"
 #include "vam-status/light_view.hpp"
@@ -52,7 +52,7 @@ void declare(cli::App& app, Options& o) {
 std::optional<status_tool::LightView> light_of(const Options& o, const status_tool::RunFolder& run) {
   const std::string file = o.sinogram.empty() ? run.file("sinogram.exr") : o.sinogram;
   try {
-    if (!io::has_regular_file(file)) throw Error{Fault::no_input, file + ": cannot open: no such file"};
+    if (!has_regular_file(file)) throw Error{Fault::no_input, file + ": cannot open: no such file"};
     (void)io::StackReader(file);  // before all of what may be another file is read for its hash
     io::require_sinogram_of(o.run, file);
     return status_tool::LightView(file, run.printer());

@@ -11,13 +11,13 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/printer_match.hpp"
 #include "io/settings/run_folder.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::dose_tool {
@@ -47,7 +47,7 @@ std::string folder_of(const std::string& run) {
 // A run folder, or the log of one.
 bool is_of_run(const std::string& run) {
   const fs::path folder = folder_of(run);
-  return fs::is_directory(run) || io::has_regular_file((folder / "events.jsonl").string()) ||
+  return fs::is_directory(run) || has_regular_file((folder / "events.jsonl").string()) ||
          (io::has_run_sums(folder.string()) && io::read_run_sums(folder.string()).contains("events.jsonl"));
 }
 
@@ -107,7 +107,7 @@ void take_sinogram(const cli::App& app, Options& options) {
   if (options.shown.empty() || app.given("SINOGRAM") || piped) return;
   const std::string& run = options.shown.front();
   const std::string file = (fs::path(run) / "sinogram.exr").string();
-  if (!fs::is_directory(run) || !io::has_regular_file(file))
+  if (!fs::is_directory(run) || !has_regular_file(file))
     throw Error{Fault::usage, "SINOGRAM: is missing, and " + run + " has no sinogram.exr; give the one that was shown"};
   io::FlipLog log(run);
   log.read();

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/stream/log_lines.hpp"
 
 namespace vam::optimize_tool {
 
@@ -28,7 +28,7 @@ std::string job_of(const cli::App& app, const model::Printer& printer, const Opt
 
 // Before it is opened for writing, which would wait for a pipe.
 const std::string& regular(const std::string& path) {
-  (void)io::has_regular_file(path);
+  (void)has_regular_file(path);
   return path;
 }
 

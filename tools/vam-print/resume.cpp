@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
@@ -16,7 +17,6 @@
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/run_folder.hpp"
-#include "io/stream/log_lines.hpp"
 #include "vam-print/arm.hpp"
 
 namespace vam::print_tool {
@@ -75,7 +75,7 @@ struct LastImage {
 
 LastImage last_image(const std::string& folder, const std::string& sinogram) {
   LastImage image;
-  if (!io::has_regular_file(folder + "/flips.jsonl")) return image;
+  if (!has_regular_file(folder + "/flips.jsonl")) return image;
   io::FlipLog log(folder);
   log.read();
   if (log.sinograms().size() > 1) {

@@ -28,7 +28,7 @@ Run::Run(const Options& given)
 void Run::look() {
   if (light_lost_) return;
   try {
-    if (!light && !io::has_regular_file(file("flips.jsonl"))) return;
+    if (!light && !has_regular_file(file("flips.jsonl"))) return;
     if (!light) light.emplace(folder);
     light->read();
   } catch (const Error&) {

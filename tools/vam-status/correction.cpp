@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/metadata.hpp"
 #include "plot/image_figure.hpp"
@@ -38,7 +38,7 @@ plot::ImageFigure section_of(const io::SparseVolume& volume) {
 
 std::string correction_text(const RunFolder& run) {
   Json line;
-  for (io::LogLines log(run.file("renewed.jsonl")); log.next(line);) continue;
+  for (LogLines log(run.file("renewed.jsonl")); log.next(line);) continue;
   if (!line.is_object()) return "";
   if (text_at(line, "event") == "hold") return "as before: " + text_at(line, "reason");
   const double turns = number_at(line, "turns");
@@ -49,7 +49,7 @@ std::string correction_text(const RunFolder& run) {
 std::string sensitivity_figure(const RunFolder& run) {
   const std::string path = run.file("renewed/sensitivity.vdb");
   try {
-    if (!io::has_regular_file(path)) return "";
+    if (!has_regular_file(path)) return "";
     const plot::ImageFigure figure = section_of(io::read_volume(path, "sensitivity"));
     return plot::page_figure(
         "Sensitivity of the resin", plot::page_image(plot::draw(figure).image(), "section"),

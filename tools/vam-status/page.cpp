@@ -7,12 +7,12 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
-#include "io/stream/log_lines.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/page.hpp"
 
@@ -44,7 +44,7 @@ std::string camera_figure(const RunFolder& run) {
     return plot::page_figure("Camera", "<p class=\"none\">no image</p>",
                              "vam-print --view-step DEG captures images during a print.");
   }
-  (void)io::has_regular_file(newest->path);  // what is no file is an error, a pipe would be waited for
+  (void)has_regular_file(newest->path);  // what is no file is an error, a pipe would be waited for
   const GreyImage levels = io::read_image(newest->path);
   const model::PrinterCamera& camera = run.printer().camera;
   const double pixel_mm = camera.pixel_mm * camera.binning;
@@ -136,7 +136,7 @@ std::optional<CameraImage> newest_image(const RunFolder& run) {
       return CameraImage{(fs::path(views) / io::capture_file_name(last.place)).string(), last.angle_deg};
     }
   }
-  if (io::has_regular_file(run.file("camera.png"))) return CameraImage{run.file("camera.png"), {}};
+  if (has_regular_file(run.file("camera.png"))) return CameraImage{run.file("camera.png"), {}};
   return std::nullopt;
 }
 

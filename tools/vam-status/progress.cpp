@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
@@ -17,7 +18,6 @@
 #include "io/settings/printer_file.hpp"
 #include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::status_tool {
@@ -38,23 +38,23 @@ double left_s(const PrintProgress& p, double speed_deg_s) {
 
 // vam-print writes these before it is armed; a printer file with more beside it is a user's own.
 bool about_to_be_armed(const RunFolder& run) {
-  if (io::has_regular_file(run.file("calibration.json"))) return true;
+  if (has_regular_file(run.file("calibration.json"))) return true;
   const std::string settings = run.file("printer.toml");
-  return io::has_regular_file(settings) && io::require_text_seal(io::read_all(settings), settings);
+  return has_regular_file(settings) && io::require_text_seal(io::read_all(settings), settings);
 }
 
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path) : path_(path) {
   io::require_run(path);
-  if (!io::has_regular_file(file("events.jsonl")) && !about_to_be_armed(*this)) {
+  if (!has_regular_file(file("events.jsonl")) && !about_to_be_armed(*this)) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
   load_settings();
 }
 
 void RunFolder::load_settings() {
-  if (settled_ || !io::has_regular_file(file("printer.toml"))) return;
+  if (settled_ || !has_regular_file(file("printer.toml"))) return;
   printer_ = io::load_printer(file("printer.toml"), {}, io::Records::ignore);
   settled_ = true;
 }
@@ -77,7 +77,7 @@ void RunFolder::read() {
   look_for_end();
   progress_.resumed_by = io::resumed_by(path_);
   read_records();
-  io::LogLines figures(file("ost.jsonl"), tail_bytes);
+  LogLines figures(file("ost.jsonl"), tail_bytes);
   for (Json line; figures.next(line);) {
     if (line.contains("missing_percent")) progress_.missing_percent = number_at(line, "missing_percent", 0);
   }
@@ -86,7 +86,7 @@ void RunFolder::read() {
 void RunFolder::read_events() {
   progress_.silent_s = 1e9;
   // Before, there are only the settings.
-  const bool armed = io::has_regular_file(file("events.jsonl")) && fs::file_size(file("events.jsonl")) > 0;
+  const bool armed = has_regular_file(file("events.jsonl")) && fs::file_size(file("events.jsonl")) > 0;
   held_ = armed ? std::optional(io::is_printed(path_)) : std::nullopt;  // before the end is looked for
   for (const char* name :
        {armed ? "events.jsonl" : "printer.toml", armed ? "flips.jsonl" : "calibration.json", "angles.jsonl"}) {
@@ -112,7 +112,7 @@ void RunFolder::read_events() {
 
 // The last that vam-print writes: a print that has it has ended, whatever became of its events.
 void RunFolder::read_summary() {
-  if (!io::has_regular_file(file("summary.json"))) return;
+  if (!has_regular_file(file("summary.json"))) return;
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
   const Json summary =
       parse_distinct(io::read_all(file("summary.json"), io::Content::text, most_bytes), file("summary.json"));
@@ -124,13 +124,13 @@ void RunFolder::read_summary() {
 }
 
 void RunFolder::read_angle() {
-  io::LogLines angles(file("angles.jsonl"), tail_bytes);
+  LogLines angles(file("angles.jsonl"), tail_bytes);
   for (Json line; angles.next(line);) progress_.angle_deg = number_at(line, "angle_deg", progress_.angle_deg);
 }
 
 void RunFolder::read_flips() {
   if (progress_.turns > 0 && settled_) progress_.given_fraction = 0;
-  if (!flips_ && !io::has_regular_file(file("flips.jsonl"))) return;
+  if (!flips_ && !has_regular_file(file("flips.jsonl"))) return;
   if (!flips_) flips_.emplace(path_);
   flips_->read();
   progress_.missed = flips_->missed();
@@ -161,7 +161,7 @@ void RunFolder::look_for_end() {
 
 void RunFolder::read_records() {
   progress_.records.clear();
-  if (!io::has_regular_file(file("calibration.json"))) return;
+  if (!has_regular_file(file("calibration.json"))) return;
   constexpr std::uint64_t most_bytes = 1U << 20U;
   const Json records =
       parse_distinct(io::read_all(file("calibration.json"), io::Content::text, most_bytes), file("calibration.json"));

@@ -13,12 +13,12 @@
 #include "base/error.hpp"
 #include "base/fingerprint.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/system_error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/printable.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/capture_manifest.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

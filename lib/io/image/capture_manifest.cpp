@@ -5,11 +5,11 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/printable.hpp"
@@ -18,7 +19,6 @@
 #include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/seal.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"

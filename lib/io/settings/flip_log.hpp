@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/log/log_lines.hpp"
 #include "base/text/json_fwd.hpp"
-#include "io/stream/log_lines.hpp"
 
 namespace vam::io {
 

@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/run_folder.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

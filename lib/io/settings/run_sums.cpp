@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/system_error.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
@@ -11,7 +12,6 @@
 #include "io/settings/flip_log.hpp"
 #include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -8,11 +8,11 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/seal.hpp"
 #include "io/stream/stream.hpp"
 

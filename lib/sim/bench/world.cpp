@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/bench/world.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -33,11 +35,24 @@ SimWorld::SimWorld(SimSources sources, double start_s, SimPrint* print)
       start_s_(start_s),
       print_(print),
       images_(std::make_shared<const Images>(std::move(sources_.images))),
-      angles_(sources_.angles),
-      shown_(sources_.shown) {}
+      angles_{sources_.angles},
+      shown_{sources_.shown} {}
+
+void SimWorld::Log::each_new(const std::function<void(const Json&)>& take) {
+  struct stat named = {};
+  const bool is_there = !path.empty() && stat(path.c_str(), &named) == 0;  // asked before the last of the old is read
+  const auto read_on = [&] {
+    for (Json line; lines && lines->next(line);) take(line);
+  };
+  read_on();
+  if (!is_there || (lines && file == named.st_ino)) return;
+  lines.emplace(path);
+  file = named.st_ino;
+  read_on();
+}
 
 void SimWorld::read_logs() {
-  for (const Json& line : angles_.fresh()) {
+  angles_.each_new([this](const Json& line) {
     const std::string event = line.value("event", "");
     const double t_s = line.value("t_monotonic_s", 0.0);
     if (event == "angle") {
@@ -45,8 +60,8 @@ void SimWorld::read_logs() {
     } else if (event == "zeroed" || event == "standing") {
       stage_.push_back({t_s, line.value("angle_deg", stage_.empty() ? 0.0 : stage_.back().angle_deg), 0});
     }
-  }
-  for (const Json& line : shown_.fresh()) show(line);
+  });
+  shown_.each_new([this](const Json& line) { show(line); });
 }
 
 // Light that is still to be followed is that of the images of its own flips.

@@ -2,6 +2,7 @@
 // What happens on the simulated bench, out of the logs that the other simulators and tools write meanwhile.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -9,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/log/log_lines.hpp"
 #include "base/text/json_fwd.hpp"
-#include "sim/bench/log_tail.hpp"
 #include "sim/bench/scene.hpp"
 
 namespace vam::sim {
@@ -51,6 +52,14 @@ class SimWorld {
     double lit_before_s;                   // light there had been until then
     std::shared_ptr<const Images> images;  // that the frames are
   };
+  /// A log that need not exist yet. Where a new file has taken its name, as when a run begins again in the same folder,
+  /// the old one's last lines come first, then the new one's.
+  struct Log {
+    std::string path;
+    std::optional<LogLines> lines = {};
+    std::uint64_t file = 0;  // its number
+    void each_new(const std::function<void(const Json& line)>& take);
+  };
   void follow(double until_s);
   void read_logs();
   void show(const Json& event);
@@ -63,8 +72,7 @@ class SimWorld {
   SimPrint* print_;
   std::shared_ptr<const Images> images_;  // of the flips to come
   std::optional<double> cured_s_;         // all light until then has reached the resin
-  LogTail angles_;
-  LogTail shown_;
+  Log angles_, shown_;
   std::deque<TableSample> stage_;
   std::deque<Shown> flips_;
 };

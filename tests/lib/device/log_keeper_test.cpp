@@ -6,10 +6,10 @@
 #include <fstream>
 #include <thread>
 
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "device/os/event_log.hpp"
-#include "io/stream/log_lines.hpp"
 #include "lib/io/scratch.hpp"
 #include "testing.hpp"
 
@@ -100,7 +100,7 @@ TEST_CASE("A line follows from the one before, whoever wrote that, and one that 
   const Folder folder;
   const std::string path = folder / "log";
   const auto whole = [&] {
-    io::LogLines lines(path);
+    LogLines lines(path);
     long count = 0;
     for (Json line; lines.next(line);) ++count;
     return lines.is_chained() ? count : -count;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Logs that somebody may still be writing.
-#include "io/stream/log_lines.hpp"
+#include "base/log/log_lines.hpp"
 
 #include <sys/stat.h>
 

@@ -8,7 +8,7 @@
 
 #include "base/text/json_fwd.hpp"
 
-namespace vam::io {
+namespace vam {
 
 /// Whether a file of that name is there. Throws Fault::no_input where a link leads nowhere, or the name cannot be
 /// reached; Fault::data for what is no regular file: a pipe would be waited for.
@@ -43,4 +43,4 @@ class LogLines {
   std::string chain_;  // of the last line
 };
 
-}  // namespace vam::io
+}  // namespace vam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/stream/log_lines.hpp"
+#include "base/log/log_lines.hpp"
 
 #include <sys/stat.h>
 
@@ -12,7 +12,7 @@
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 
-namespace vam::io {
+namespace vam {
 
 namespace {
 
@@ -96,4 +96,4 @@ bool LogLines::next(Json& entry) {
   return false;
 }
 
-}  // namespace vam::io
+}  // namespace vam
