@@ -14,12 +14,6 @@
 
 namespace vam {
 
-namespace {
-
-constexpr std::size_t most_bytes = std::size_t{1} << 20;
-
-}  // namespace
-
 bool has_regular_file(const std::string& path) {
   struct stat about = {};
   if (stat(path.c_str(), &about) != 0) {
@@ -65,6 +59,7 @@ void LogLines::require_next(const std::string& line) {
 }
 
 bool LogLines::next(std::string& line) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 20;
   if (!stream_.is_open()) return false;
   const auto begin = stream_.tellg();
   line.clear();
