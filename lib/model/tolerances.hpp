@@ -71,4 +71,7 @@ struct DeviatingPrinter {
 /// Printer n of a seeded sequence: each deviation even in -1...1, the same on every machine.
 [[nodiscard]] PrinterDeviation drawn_deviation(std::uint64_t seed, int n);
 
+/// How far a vial may stand beside its place: there the polynomials of its rays err by some 0.03 columns.
+constexpr double most_displacement_mm(double resin_radius_mm) { return resin_radius_mm / 12; }
+
 }  // namespace vam::model

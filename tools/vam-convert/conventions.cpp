@@ -20,8 +20,7 @@ namespace {
 // Projector3DParallelCUDAAstra by ASTRA's genPar3DProjections: the latter exchanges the axes of the array
 // (t = row cos + column sin), both are centred; imagesequence.py, ImageSeq: the lowest slice is the top row.
 // OpenCAL plays VAMToolbox's videos; menus.py, _parse_rpm.
-// SwissVAMyKnife.jl: utils.jl, save_patterns; RadonKA.jl, next_ray_on_circle and _radon (from N / 2 + 1, counted from
-// 1).
+// SwissVAMyKnife.jl: utils.jl, save_patterns; RadonKA.jl, next_ray_on_circle and _radon (N / 2 + 1 of 1 to N).
 constexpr Convention conventions[] = {
     // program, volumes, projections, frames, zero, sense, axis of volumes and of columns on N / 2, speed in the name
     {"none", "zyx", "zax", "normal", 0, 1, false, false, false},

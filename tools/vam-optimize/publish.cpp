@@ -103,8 +103,8 @@ void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, con
 
 /// What it took, and what twice of that would buy, by how the latitude grew last.
 std::string what_more_buys(const optimize::VolumeOutcome& outcome) {
-  if (!(outcome.growth < 1) || outcome.metrics.latitude <= 0 || outcome.iterations == 0) return "";
-  const std::string twice = format_number(50 * outcome.metrics.latitude * std::exp2(outcome.growth), 3);
+  if (!(outcome.growth >= 0.1 && outcome.growth < 1) || outcome.metrics.latitude <= 0) return "";
+  const std::string twice = format_number(50 * outcome.metrics.latitude * std::exp2(outcome.growth), 2);
   return "; computed in " + format_number(outcome.seconds, 2) + " s, some +-" + twice + " % of dose would take " +
          format_number(2 * outcome.seconds, 2) + " s";
 }

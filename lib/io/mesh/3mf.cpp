@@ -71,8 +71,7 @@ class Package {
     for (const Instance& item : build) place(root_, item, {}, Role::added);
     if (soup_.faces.empty() && ignored_) throw MeshProblem{"its build has supports only, and no part"};
     if (!taken_away_.empty() && build.size() > 1)
-      throw MeshProblem{"has a negative volume, which is taken away from one of its " + std::to_string(build.size()) +
-                        " items only; export it as a plain mesh"};
+      throw MeshProblem{"has a negative volume, and more items than the one it is of; export it as a plain mesh"};
     soup_.taken_away = taken_away_.size();
     soup_.faces.insert(soup_.faces.end(), taken_away_.begin(), taken_away_.end());
     return std::move(soup_);
@@ -156,8 +155,8 @@ class Package {
     throw MeshProblem{which + " is of type " + excerpt(type) + ", which is not printed; export it as a plain mesh"};
   }
 
-  /// What the slicer has made of the n-th component, by its place, or by its object where not each is named. None: what
-  /// its own type says.
+  /// What the slicer has made of component n, by its place, or where not each is named by its object; none: by its
+  /// type.
   std::optional<Role> stated(const std::vector<VolumeType>& parts, const std::vector<Instance>& components,
                              std::size_t n, Role outer, const std::string& which) const {
     std::optional<Role> role;

@@ -152,7 +152,6 @@ class ModelReader {
   void begin(const XmlElement& element) {
     ++depth_;
     metadata_.clear();
-    text_.clear();
     if (element.space != core) {
       begin_of_extension(element);
     } else if (element.name == "vertex" && object_ != nullptr) {
@@ -163,9 +162,10 @@ class ModelReader {
     } else if (element.name == "component" && object_ != nullptr) {
       object_->components.push_back(instance(element));
     } else if (element.name == "metadata" && object_ != nullptr) {
-      metadata_ = element.attribute("name").value_or("");
+      metadata_ = element.attribute("name").value_or(""), text_.clear();
     } else if (element.name == "item") {
-      if (element.attribute("printable").value_or("1") != "0") part_.build.push_back(instance(element));
+      const std::string_view printed = element.attribute("printable").value_or("1");
+      if (printed != "0" && printed != "false") part_.build.push_back(instance(element));
     } else if (element.name == "object") {
       begin_object(element);
     } else if (element.name == "model") {
@@ -182,7 +182,6 @@ class ModelReader {
     if (!metadata_.empty() && trimmed(text_) == "True" && role_of(metadata_) != Role::refused)
       object_->type = metadata_;
     metadata_.clear();
-    text_.clear();
     if (depth_-- != object_depth_ || object_ == nullptr) return;
     const std::size_t before = object_->triangles.size();
     append_beams(beams_, *object_);

@@ -90,10 +90,9 @@ std::vector<UsedDevice> used_devices(const std::string& run) {
   std::vector<UsedDevice> devices;
   for (const auto& [log, what] :
        {std::pair{"flips.jsonl", ""}, {"stage.jsonl", "stage"}, {"capture.jsonl", "camera"}}) {
-    constexpr int first = 8;
     LogLines lines(log_path(run, log));
     Json line;
-    for (int n = 0; n < first && lines.next(line); ++n) {
+    for (int n = 0; n < 8 && lines.next(line); ++n) {
       if (text_at(line, "device").empty()) continue;
       devices.push_back({*what == '\0' ? text_at(line, "event") : what, text_at(line, "device"),
                          line.value("simulated", Json()) == true});
@@ -131,10 +130,8 @@ std::vector<std::string> run_facts(const std::string& run) {
                     " images, " + std::to_string(log.missed()) + " of " + std::to_string(log.blanks()) +
                     " vertical blanks missed");
   }
-  const std::string end = events.outcome
-                              ? events.ended_utc + ": " + *events.outcome + ", status " + std::to_string(events.status)
-                          : is_printed(run) ? "it goes on"
-                                            : "not logged: it was killed";
+  std::string end = is_printed(run) ? "it goes on" : "not logged: it was killed";
+  if (events.outcome) end = events.ended_utc + ": " + *events.outcome + ", status " + std::to_string(events.status);
   facts.push_back("ended      " + end);
   if (!events.resumed_by.empty()) facts.push_back("resumed by " + events.resumed_by);
   return facts;

@@ -9,6 +9,7 @@
 #include "base/text/text.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
+#include "model/tolerances.hpp"
 #include "optics/writable_radius.hpp"
 
 namespace vam::light {
@@ -56,12 +57,13 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
   return poses;
 }
 
-bool may_move(const model::Printer& printer, double judged_mm) {
-  return judged_mm <= optics::writable_radius_mm(printer) + 1e-6;
+bool may_move(const model::Printer& printer, double judged_mm, double by_mm) {
+  return judged_mm <= optics::writable_radius_mm(printer) + 1e-6 &&
+         by_mm <= model::most_displacement_mm(model::resin_radius_mm(printer.vial));
 }
 
 void require_in_reach(const model::Poses& poses, const model::Printer& printer, double judged_mm) {
-  if (model::farthest_mm(poses, model::Moves::vial) == 0 || may_move(printer, judged_mm)) return;
+  if (model::farthest_mm(poses, model::Moves::vial) == 0 || may_move(printer, judged_mm, 0)) return;
   throw Error{Fault::data, "poses: the vial is displaced, and the part reaches beyond the writable radius of " +
                                format_number(optics::writable_radius_mm(printer), 4) +
                                " mm; only one of the two is supported"};

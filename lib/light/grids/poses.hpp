@@ -18,9 +18,8 @@ namespace vam::light {
 [[nodiscard]] model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid, double pitch_mm,
                                        int angles);
 
-/// Whether the vial may stand beside the rotation axis: where the part reaches beyond the writable radius, the rays
-/// that fold there are known for a vial in its place only.
-[[nodiscard]] bool may_move(const model::Printer& printer, double judged_mm);
+/// Whether the vial may stand so far beside the axis: beyond the writable radius rays are known in its place only.
+[[nodiscard]] bool may_move(const model::Printer& printer, double judged_mm, double by_mm);
 /// Throws Fault::data where poses displace the vial and it may not move.
 void require_in_reach(const model::Poses& poses, const model::Printer& printer, double judged_mm);
 

@@ -12,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "light/rays/private/chief_ray_dose.hpp"
+#include "model/tolerances.hpp"
 
 namespace vam::light {
 
@@ -138,7 +139,7 @@ NodeValues between(const TableNode* low, const TableNode* high, float across, fl
 }
 
 void require_small(double largest_mm, double resin_mm) {
-  const double most = resin_mm / 12;  // there the polynomials err by some 0.03 columns
+  const double most = model::most_displacement_mm(resin_mm);
   if (largest_mm <= most) return;
   throw Error{Fault::data, "poses: the vial is displaced by " + format_number(largest_mm, 4) + " mm, at most " +
                                format_number(most, 4) + " mm supported; align the vial, or check the unit"};

@@ -40,8 +40,12 @@ class Bench {
     return print(by);
   }
 
-  /// Whether the vial may be moved, as its rays are known in its place only where the part is near its wall.
-  [[nodiscard]] bool may_move() const { return light::may_move(trial_.printer.printer, setup_.radius_mm); }
+  /// Whether light is known in a printer that deviates so much: a vial may be moved by so much only.
+  [[nodiscard]] bool knows(std::size_t tolerance, double multiple) const {
+    const auto kind = static_cast<model::ToleranceKind>(tolerance);
+    if (kind != model::ToleranceKind::vial_x && kind != model::ToleranceKind::vial_y) return true;
+    return light::may_move(trial_.printer.printer, setup_.radius_mm, multiple * trial_.printer.tolerances[tolerance]);
+  }
 
  private:
   /// Row k of light, where its height in the plane of the rotation axis is in the projector's image.
@@ -84,8 +88,7 @@ class Bench {
 using Margin = std::function<double(double multiple)>;
 
 /// The multiple, up to `reach`, at which the margin is lost, to 2 %: by doubling, then by secants that step a little
-/// beyond the root, to both sides in turn. 0: none. One that is below `least` is given as that: a step of the model
-/// there, as where an aperture begins, would be halved for ever.
+/// beyond the root, to both sides in turn. 0: none. One below `least` may be a step of the model.
 double end(const Margin& margin, double at_low, double at_high, double reach) {
   constexpr double sure = 0.02, least = 0.01;
   double low = 0, high = 1;
@@ -110,9 +113,7 @@ double end(const Margin& margin, double at_low, double at_high, double reach) {
 std::vector<Single> singles_of(const Trial& trial, const Bench& bench) {
   std::vector<Single> all;
   for (std::size_t i = 0; i < trial.printer.tolerances.size(); ++i) {
-    const auto kind = static_cast<model::ToleranceKind>(i);
-    const bool moves = kind == model::ToleranceKind::vial_x || kind == model::ToleranceKind::vial_y;
-    if (trial.printer.tolerances[i] == 0 || (moves && !bench.may_move())) continue;
+    if (trial.printer.tolerances[i] == 0 || !bench.knows(i, 1)) continue;
     const Printed plus = bench.print(i, 1);
     all.push_back({i, model::tolerance_table[i].one_way ? plus : bench.print(i, -1), plus});
   }
@@ -129,6 +130,7 @@ void find_ends(std::vector<Single>& singles, const Trial& trial, const Bench& be
     for (const double way : {1.0, -1.0}) {
       if (way < 0 && model::tolerance_table[one.tolerance].one_way) continue;
       const Margin at = [&](double multiple) { return bench.print(one.tolerance, way * multiple).margin(); };
+      while (reach > 1 && !bench.knows(one.tolerance, reach)) reach /= 2;
       const double found = way * end(at, as_set, (way > 0 ? one.plus : one.minus).margin(), reach);
       if (one.ends_at == 0 || (found != 0 && std::abs(found) < std::abs(one.ends_at))) one.ends_at = found;
     }

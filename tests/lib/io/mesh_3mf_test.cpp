@@ -44,8 +44,8 @@ TEST_CASE(
   const std::string nested = object(1, mesh_xml(box())) +
                              object(2, "<components>" + component(1, "transform=\"2 0 0 0 1 0 0 0 1 1 0 0\"") +
                                            component(1, "transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"") + "</components>");
-  const auto mesh =
-      mesh_of(package(model(nested, item(2, "transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"") + item(1, "printable=\"0\""))));
+  const auto mesh = mesh_of(package(model(nested, item(2, "transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"") +
+                                                      item(1, "printable=\"0\"") + item(1, "printable=\"false\""))));
   CHECK(mesh.triangles.size() == 24);
   CHECK(volume(mesh) == doctest::Approx(12 + 6));
   double low = 1e9;
