@@ -109,8 +109,8 @@ void declare(cli::App& app, Options& options) {
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   app.group("Performance");
   cli::add_threads(app);
-  app.usual({"--output", "--array", "--axes", "--full-scale", "--voxel", "--stretch-z", "--geometry", "--pixel",
-             "--like", "--view-step", "--from", "--axis-column", "--orientation", "--printer", "--set"});
+  app.usual({"--output", "--array", "--axes", "--voxel", "--geometry", "--pixel", "--view-step", "--from",
+             "--axis-column", "--orientation", "--printer", "--set"});
 }
 
 io::ArrayOptions array_of(const Options& options, const std::string& letters) {
