@@ -20,11 +20,11 @@ $npy make a.npy '<f4' 2,3,4
 is 'axes in another order' "$(back a.npy --axes xyz --grid weight | cut -d' ' -f1-8)" '4 3 2 <f4 0 12 4 16'
 is 'an axis from its end' "$(back a.npy --axes z-yx --grid weight | cut -d' ' -f1-9)" '2 3 4 <f4 8 9 10 11 4'
 is 'all three' "$(back a.npy --axes=-z-y-x --grid weight | cut -d' ' -f5-7,28)" '23 22 21 0'
-fails 64 "'z--yx' is not an order of the letters zyx" vam-convert a.npy --voxel 0.5 --axes z--yx
 is 'values divided' "$(back a.npy --full-scale 100 | cut -d' ' -f5,6,28)" '0 0.01 0.23'
 python3 -c 'import zipfile
 with zipfile.ZipFile("two.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "plan/e.npy"); z.write("p.npy", "text")'
 is 'from a pipe' "$(back --array dose --grid weight <two.npz)" "$want"
+fails 64 "'z--yx' is not an order of the letters zyx" vam-convert a.npy --voxel 0.5 --axes z--yx
 misuse --array 'arrays alone in a file' vam-convert a.npy --array dose --voxel 0.5 -o x.vdb
 
 # Where it lies.
