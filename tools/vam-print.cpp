@@ -58,7 +58,6 @@ class Print {
       made_ = true;
       arm(run_);
       drive_.emplace(run_);
-      drive_->lock();
       claim_.take(run_);
       drive_->start();
       status = drive_->watch();

@@ -18,7 +18,9 @@ in_time() {  # by the logs of light engine and table, which itself takes 20 ms t
 child() { pgrep -P $printing -x "$1"; }
 
 screen_up 64 48
-begin interrupt; end_by INT
+begin interrupt
+is 'a terminal has the print in its foreground, and none of its tools' "$(pgrep -g "$(ps -o pgid= -p $printing | tr -d ' ')" -P $printing)" ''
+end_by INT
 aborted 130 aborted ''; in_time
 begin term; end_by TERM
 aborted 143 aborted ''; in_time

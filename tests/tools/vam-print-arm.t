@@ -161,9 +161,9 @@ for name in project lines; do
   holds 'soon' "$(date +%s) - $start < 6"
 done
 
-# An interrupt of all its processes, as Ctrl-C is.
+# An interrupt of all its tools, which no terminal sends.
 printing=$interrupted
-perl -e 'kill "-INT", @ARGV' $printing; wait $printing
+kill -INT $(pgrep -P $printing -x 'vam-project|vam-stage|tee'); wait $printing
 is 'an interrupt of all processes is not a failure of one' "$? $(json interrupted/summary.json outcome)" '130 aborted'
 is 'and is reported in one line' "$(cat interrupted.err)" "$(grep -E '^vam-print: aborted: (stage|project|lines) was ended by a signal$' interrupted.err)"
 
@@ -238,11 +238,19 @@ refuses ": $cut_short" :
 refuses ": $cut_short" "head -n $line"
 for change in "$((line - 20)),${line}d" "$((line - 20))h;${line}G" "${line}s/\"utc\":\"2/\"utc\":\"3/" 1d; do refuses ":$changed" "sed '$change'"; done
 refuses ": $cut_short" "sed 's/,\"chain\":\"[0-9a-f]*\"//'"
+# Without chains nobody would know: such a print is not resumed.
+rm -rf spoilt; cp -r again spoilt; unchain spoilt/*.jsonl; sed -i '/"event":"sealed"/d' spoilt/events.jsonl
+fails 65 '^vam-print: spoilt/flips.jsonl: has no chain, by which lost lines would be found' print --resume spoilt --run none
+ok 'its dose can be computed' vam-dose frames.exr --shown spoilt -o lost.vdb
+sed -i "${line}h;${line}d;$((line + 1))G" spoilt/flips.jsonl
+fails 65 '^vam-dose: spoilt/flips.jsonl:[0-9]*: time [0-9.]* s is before that of the flip before it' vam-dose frames.exr --shown spoilt -o none.vdb
 # As of an untouched one is said what of it is verified, so of what was lost or changed that it was.
 ok 'a killed print is verified up to where its events state its flips' vam-check again
 of='flips.jsonl is sealed up to byte [0-9]+ of [0-9]+'
 is 'which says up to where' "$(grep -Ec "^again: run folder of a print that goes on or was killed: $of, sealed\$" .log/out)" 1
+is 'and what was delivered, in ten lines at most' "$(grep -Ec '^  delivered  turn [01][.][0-9]* of 2, from 0.00 on: [0-9]* images' .log/out) $(($(wc -l <.log/out) <= 10))" '1 1'
 is 'by its log alone, too' "$(vam-check again/flips.jsonl | grep -Ec "^again/flips.jsonl: flips of a print: $of, sealed\$")" 1
+rm -rf spoilt; cp -r again spoilt; is 'of a copy, too, that it is over' "$(vam-status spoilt 2>/dev/null | grep -c '^end not logged ')" 1
 is 'and by its progress' "$(vam-status again 2>&1 >/dev/null | grep -Ec "is gone; only its logs are verified: $of\$")" 1
 spoilt() {  # spoilt REGEX COMMAND: a killed print after COMMAND in its folder
   rm -rf spoilt; cp -r again spoilt; (cd spoilt && eval "$2")
@@ -253,6 +261,7 @@ spoilt() {  # spoilt REGEX COMMAND: a killed print after COMMAND in its folder
 }
 for log in angles flips; do spoilt "$log.jsonl: is gone, but events.jsonl states [0-9]+ bytes of it; restore it\$" "rm $log.jsonl"; done
 fails 65 '^vam-check: spoilt/flips.jsonl: is gone, but' vam-check spoilt/flips.jsonl
+spoilt 'printer.toml: changed after it was written .*; restore it$' 'sed -i 2d printer.toml'
 spoilt 'printer.toml: has no seal, with which a print writes it; it was cut or changed; restore it$' 'sed -i "/^# sealed/d" printer.toml'
 fails 65 '^vam-dose: .*/spoilt/printer.toml: has no seal' vam-dose frames.exr --shown spoilt/flips.jsonl -o none.vdb
 for log in events angles stage; do spoilt "$log.jsonl:1: does not follow from the line before it" "sed -i '1s/^{/{ /' $log.jsonl"; done

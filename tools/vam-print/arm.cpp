@@ -258,19 +258,6 @@ void take(Steps& steps) {
   check_devices(steps);
 }
 
-struct TemporaryFolder {
-  TemporaryFolder() {
-    if (mkdtemp(path.data()) == nullptr) throw Error{Fault::no_output, path + ": cannot create the folder"};
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string path = (fs::temp_directory_path() / "vam-plan.XXXXXX").string();
-};
-
 // What the tools need in the folder.
 void furnish(const Run& run) {
   constexpr std::size_t reserve = 65536;
@@ -321,8 +308,8 @@ void arm(Run& run) {
 }
 
 int print_plan(Run& run) {
-  const TemporaryFolder plan;
-  run.folder = plan.path;
+  const device::TemporaryFolder plan;
+  run.folder = plan.path();
   Steps steps{run};
   take(steps);
   check_disk(steps);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vam-print/child.hpp"
+#include "device/os/child.hpp"
 #include "vam-print/run.hpp"
 
 namespace vam::print_tool {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-print/drive.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -15,7 +12,6 @@
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
-#include "base/system_error.hpp"
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
@@ -43,22 +39,11 @@ bool is_order(int status) { return status == 128 + SIGHUP || status == 128 + SIG
 
 }  // namespace
 
-void Drive::lock() {
-  constexpr int beyond_redirections = 10;
-  const std::string path = run_.file("events.jsonl");
-  const int events = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (events < 0) throw system_error(Fault::io, path + ": cannot be locked", errno);
-  lock_ = fcntl(events, F_DUPFD_CLOEXEC, beyond_redirections);
-  close(events);
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw Error{Fault::busy, path + ": is in use by another print; give another --run"};
-}
-
 void Drive::start() {
   std::ofstream(run_.file("angles.jsonl")) << std::flush;
   for (const Command& command : tools_of(run_))
     tools_.emplace_back(command, run_.talk.path(command.name),
-                        Manner{.with_parent = ends_with_parent(command), .shared = lock_});
+                        Manner{.with_parent = ends_with_parent(command), .shared = run_.lock});
   life_.reach(State::homed);
   run_.note("started");
   const bool terminal = isatty(STDERR_FILENO) == 1;
@@ -70,7 +55,7 @@ void Drive::start() {
     renewal.words.insert(renewal.words.end(), {"--die-with", std::to_string(getpid())});
     renewal_.emplace(renewal, run_.talk.path("renew"), Manner{.nice = true});
   }
-  steward_.emplace(run_, tools_, lock_);
+  steward_.emplace(run_, tools_);
   std::vector<std::string> logs;
   for (const char* log : {"flips", "angles", "stage", "capture", "ost", "renewed"})
     logs.push_back(run_.file(std::string(log) + ".jsonl"));
@@ -237,18 +222,9 @@ void Drive::end_open_loop() {
   throw Ended{judged};
 }
 
-// First politely; one that is stopped, or hangs, is killed after 2 s.
 void Drive::end_all() {
-  using std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds patience{2000};
   order_end();
-  const auto until = steady_clock::now() + patience;
-  for (Child& tool : tools_) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - steady_clock::now()).count();
-    if (!tool.ends_within(std::max(0, static_cast<int>(left)))) tool.order(SIGKILL);
-    record(tool, tool.status());
-  }
-  tools_.clear();
+  device::end_all(tools_, [this](Child& tool, int status) { record(tool, status); });
   if (life_.state() != State::armed) life_.reach(State::still);
   steward_.reset();
   device::take_time();

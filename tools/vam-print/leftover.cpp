@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-print/leftover.hpp"
-
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/syscall.h>
@@ -18,6 +16,7 @@
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "device/os/process.hpp"
+#include "vam-print/drive.hpp"
 
 namespace vam::print_tool {
 
@@ -98,32 +97,11 @@ bool is_left_on(const Run& run, const Child& tool) {
 }
 
 void switch_off(const Run& run, const std::string& who) {
-  std::string printed;
-  int status = 1;
-  try {
-    printed = run.talk.path("off.out");
-    const Command off{"off",
-                      {"vam-devices", "off", "--printer", run.file("printer.toml"), "--light",
-                       run.options.light.empty() ? "none" : run.options.light},
-                      {{STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC}}};
-    status = Child(off, run.talk.path("off"), {.undisturbed = true}).status();
-  } catch (const Error& error) {
-    say(error.what());
-  }
-  run.talk.show("off");
-  run.talk.forget("off");
-  std::vector<std::string> devices;
-  for (const std::string& line : split(trimmed(text_of(printed), "\n"), '\n')) {
-    std::vector<std::string> words = split(line, ' ');
-    std::erase(words, "");
-    devices.push_back(join(words, " "));
-  }
-  std::string said = join(devices, ", ");
-  if (status != 0) said = "LIGHT OR MOTION MAY BE ON" + (said.empty() ? "" : ", but " + said);
-  say(who + " killed, and no guardian says that all is safe; vam-devices off: " + said);
+  say(who + " killed, and no guardian says that all is safe; vam-devices off: " +
+      device::switch_off(run.talk, run.file("printer.toml"), run.options.light));
 }
 
-Steward::Steward(const Run& run, const std::vector<Child>& tools, int lock) {
+Steward::Steward(const Run& run, const std::vector<Child>& tools) {
   const pid_t parent = getpid();
   const int handle = static_cast<int>(syscall(SYS_pidfd_open, parent, 0));
   pid_ = fork();
@@ -133,9 +111,9 @@ Steward::Steward(const Run& run, const std::vector<Child>& tools, int lock) {
       throw Error{Fault::memory, "the steward of the print cannot be started; raise the limit of processes"};
     return;
   }
-  for (const int signal : {SIGINT, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
-  for (const int signal : {SIGTERM, SIGHUP}) (void)std::signal(signal, SIG_DFL);
-  if (lock >= 0) close(lock);
+  setpgid(0, 0);  // as its tools: no terminal ends it
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) (void)std::signal(signal, SIG_DFL);
+  if (run.lock >= 0) close(run.lock);   // it is not among those who print
   device::name_process("vam-steward");  // who kills all of the name of vam-print spares it
   try {
     watch_for_stopped(run, tools, parent, handle);

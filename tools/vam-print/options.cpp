@@ -65,7 +65,8 @@ void add_views(cli::App& app, Options& o) {
 void add_correction(cli::App& app, Options& o) {
   app.flag("--correct", o.correct,
            "Compute new projections once a turn from what the views show of the resin: vam-correct renew follows the "
-           "run folder and puts them into renewed/, from where vam-project --frames-from shows them. --resin is a "
+           "run folder, niced and with at most half of the memory, and puts them into renewed/, from where vam-project "
+           "--frames-from shows them. --resin is a "
            "record of vam-calibrate working-curve. --turns is then the maximum, more than the turns of the plan, which "
            "are determined before anything moves (plan.json). New projections state for how many turns they are "
            "shown; the print ends with them. In doubt, and if vam-correct renew fails, the print continues unchanged "

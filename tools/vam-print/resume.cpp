@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -27,18 +26,13 @@ namespace fs = std::filesystem;
 
 constexpr double turn_deg = 360;
 
-// Whoever prints keeps a lock on its events until the last tool has ended.
 void require_over(const std::string& folder) {
-  const int events = open((folder + "/events.jsonl").c_str(), O_RDONLY | O_CLOEXEC);
   constexpr int tries = 20;
   constexpr useconds_t pause_us = 50000;
-  bool locked = false;
-  for (int i = 0; i < tries && !locked; ++i) {
-    locked = events < 0 || flock(events, LOCK_EX | LOCK_NB) == 0;
-    if (!locked) usleep(pause_us);
+  for (int i = 0; io::is_printed(folder); ++i) {
+    if (i == tries) throw Error{Fault::busy, folder + ": is still being printed; stop that print, or wait for its end"};
+    usleep(pause_us);
   }
-  if (events >= 0) close(events);
-  if (!locked) throw Error{Fault::busy, folder + ": is still being printed; stop that print, or wait for its end"};
 }
 
 void require_not_resumed(const std::string& folder) {
@@ -78,6 +72,12 @@ LastImage last_image(const std::string& folder, const std::string& sinogram) {
   if (!has_regular_file(folder + "/flips.jsonl")) return image;
   io::FlipLog log(folder);
   log.read();
+  if (!log.is_chained()) {
+    throw Error{Fault::data, folder +
+                                 "/flips.jsonl: has no chain, by which lost lines would be found, whose light "
+                                 "would be given twice; compute the rest (vam-dose --shown, vam-optimize "
+                                 "--delivered) and print that"};
+  }
   if (log.sinograms().size() > 1) {
     throw Error{Fault::data, folder + ": showed new projections, so that the rest is not that of " + sinogram +
                                  "; compute it (vam-dose --shown, vam-optimize --delivered) and print that"};

@@ -42,9 +42,13 @@ void Run::note(const std::string& event) { note(event, Json::object()); }
 
 void Run::note(const std::string& event, const Json& facts) {
   try {
-    if (!events_) events_ = std::make_unique<device::EventLog>(file("events.jsonl"), FormatKind("vam-print"));
+    if (!events_) {
+      events_ = std::make_unique<device::EventLog>(file("events.jsonl"), FormatKind("vam-print"));
+      lock = events_->hold();
+    }
     (*events_)(event, facts);
   } catch (const Error&) {
+    if (lock < 0) throw;  // nothing is in use yet
     // The disk is full, or gone: that is what ends the print, and what is reported.
   }
 }

@@ -10,13 +10,16 @@
 #include <vector>
 
 #include "base/text/json_fwd.hpp"
+#include "device/os/child.hpp"
 #include "device/os/event_log.hpp"
 #include "io/settings/flip_log.hpp"
 #include "model/printer.hpp"
-#include "vam-print/child.hpp"
 #include "vam-print/options.hpp"
 
 namespace vam::print_tool {
+
+using device::Child, device::Command, device::Manner, device::Redirection, device::Talk;
+using device::run_to_end, device::text_of, device::last_line, device::pass_on;
 
 /// Ends vam-print with this status when all has been said.
 struct Ended {
@@ -39,6 +42,7 @@ struct Run {
   double from_deg = 0;       // where light begins
   double planned_turns = 0;  // of a print that is corrected; until where it goes on in open loop
   std::string sinogram_sha256;
+  int lock = -1;  // on the events, until the last tool has ended, so that nobody takes the print for one that is over
 
   std::string outcome = "aborted";
   std::map<std::string, int> statuses;   // of the tools that have ended

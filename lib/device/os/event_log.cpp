@@ -2,6 +2,7 @@
 #include "device/os/event_log.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -73,8 +74,31 @@ void EventLog::line(const Json& facts) {
   changed_.notify_all();
 }
 
+// Programs take turns, but nobody waits for long: a chain that is broken is found out, light that stays on is not.
 void EventLog::write(const std::vector<std::string>& objects) {
-  if (!shared_) catch_up();
+  if (shared_) return append(objects);
+  constexpr int tries = 1000;
+  constexpr useconds_t pause_us = 1000;
+  struct flock turn = {};
+  turn.l_whence = SEEK_SET;
+  turn.l_type = F_WRLCK;
+  bool taken = false;
+  for (int i = 0; i < tries && !(taken = fcntl(fd_, F_OFD_SETLK, &turn) == 0) && errno == EAGAIN; ++i) usleep(pause_us);
+  const auto leave = [&] {
+    turn.l_type = F_UNLCK;
+    if (taken) (void)fcntl(fd_, F_OFD_SETLK, &turn);
+  };
+  try {
+    catch_up();
+    append(objects);
+  } catch (const Error&) {
+    leave();
+    throw;
+  }
+  leave();
+}
+
+void EventLog::append(const std::vector<std::string>& objects) {
   std::string text = std::exchange(torn_, false) ? "\n" : "";
   std::string chain = chain_;  // which is that of the last line that was written
   for (const std::string& object : objects) text += (chained_ ? chained(object, chain) : object) + "\n";
@@ -147,6 +171,17 @@ void EventLog::sync() {
   require_written();
   lock.unlock();  // others do not wait for the disk
   if (fd_ >= 0) fdatasync(fd_);
+}
+
+int EventLog::hold() const {
+  constexpr int beyond_redirections = 10;
+  const int opened = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (opened < 0) throw system_error(Fault::io, path_ + ": cannot be locked", errno);
+  const int held = fcntl(opened, F_DUPFD_CLOEXEC, beyond_redirections);
+  close(opened);
+  if (flock(held, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw Error{Fault::busy, path_ + ": is in use by another program"};
+  return held;
 }
 
 void EventLog::undo() {

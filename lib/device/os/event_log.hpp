@@ -16,9 +16,9 @@
 namespace vam::device {
 
 /// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file; the first line that each log adds
-/// has the schema, too. A file that is new, or of such lines, is chained (base/log/chain.hpp), by one writer at a time;
-/// what a writer that was killed has begun of its line is cut off. "-" is standard error; an empty path logs nothing.
-/// Throws Fault::no_output, Fault::io.
+/// has the schema, too. A file that is new, or of such lines, is chained (base/log/chain.hpp), whoever else writes to
+/// it meanwhile; what a writer that was killed has begun of its line is cut off. "-" is standard error; an empty path
+/// logs nothing. Throws Fault::no_output, Fault::io.
 class EventLog {
  public:
   explicit EventLog(const std::string& path, FormatKind schema = "vam-log");
@@ -36,6 +36,9 @@ class EventLog {
   /// From now on lines are written by a thread of their own, in order: nobody waits for the disk. What cannot be
   /// written is thrown by the next line, or by sync().
   void write_aside();
+  /// Shows others by a lock (flock) that somebody writes, until this and all to whom the descriptor that it returns was
+  /// given have ended. Throws Fault::busy where another has it, Fault::io.
+  [[nodiscard]] int hold() const;
   /// Until now on the disk.
   void sync();
   /// Takes the file away again, if there was none before.
@@ -44,6 +47,7 @@ class EventLog {
  private:
   void write(const std::vector<std::string>& objects);
   void catch_up();
+  void append(const std::vector<std::string>& objects);
   void write_in_order();
   void require_written() const;
 

@@ -113,6 +113,16 @@ TEST_CASE("A line follows from the one before, whoever wrote that, and one that 
     first("c");
   }
   CHECK(whole() == 3);
+  const auto write = [&] {
+    EventLog log(path);
+    for (int i = 0; i < 200; ++i) log("at once");
+  };
+  std::thread beside(write);
+  write();
+  beside.join();
+  CHECK(whole() == 403);
+  std::filesystem::remove(path);
+  for (int i = 0; i < 3; ++i) EventLog(folder / "log")("again");
   std::ofstream(path, std::ios::app) << "{\"utc";
   EventLog(folder / "log")("d");
   CHECK(whole() == 4);

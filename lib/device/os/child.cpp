@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-print/child.hpp"
+#include "device/os/child.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -10,9 +10,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -20,13 +23,14 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log/log.hpp"
 #include "base/log/status_line.hpp"
 #include "base/system_error.hpp"
 #include "base/text/printable.hpp"
 #include "base/text/text.hpp"
 #include "device/os/interrupt.hpp"
 
-namespace vam::print_tool {
+namespace vam::device {
 
 namespace {
 
@@ -34,7 +38,7 @@ constexpr std::array ended_by{SIGINT, SIGTERM, SIGHUP};
 constexpr int niceness = 10;
 
 [[noreturn]] void fail_in_child(const char* what) {
-  dprintf(STDERR_FILENO, "vam-print: %s: %s\n", what, std::strerror(errno));
+  dprintf(STDERR_FILENO, "%s: %s: %s\n", program_invocation_short_name, what, std::strerror(errno));
   _exit(127);
 }
 
@@ -67,6 +71,8 @@ void give_way() {
   for (const int signal : ended_by) (void)std::signal(signal, manner.undisturbed ? SIG_IGN : SIG_DFL);
   for (const int signal : {SIGINT, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
   for (const int signal : {SIGPIPE, SIGXFSZ}) (void)std::signal(signal, SIG_DFL);
+  setpgid(0, 0);  // what is typed at the terminal, and its end, is for this process alone, which orders theirs
+  (void)std::signal(SIGTTOU, SIG_IGN);
   sigprocmask(SIG_SETMASK, &mask, nullptr);
   if (!manner.on_terminal) connect(STDERR_FILENO, said, O_WRONLY | O_CREAT | O_APPEND);
   connect(STDIN_FILENO, "/dev/null", O_RDONLY);
@@ -134,14 +140,65 @@ int Child::status() {
   return WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how);
 }
 
-int run_to_end(const Command& command, const std::string& said) {
-  Child child(command, said, {.with_parent = true});
-  std::array<pollfd, 2> events{pollfd{child.handle(), POLLIN, 0}, pollfd{device::interrupt_fd(), POLLIN, 0}};
-  while (events[0].revents == 0 && !device::interrupted()) poll(events.data(), events.size(), -1);
-  if (events[0].revents == 0) child.order(SIGTERM);
-  const int status = child.status();
-  device::check_interrupted();
-  return status;
+int run_to_end(const Command& command, const std::string& said, int limit_ms) {
+  std::vector<Child> child;
+  child.emplace_back(command, said, Manner{.with_parent = true});
+  std::array<pollfd, 2> events{pollfd{child.front().handle(), POLLIN, 0}, pollfd{interrupt_fd(), POLLIN, 0}};
+  int count = 0;
+  while ((count = poll(events.data(), events.size(), limit_ms)) < 0 && !interrupted()) continue;
+  if (events[0].revents != 0) return child.front().status();
+  end_all(child, [](Child&, int) {});
+  check_interrupted();
+  return count == 0 ? timed_out : 128 + SIGTERM;
+}
+
+void end_all(std::vector<Child>& children, const std::function<void(Child&, int)>& ended) {
+  using std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds patience{2000};
+  for (const Child& child : children) child.order(SIGTERM);
+  const auto until = steady_clock::now() + patience;
+  for (Child& child : children) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - steady_clock::now()).count();
+    if (!child.ends_within(std::max(0, static_cast<int>(left)))) child.order(SIGKILL);
+    ended(child, child.status());
+  }
+  children.clear();
+}
+
+std::string switch_off(const Talk& talk, const std::string& printer, const std::string& light) {
+  std::string printed;
+  int status = 1;
+  try {
+    printed = talk.path("off.out");
+    const Command off{"off",
+                      {"vam-devices", "off", "--printer", printer, "--light", light.empty() ? "none" : light},
+                      {{STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC}}};
+    status = Child(off, talk.path("off"), {.undisturbed = true}).status();
+  } catch (const Error& error) {
+    say(error.what());
+  }
+  talk.show("off");
+  talk.forget("off");
+  std::vector<std::string> devices;
+  for (const std::string& line : split(trimmed(text_of(printed), "\n"), '\n')) {
+    std::vector<std::string> words = split(line, ' ');
+    std::erase(words, "");
+    devices.push_back(join(words, " "));
+  }
+  const std::string said = join(devices, ", ");
+  return status == 0 ? said : "LIGHT OR MOTION MAY BE ON" + (said.empty() ? "" : ", but " + said);
+}
+
+TemporaryFolder::TemporaryFolder() {
+  const char* parent = std::getenv("TMPDIR");
+  path_ = std::string(parent == nullptr || *parent == '\0' ? "/tmp" : parent) + "/vam.XXXXXX";
+  if (mkdtemp(path_.data()) == nullptr)
+    throw system_error(Fault::no_output, path_ + ": cannot create the folder", errno);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 Talk::~Talk() {
@@ -206,4 +263,4 @@ void pass_on(const std::string& line) {
   std::fprintf(stderr, "%s\n", printable(line).c_str());
 }
 
-}  // namespace vam::print_tool
+}  // namespace vam::device

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tools as processes: their command lines, what they are connected to, what they say, how they end.
+// Tools as processes of another: their command lines, what they are connected to, what they say, how they end.
 #pragma once
 
 #include <sys/types.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace vam::print_tool {
+namespace vam::device {
 
 /// Opened by the new process itself, so that a named pipe waits for its other end there.
 struct Redirection {
@@ -35,7 +35,7 @@ struct Manner {
   bool on_terminal = false;  // standard error is this process's
 };
 
-/// A child of this process, which orders its end.
+/// A child of this process, which orders its end; in a process group of its own, so that no terminal does.
 class Child {
  public:
   /// standard error is appended to the file `said`. Throws Fault::memory where no process can be made.
@@ -62,9 +62,10 @@ class Child {
   int handle_ = -1;
 };
 
-/// Runs a command to its end and returns its status; throws device::Interrupted when a signal came meanwhile, which is
-/// passed on.
-int run_to_end(const Command& command, const std::string& said);
+/// Runs a command to its end, which is ordered after limit_ms (-1: never), and returns its status, then `timed_out`;
+/// throws device::Interrupted when a signal came meanwhile, which is passed on.
+int run_to_end(const Command& command, const std::string& said, int limit_ms = -1);
+inline constexpr int timed_out = 124;  // as of timeout(1)
 
 /// What the tools say on standard error, in memory without a name: the disk of the run may be full.
 class Talk {
@@ -90,6 +91,25 @@ class Talk {
   mutable std::map<std::string, int> files_;
 };
 
+/// Orders them all to end, and kills who has not after 2 s; `ended` is told of each, with its status.
+void end_all(std::vector<Child>& children, const std::function<void(Child& child, int status)>& ended);
+
+/// Runs vam-devices off with this printer file and light engine (empty: none): what it says of each device, in a line.
+[[nodiscard]] std::string switch_off(const Talk& talk, const std::string& printer, const std::string& light);
+
+/// A folder of its own in $TMPDIR, else /tmp, which goes with all in it. Throws Fault::no_output.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 /// The whole of a small file; empty where there is none.
 [[nodiscard]] std::string text_of(const std::string& path);
 
@@ -99,4 +119,4 @@ class Talk {
 /// A line that has the name of its tool already.
 void pass_on(const std::string& line);
 
-}  // namespace vam::print_tool
+}  // namespace vam::device
