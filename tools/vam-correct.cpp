@@ -18,7 +18,7 @@
 #include "metrology/cure/sensitivity.hpp"
 #include "model/metadata.hpp"
 #include "session/volumes.hpp"
-#include "vam-correct/renew.hpp"
+#include "vam-correct/renewal.hpp"
 
 namespace {
 
@@ -209,8 +209,9 @@ int main(int argc, char** argv) {
                 "measure where a print cures ahead of its dose or behind it, once a turn",
                 manual_page,
                 {{1, "There is doubt: no new light should be computed from this turn."},
+                 {129, "renew: SIGHUP."},
                  {130, "renew: SIGINT."},
-                 {143, "renew: SIGTERM or SIGHUP."}}});
+                 {143, "renew: SIGTERM."}}});
   Options options;
   declare(app, options);
   correct_tool::add_renew(app);

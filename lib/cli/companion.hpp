@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace vam::cli {
 
@@ -12,8 +11,5 @@ namespace vam::cli {
 
 /// From here on what this process starts finds the tools beside this one before others.
 void find_tools_beside();
-
-/// Goes on as that script, in this process. It finds the tools beside this one before others. Throws Fault::no_input.
-[[noreturn]] void become_companion(const std::string& name, std::vector<std::string> arguments);
 
 }  // namespace vam::cli

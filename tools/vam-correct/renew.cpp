@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vam-correct/renew.hpp"
-
 #include <algorithm>
-#include <optional>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include "base/error.hpp"
-#include "base/text/text.hpp"
+#include "base/text/json.hpp"
+#include "base/text/json_text.hpp"
 #include "cli/companion.hpp"
-#include "io/exr/stack.hpp"
-#include "io/settings/printer_file.hpp"
-#include "session/exposure.hpp"
+#include "device/os/clock.hpp"
+#include "device/os/interrupt.hpp"
+#include "io/stream/log_lines.hpp"
+#include "vam-correct/renewal.hpp"
 
 namespace vam::correct_tool {
 
 namespace {
 
-struct RenewOptions {
-  std::string run, target, curve;
-  int iterations = 12;
-  double max_uncertainty_percent = 3;
-  double axis_sigma_px = 0;
-  double lead = 0.5;
-  std::optional<int> once, guard;
-};
+namespace fs = std::filesystem;
 
 void declare(cli::App& app, RenewOptions& o) {
   app.positional(
@@ -45,33 +41,53 @@ void declare(cli::App& app, RenewOptions& o) {
   app.option("--die-with", "PID", o.guard, {1, 1e9}, "Exit when this process has exited.");
 }
 
-/// Turns as planned, and their fraction of full intensity.
-struct Plan {
-  double turns = 0, multiplier = 0;
-};
-
-Plan plan_of(const std::string& run) {
-  io::StackReader light(run + "/sinogram.exr");
-  float peak = 0;
-  Image image;
-  for (model::ImageInfo about; light.next(image, about);) {
-    for (const float value : image.values) peak = std::max(peak, value);
+// The number of the newest volume; -1: there is none.
+int newest(const std::string& folder) {
+  int most = -1;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    int number = 0;
+    if (std::sscanf(entry.path().filename().c_str(), "scatter-%d.vdb", &number) == 1) most = std::max(most, number);
   }
-  const auto printer = io::load_printer(run + "/printer.toml", {});
-  const auto shown = session::exposure_of(run + "/sinogram.exr", light.info(), printer, static_cast<double>(peak));
-  if (shown.share) return {shown.turns, static_cast<double>(peak) / shown.full_scale};
-  throw Error{Fault::data, run +
-                               "/sinogram.exr: has no planned exposure; compute it by vam-optimize for a printer "
-                               "with resin.critical_dose_mj_cm3"};
+  return most;
+}
+
+bool has_ended(const std::string& run) {
+  constexpr std::streamoff tail_bytes = 4096;
+  io::LogLines log(run + "/flips.jsonl", tail_bytes);
+  for (Json line; log.next(line);) {
+    if (text_at(line, "event") == "end") return true;
+  }
+  return false;
+}
+
+// Each volume that appears, until the print ends, or who waits for it.
+void follow(const RenewOptions& o, Renewal& renewal) {
+  constexpr double pause_s = 0.2;
+  for (int done = -1;;) {
+    if (const int number = newest(o.run + "/ost"); number > done) {
+      done = number;
+      (void)renewal.take(number);
+    }
+    if (has_ended(o.run) || (o.guard && kill(*o.guard, 0) != 0 && errno == ESRCH)) return;
+    device::real_clock().sleep_until(device::real_clock().now_s() + pause_s);
+  }
 }
 
 void run(const cli::App& /*app*/, RenewOptions& o) {
-  const auto text = [](const std::optional<int>& number) { return number ? std::to_string(*number) : ""; };
-  const Plan plan = plan_of(o.run);
-  cli::become_companion("renew",
-                        {o.run, o.target, o.curve, format_number(plan.turns, 9), format_number(plan.multiplier, 9),
-                         std::to_string(o.iterations), format_number(o.max_uncertainty_percent, 9),
-                         format_number(o.axis_sigma_px, 9), format_number(o.lead, 9), text(o.once), text(o.guard)});
+  if (o.run.starts_with('-')) o.run = "./" + o.run;
+  cli::find_tools_beside();
+  device::interruptible([&] {
+    for (const std::string& file : {o.run + "/sinogram.exr", o.run + "/printer.toml", o.target, o.curve}) {
+      if (!fs::is_regular_file(file)) throw Error{Fault::no_input, file + ": cannot open it"};
+    }
+    Renewal renewal(o);
+    if (!o.once) return follow(o, renewal);
+    const std::string volume = o.run + "/ost/" + scatter_name(*o.once);
+    if (!fs::exists(volume)) throw Error{Fault::no_input, volume + ": cannot open it"};
+    if (const auto held = renewal.take(*o.once))
+      throw Error{Fault::judged, "volume " + std::to_string(*o.once) + ": " + held->reason};
+  });
 }
 
 }  // namespace
