@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vam-calibrate: measures the instrument from captured frames and writes calibration records.
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <iostream>
 #include <string>
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
 #include "io/stream/file_type.hpp"
 #include "manual_page.hpp"
-#include "vam-calibrate/figures.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace {
@@ -157,27 +151,17 @@ void declare(cli::App& app, ScanOptions& o) {
   calibrate_tool::add_cure_depth(app);
 }
 
-/// Runs the script beside this program, or on PATH, with the arguments that follow the command. Returns the exit status
-/// if it cannot be run.
-int become_script(std::string script, char** argv) {
-  const std::string own_path = argv[0];
-  argv[1] = script.data();
-  const std::size_t folder = own_path.rfind('/');
-  if (folder != std::string::npos) execv((own_path.substr(0, folder + 1) + script).c_str(), argv + 1);
-  execvp(script.c_str(), argv + 1);
-  std::cerr << "vam-calibrate: " << script << ": " << std::strerror(errno) << '\n';
-  return static_cast<int>(Fault::no_input);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc > 1 && argv[1] == std::string("all")) return become_script("vam-calibrate-all", argv);
-  cli::App app({"vam-calibrate",
-                "measure the instrument and write calibration records",
-                manual_page,
-                {{1, "A result does not meet its requirements and is not put in force."}}});
+  std::vector<cli::ExitStatus> statuses = cli::device_statuses;
+  statuses.push_back({1, "A result does not meet its requirements and is not put in force."});
+  statuses.push_back({137, "all: a tool was killed."});
+  cli::App app({"vam-calibrate", "measure the instrument and write calibration records", manual_page, statuses});
   ScanOptions options;
+  int status = 0;
   declare(app, options);
-  return app.run(argc, argv);
+  calibrate_tool::add_all(app, status);
+  const int refused = app.run(argc, argv);
+  return refused != 0 ? refused : status;
 }

@@ -19,7 +19,7 @@ from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, load, report, wai
 
 PRINT = ["vam-print", "frames.exr", "--display", "sdl:0", "--uncalibrated", "--max-missed", "0.9", "--max-missed-lit", "0.9",
          "--run-up", "0.05", "--turns", "40"]
-CALIBRATION = ["vam-calibrate-all", "--display", "sdl:0", "--scans", "flat", "--set", "camera.device=sim:", "--set", "camera.fps=10"]
+CALIBRATION = ["vam-calibrate", "all", "--display", "sdl:0", "--scans", "flat", "--set", "camera.device=sim:", "--set", "camera.fps=10"]
 ENGINE = ["umockdev-wrapper", os.path.join(os.environ["VAM_BUILD"], "usb_host"), "dlpc350:?outlives=3000", "engine",
           "sh", "-c", 'LD_PRELOAD="$SHIM:$LD_PRELOAD"; echo $$ >pid; exec "$@"', "sh"]
 SINGLE = [["vam-print"], ["vam-stage"], ["vam-project"]]

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The crontab line and the systemd units of vam-calibrate-all(1), as cron and systemd run them: installed, in an empty
+# The crontab line and the systemd units of vam-lab(7), as cron and systemd run them: installed, in an empty
 # environment with their own PATH; the devices alone are simulated ones. And the progress on a terminal.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-page=$VAM_SOURCE/man/vam-calibrate-all.1
+page=$VAM_SOURCE/man/vam-lab.7
 tools=$(dirname "$(command -v vam-stage)")
 mkdir -p prefix/bin
-cp "$VAM_SOURCE/scripts/vam-calibrate-all" prefix/bin
 for tool in "$tools"/vam-*; do ln -s "$tool" prefix/bin; done
 cat >printer.toml <<TOML
 [stage]
@@ -67,6 +66,6 @@ fi
 again
 script -qec "$(cat crontab)" seen </dev/null >.log/out 2>&1
 tr '\r' '\n' <seen >lines
-is 'a terminal shows the scan and its duration' "$(grep -c 'vam-calibrate-all: axis, scan 1 of 1, [1-9] s' lines | awk '{ print ($1 > 1) }')" 1
+is 'a terminal shows the scan and its duration' "$(grep -c 'vam-calibrate: axis, scan 1 of 1, [1-9] s' lines | awk '{ print ($1 > 1) }')" 1
 is 'until its end' "$(grep -v '^Script' lines | grep . | tail -n 1 | tr -d '\033')" '[K'
 done_testing

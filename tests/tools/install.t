@@ -12,7 +12,7 @@ sort parts >sorted
 listed all >whole
 same 'each file is in one component' whole sorted
 
-for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch vam-calibrate-all; do
+for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch; do
   missing=
   for file in "bin/$tool" "share/man/man1/$tool.1" "share/bash-completion/completions/$tool" \
     "share/zsh/site-functions/_$tool" "share/fish/vendor_completions.d/$tool.fish"; do
@@ -22,7 +22,7 @@ for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch vam-calibrate-all; do
 done
 is 'no manual is without a tool' "$(ls all/share/man/man1 | wc -l)" "$(ls all/bin | wc -l)"
 is 'what needs devices is apart' "$(ls devices/bin | tr '\n' ' ')" \
-  'vam-calibrate-all vam-capture vam-devices vam-print vam-sim vam-stage '
+  'vam-capture vam-devices vam-print vam-sim vam-stage '
 ok 'the library for its stage is beside the simulator' test -f "$(devices/bin/vam-sim stage --shim)"
 aravis=$(for tool in tools/bin/*; do ldd "$tool" | grep -c libaravis; done | sort -u)
 is 'no other tool loads the library of cameras' "$aravis" 0

@@ -15,7 +15,7 @@ screen_up 208 96
 stage_up --acceleration 1000 --max-speed 360 --ripple 0.03 --jitter 20
 camera_up --follow truth --flips keep/flips --columns 200 --rows 60 --noise 0.002 --glow 5 --lag $lag --latency $latency \
   --maker basler --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --set calibration.folder=
-LD_PRELOAD=$shim vam-calibrate-all --display sdl:0 --light sim: --keep keep --home --scans lag,latency 2>errors
+LD_PRELOAD=$shim vam-calibrate all --display sdl:0 --light sim: --keep keep --home --scans lag,latency 2>errors
 is 'the scans have status 0, silently' "$? $(cat errors)" '0 '
 camera_down
 near() {  # near SCAN NAME TRUTH: within the bar of both delays, 0.5 ms

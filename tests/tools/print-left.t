@@ -20,6 +20,6 @@ unguarded=', and no guardian says that all is safe'
 said() { grep -c "^$1 killed$2; vam-devices off: light .* in standby, relay .* open, stage .* stopped$" said; }
 ok 'a line says so, of each tool' test "$(said 'vam-print: project was' "$unguarded")" -ge 1 -a "$(said 'vam-print: stage was' "$unguarded")" -ge 1
 ok 'also when vam-print was killed, too' test "$(said 'vam-print: vam-print and project were' "$unguarded")" -ge 1 -a "$(said 'vam-print: vam-print and stage were' "$unguarded")" -ge 1
-ok 'also of a calibration' test "$(said 'vam-calibrate-all: a tool was' '')" -ge 1
+ok 'also of a calibration' test "$(said 'vam-calibrate: a tool was' '')" -ge 1
 is 'nothing was left on' "$(grep -c 'MAY BE ON' said)" 0
 done_testing

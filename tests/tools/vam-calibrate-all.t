@@ -13,8 +13,8 @@ sigma() { json "cal/current-$1.json" "values.$2.sigma"; }
 within() { near "$1 is within its stated sigma" "$2" "$3" "4 * $4"; }  # within NAME GOT WANT SIGMA: one of 16 000 is not
 near() { holds "$1 ($2)" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAME GOT WANT WITHIN
 
-fails 73 '/nowhere/log: cannot be written' vam-calibrate-all --display null: --log /nowhere/log
-fails 64 '.--scans: empty' vam-calibrate-all --display null: --scans ' '
+fails 73 '/nowhere/log: cannot be written' vam-calibrate all --display null: --log /nowhere/log
+fails 64 '.--scans: empty' vam-calibrate all --display null: --scans ' '
 
 # A bench out of adjustment, its camera's stamps 40 ms late, its projector's light 30 ms. The projector's log tells the
 # camera's simulator which pattern is on.
@@ -23,14 +23,14 @@ bench() {  # bench OPTIONS...
   camera_up --follow truth --flips keep/flips --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --projector-gamma 1.8 \
     --lag 40 --latency 30 --maker basler --axis-offset 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
 }
-calibrate() { vam-calibrate-all --display sdl:0 --light sim: --set stage.speed_deg_s=120 --keep keep --log events --home --pitch 4 \
+calibrate() { vam-calibrate all --display sdl:0 --light sim: --set stage.speed_deg_s=120 --keep keep --log events --home --pitch 4 \
     --sweep-exposure 19000 --scans "$@"; }
 
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'six scans in one run' calibrate 'edges axis beam latency lag response'
 # A signal ends what moves and what is lit at once: a stage that turns for a minute, or a capture beside a lit projector.
 aborted() {  # aborted SCAN CONDITION: TERM to the script alone, once the condition holds
-  (exec env --default-signal=INT vam-calibrate-all --display sdl:0 --light sim: --keep keep --log aborted --scans "$1" --set resin.name=test$$ 2>aborted.err) & scans=$!
+  (exec env --default-signal=INT vam-calibrate all --display sdl:0 --light sim: --keep keep --log aborted --scans "$1" --set resin.name=test$$ 2>aborted.err) & scans=$!
   await "$2"
   sent=$(date +%s%N); kill -TERM $scans; wait $scans
   is "TERM in $1: status" $? 143

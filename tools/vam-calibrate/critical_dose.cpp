@@ -15,7 +15,6 @@
 #include "session/printer.hpp"
 #include "session/surface.hpp"
 #include "session/volumes.hpp"
-#include "vam-calibrate/figures.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {

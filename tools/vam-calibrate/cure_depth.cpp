@@ -16,7 +16,7 @@
 #include "plot/plot.hpp"
 #include "plot/save.hpp"
 #include "resin/working_curve.hpp"
-#include "vam-calibrate/figures.hpp"
+#include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
 

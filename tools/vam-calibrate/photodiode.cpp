@@ -14,7 +14,7 @@
 #include "plot/save.hpp"
 #include "resin/response.hpp"
 #include "resin/response_fit.hpp"
-#include "vam-calibrate/figures.hpp"
+#include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
 

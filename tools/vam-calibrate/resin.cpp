@@ -8,7 +8,7 @@
 #include "io/settings/sealed_text.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/cure/threshold.hpp"
-#include "vam-calibrate/figures.hpp"
+#include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
 

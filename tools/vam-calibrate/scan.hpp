@@ -11,6 +11,7 @@
 #include "base/stats/measured.hpp"
 #include "base/text/json.hpp"
 #include "cli/common.hpp"
+#include "io/settings/calibration_record.hpp"
 #include "metrology/calibrate/axis.hpp"
 #include "model/mesh.hpp"
 #include "model/printer.hpp"
@@ -42,6 +43,10 @@ struct ScanOptions {
 
 class Finding;
 using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
+
+/// The record in force of a scan; nothing where it must not be used.
+[[nodiscard]] std::optional<io::CalibrationRecord> usable_record(const model::Calibration& calibration,
+                                                                 const std::string& scan);
 
 /// Keeps what the scan finds as its record. Throws as the scan does, Fault::judged when its result must not be used.
 void run_scan(const cli::App& app, const std::string& command, Scan scan, ScanOptions& options);
@@ -142,5 +147,25 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Printer&
 /// Prints the current records and their validity as JSON. Throws Fault::data when a needed one is missing, and when one
 /// is stale, foreign or beyond what this printer can have.
 void check_records(const ScanOptions& options);
+
+// ---- commands of their own, which run what throws Error: usage, no_input, data, no_output
+
+/// The scans one after the other, with their frames; sets the exit status where a tool has said why it failed.
+void add_all(cli::App& app, int& status);
+
+/// The gelation threshold as a resin record, from a printed standard.
+void add_resin(cli::App& app);
+
+/// Scattering against dose as a resin record, from a staircase of doses.
+void add_working_curve(cli::App& app);
+
+/// The dose at the surface of a print; judged where the surface does not follow the dose.
+void add_critical_dose(cli::App& app);
+
+/// Light of the projector by grey level: the table of projector.response.
+void add_photodiode(cli::App& app);
+
+/// Cured thickness by exposure: the working curve of stereolithography [CURE19 fig 5a].
+void add_cure_depth(cli::App& app);
 
 }  // namespace vam::calibrate_tool

@@ -13,7 +13,7 @@
 #include "metrology/cure/curing_curve.hpp"
 #include "model/metadata.hpp"
 #include "session/volumes.hpp"
-#include "vam-calibrate/figures.hpp"
+#include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
 

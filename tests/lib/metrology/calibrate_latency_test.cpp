@@ -50,7 +50,7 @@ double screen_hz(std::mt19937_64& random) {
   return rate({24, 25, 30, 48, 50, 59.94, 60, 72, 75, 85, 90, 100, 120, 144}, random);
 }
 
-// As vam-calibrate-all shows them, at any latency and of any rise.
+// As vam-calibrate all shows them, at any latency and of any rise.
 ScreenTruth any_screen(std::mt19937_64& random) {
   return {.hz = screen_hz(random),
           .delay_s = 0.12 * part(random),
@@ -106,7 +106,7 @@ TEST_CASE("Latency: of any camera at .93 of its rate and any screen none is wron
   for (int run = 0; run < trials; ++run) {
     std::mt19937_64 random(1000 + static_cast<unsigned>(run));
     const ScreenTruth screen = any_screen(random);
-    const double hz = 0.93 * camera_hz(random);  // as vam-calibrate-all captures
+    const double hz = 0.93 * camera_hz(random);  // as vam-calibrate all captures
     const Outcome outcome = run_of(screen, any_camera(hz, 0.001, 0.95 / hz, random), random);
     check_right(outcome);
     refused += outcome.ms ? 0 : 1;
