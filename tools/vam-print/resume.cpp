@@ -65,6 +65,7 @@ void tell(const std::string& folder, const std::string& event, const Json& facts
 struct LastImage {
   std::optional<double> at_deg;
   double step_deg = 0;
+  bool is_chained = true;
 };
 
 LastImage last_image(const std::string& folder, const std::string& sinogram) {
@@ -72,12 +73,7 @@ LastImage last_image(const std::string& folder, const std::string& sinogram) {
   if (!has_regular_file(folder + "/flips.jsonl")) return image;
   io::FlipLog log(folder);
   log.read();
-  if (!log.is_chained()) {
-    throw Error{Fault::data, folder +
-                                 "/flips.jsonl: has no chain, by which lost lines would be found, whose light "
-                                 "would be given twice; compute the rest (vam-dose --shown, vam-optimize "
-                                 "--delivered) and print that"};
-  }
+  image.is_chained = log.is_chained();
   if (log.sinograms().size() > 1) {
     throw Error{Fault::data, folder + ": showed new projections, so that the rest is not that of " + sinogram +
                                  "; compute it (vam-dose --shown, vam-optimize --delivered) and print that"};
@@ -110,6 +106,12 @@ void take_over(Run& run) {
   if (image.at_deg && *image.at_deg + image.step_deg >= turn_deg * events.turns) {
     throw Error{Fault::data,
                 folder + ": complete, all " + format_number(events.turns) + " turns; nothing is left to print"};
+  }
+  if (!image.is_chained) {
+    throw Error{Fault::data, folder +
+                                 "/flips.jsonl: has no chain, by which lost lines would be found, whose light "
+                                 "would be given twice; compute the rest (vam-dose --shown, vam-optimize "
+                                 "--delivered) and print that"};
   }
   const double from_deg = image.at_deg ? *image.at_deg + image.step_deg / 2 : events.from_deg;
   const double given = std::floor(from_deg / turn_deg);
