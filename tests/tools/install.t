@@ -12,7 +12,7 @@ sort parts >sorted
 listed all >whole
 same 'each file is in one component' whole sorted
 
-for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch; do
+for tool in $(cd "$VAM_BUILD/bin" && ls); do
   missing=
   for file in "bin/$tool" "share/man/man1/$tool.1" "share/bash-completion/completions/$tool" \
     "share/zsh/site-functions/_$tool" "share/fish/vendor_completions.d/$tool.fish"; do
@@ -20,6 +20,7 @@ for tool in $(cd "$VAM_BUILD/bin" && ls) vam-batch; do
   done
   is "$tool: program, manual, completions" "$missing" ''
 done
+ok 'vam-batch: script and manual' test -x all/bin/vam-batch -a -s all/share/man/man1/vam-batch.1
 is 'no manual is without a tool' "$(ls all/share/man/man1 | wc -l)" "$(ls all/bin | wc -l)"
 is 'what needs devices is apart' "$(ls devices/bin | tr '\n' ' ')" \
   'vam-capture vam-devices vam-print vam-sim vam-stage '

@@ -41,16 +41,6 @@ for script in vam-batch; do
   done
   grep -q "$script" "$VAM_SOURCE/README.md"; report $? "$script: in README"
 
-  for shell in bash zsh fish; do
-    "$VAM_SOURCE/scripts/completion" "$VAM_SOURCE/scripts/$script" $shell >"$script.$shell"
-    for option in folder jobs slurm plan forecast version; do
-      is "$script: $shell completes --$option" "$(grep -cE -- "(--|-l )$option( |\[|\$|')" "$script.$shell")" 1
-    done
-  done
-  ok "$script: bash accepts its completion" bash -n "$script.bash"
-  is "$script: a value, and a switch" \
-    "$(grep -c "^  '--folder\[.*\]:DIR:_files'" "$script.zsh") $(grep -c "^  '--plan\[.*\.\]' " "$script.zsh")" '1 1'
-
   mkdir -p installed/bin installed/share/man/man1  # as packages have it
   cp "$VAM_SOURCE/scripts/$script" installed/bin
   gzip -c "$page" >"installed/share/man/man1/$script.1.gz"
