@@ -85,8 +85,8 @@ void run(const cli::App& /*app*/, RenewOptions& o) {
     if (!o.once) return follow(o, renewal);
     const std::string volume = o.run + "/ost/" + scatter_name(*o.once);
     if (!fs::exists(volume)) throw Error{Fault::no_input, volume + ": cannot open it"};
-    if (const auto held = renewal.take(*o.once))
-      throw Error{Fault::judged, "volume " + std::to_string(*o.once) + ": " + held->reason};
+    if (const std::string reason = renewal.take(*o.once); !reason.empty())
+      throw Error{Fault::judged, "volume " + std::to_string(*o.once) + ": " + reason};
   });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -26,6 +27,9 @@ namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
 constexpr double turn_deg = 360;
+
+// The print goes on as it does.
+[[noreturn]] void hold(const std::string& reason) { throw Error{Fault::judged, reason}; }
 
 std::string text(double number) { return format_number(number, 9); }
 
@@ -91,23 +95,18 @@ double Renewal::elapsed_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
 }
 
-std::optional<Held> Renewal::take(int number) {
-  Held held;
+std::string Renewal::take(int number) {
+  std::string reason;
   try {
     renew(number);
-    return {};
-  } catch (const Held& one) {
-    held = one;
-  } catch (const Error& error) {
-    held.reason = error.what();
-  } catch (const fs::filesystem_error& error) {
-    held.reason = error.what();
+    return "";
+  } catch (const std::runtime_error& error) {  // ours, or of a file that is gone
+    reason = join(split(trimmed(error.what()), '\n'), " ");
   }
   const std::string folder = scratch_.path() + "/";
-  for (std::size_t at = 0; (at = held.reason.find(folder)) != std::string::npos;) held.reason.erase(at, folder.size());
-  held.reason = join(split(trimmed(held.reason), '\n'), " ");
-  log_("hold", {{"volume", number}, {"reason", held.reason}});
-  return held;
+  for (std::size_t at = 0; (at = reason.find(folder)) != std::string::npos;) reason.erase(at, folder.size());
+  log_("hold", {{"volume", number}, {"reason", reason}});
+  return reason;
 }
 
 // A command, within what is left of a turn's time; what it says is the reason if it fails.
@@ -117,8 +116,8 @@ void Renewal::attempt(const Words& words) const {
   const int status =
       left_s < 0.1 ? device::timed_out
                    : device::run_to_end({words.front(), words}, talk.path("said"), static_cast<int>(1000 * left_s));
-  if (status == device::timed_out) throw Held{"a turn has passed"};
-  if (status != 0) throw Held{talk.text("said")};
+  if (status == device::timed_out) hold("a turn has passed");
+  if (status != 0) hold(talk.text("said"));
 }
 
 Renewal::Moment Renewal::look(int number) const {
@@ -128,12 +127,10 @@ Renewal::Moment Renewal::look(int number) const {
   log.read();
   const auto last = std::find_if(log.flips().rbegin(), log.flips().rend(),
                                  [](const io::LoggedFlip& flip) { return flip.frame >= 0; });
-  if (!seen_s || last == log.flips().rend()) throw Held{"no light, or no time of the volume, is known yet"};
+  if (!seen_s || last == log.flips().rend()) hold("no light, or no time of the volume, is known yet");
   moment.seen_s = *seen_s;
-  moment.last_deg = last->angle_deg;
-  moment.last_s = last->t_s;
-  moment.from_turn = static_cast<int>((moment.last_deg + lead_deg_) / turn_deg) + 1;
-  moment.at_s = moment.last_s + (turn_deg * moment.from_turn - moment.last_deg) / speed_deg_s_;
+  moment.from_turn = static_cast<int>((last->angle_deg + lead_deg_) / turn_deg) + 1;
+  moment.at_s = last->t_s + (turn_deg * moment.from_turn - last->angle_deg) / speed_deg_s_;
   for (const io::ShownSinogram& one : log.sinograms()) {
     const std::string name = fs::path(one.name).filename();
     moment.sinograms.push_back(file(moment.sinograms.empty() ? "sinogram.exr" : "renewed/" + name));
@@ -146,12 +143,12 @@ Renewal::Moment Renewal::look(int number) const {
     const auto from = static_cast<int>(number_at(line, "from_turn"));
     const std::string path = file("renewed/turn-" + std::to_string(from) + ".exr");
     const bool shown = std::find(moment.sinograms.begin(), moment.sinograms.end(), path) != moment.sinograms.end();
-    if (text_at(line, "event") != "renewed" || (!shown && turn_deg * from <= moment.last_deg)) continue;
+    if (text_at(line, "event") != "renewed" || (!shown && turn_deg * from <= last->angle_deg)) continue;
     turn = shown ? 0 : from;
     end_turn = number_at(line, "end");
   }
   if (end_turn > 0 && moment.from_turn >= end_turn)
-    throw Held{"the print ends before turn " + std::to_string(moment.from_turn)};
+    hold("the print ends before turn " + std::to_string(moment.from_turn));
   expect(moment, turn, log);
   moment.before = report_before(file("renewed"));
   return moment;
@@ -164,7 +161,7 @@ void Renewal::expect(Moment& moment, int turn, const io::FlipLog& log) const {
   if (turn == 0) return;
   const std::string stem = file("renewed/turn-" + std::to_string(turn));
   if (!fs::exists(stem + ".exr"))
-    throw Held{"the projections of turn " + std::to_string(turn) + " are gone from " + file("renewed")};
+    hold("the projections of turn " + std::to_string(turn) + " are gone from " + file("renewed"));
   moment.sinograms.push_back(stem + ".exr");
   const auto& flips = log.flips();
   if (flips.size() < 2) return;
@@ -210,7 +207,7 @@ void Renewal::renew(int number) {
   for (int n = 0; n < number; ++n) {  // noise makes no two turns the same
     const std::string earlier = scatter_name(n);
     if (fs::exists(file("ost/" + earlier)) && is_same(file("ost/" + earlier), volume))
-      throw Held{"is the volume " + earlier + " again"};
+      hold("is the volume " + earlier + " again");
   }
   Moment moment = look(number);
   Words words{
@@ -266,7 +263,7 @@ void Renewal::publish(int from_turn) {
     log.read();
     if (log.flips().back().angle_deg >= turn_deg * from_turn) {
       lead_deg_ += 60;
-      throw Held{"late for turn " + std::to_string(from_turn)};
+      hold("late for turn " + std::to_string(from_turn));
     }
     lead_deg_ = elapsed_s() * 1.3 * speed_deg_s_ + 20;
   }

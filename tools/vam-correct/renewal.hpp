@@ -30,24 +30,19 @@ struct RenewOptions {
 /// "scatter-0007.vdb", as vam-ost --live calls the volume of a turn.
 [[nodiscard]] std::string scatter_name(int number);
 
-/// The print goes on as it does.
-struct Held {
-  std::string reason;
-};
-
 class Renewal {
  public:
   /// Throws Error: no_input (files of the run), data (a sinogram without a plan), no_output.
   explicit Renewal(const RenewOptions& options);
 
-  /// The volume of this number; what becomes of it is logged in renewed.jsonl, and returned where nothing does. Throws
-  /// device::Interrupted.
-  std::optional<Held> take(int number);
+  /// The volume of this number; what becomes of it is logged in renewed.jsonl. Returns why the print goes on as it
+  /// does; empty: there is new light. Throws device::Interrupted.
+  std::string take(int number);
 
  private:
   /// What is known of the print when it is looked at.
   struct Moment {
-    double seen_s = 0, last_deg = 0, last_s = 0, at_s = 0;
+    double seen_s = 0, at_s = 0;
     int from_turn = 0;
     std::vector<std::string> sinograms;  // that were shown, or are published: the last one goes on
     std::string flips;                   // the log as it will be at that turn
