@@ -40,7 +40,7 @@ void take(Bench& bench, const Shot& shot) {
   }
   bench.light(shot.pattern);
   bench.capture(std::filesystem::path(bench.frames()).stem(), shot.frames);
-  bench.dark();
+  bench.end();
   record.insert(record.end(), shot.record.begin(), shot.record.end());
   bench.measure(record);
 }
@@ -102,7 +102,7 @@ void take_edges(Bench& bench) {
     bench.light({"sweep", line[0], line[1], line[2], line[3], "--hold", hold_s});
     bench.capture("sweep",
                   {"--angle", std::to_string(angle_deg), "--frames", whole(positions * std::stod(hold_s) * fps + 8)});
-    bench.dark();
+    bench.end();
     std::ofstream all(bench.frames(), std::ios::binary | std::ios::app);
     all << std::ifstream(bench.file("sweep.exr"), std::ios::binary).rdbuf() << std::flush;
     if (!all) throw Error{Fault::io, bench.frames() + ": cannot be written; free space on the disk"};
@@ -188,7 +188,7 @@ int take_all(const AllOptions& options) {
   const std::vector<ScanStep> chosen = wanted_steps(options.scans);
   Bench bench(options);
   try {
-    bench.identify();
+    take_with_patience(bench, {"", [](Bench& all) { all.identify(); }});
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       bench.begin(std::string(chosen[i].name),
                   "scan " + std::to_string(i + 1) + " of " + std::to_string(chosen.size()));

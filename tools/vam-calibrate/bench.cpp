@@ -2,15 +2,12 @@
 #include "vam-calibrate/bench.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <filesystem>
-#include <fstream>
-#include <utility>
 
 #include "base/error.hpp"
 #include "base/log/log.hpp"
@@ -18,8 +15,6 @@
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
-#include "device/os/clock.hpp"
-#include "device/os/interrupt.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-calibrate/scan.hpp"
@@ -31,8 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using device::Command, device::Child, device::Manner;
 
-constexpr int killed = 128 + SIGKILL;
-constexpr int to_end = O_WRONLY | O_CREAT | O_APPEND;
+constexpr const char* light_name = "vam-project";
 
 Words operator+(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
@@ -55,30 +49,17 @@ std::string folder_of(const AllOptions& options, const std::string& scratch) {
   return options.keep;
 }
 
-// A log of flips has a frame with light behind that byte.
-bool has_frame(const std::string& flips, std::uintmax_t behind) {
-  std::ifstream log(flips, std::ios::binary);
-  log.seekg(static_cast<std::streamoff>(behind));
-  constexpr std::string_view key = "\"frame\":";
-  for (std::string line; std::getline(log, line);) {
-    const std::size_t at = line.find(key);
-    if (at != std::string::npos && std::isdigit(static_cast<unsigned char>(line[at + key.size()])) != 0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
-Bench::Bench(const AllOptions& given)
-    : options(given), work_(folder_of(given, scratch_.path())), flips_(file("flips")), log_(given.log) {
+Bench::Bench(const AllOptions& given) : options(given), work_(folder_of(given, scratch_.path())), log_(given.log) {
   records_ = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).calibration;
   Words sets = options.printer.sets;  // old records must not stop the making of new ones
   sets.emplace_back("calibration.folder=");
   settings_ = words_of({options.printer.file, sets});
   printer = io::load_printer(options.printer.file, sets);
   io::write_text(file("printer.toml"), io::printer_toml(io::frozen(printer)));
-  fs::remove(flips_);
-  std::ofstream(flips_).close();
+  io::write_text(file("flips"), "");
+  flips_.emplace(file("flips"));
 }
 
 void Bench::identify() {
@@ -86,26 +67,15 @@ void Bench::identify() {
   devices["camera"] = ask("vam-capture");
   devices["stage"] = ask("vam-stage");
   most_deg_s_ = number_at(devices["stage"], "max_speed_deg_s");
-  Words plan{"vam-project", "--pattern", "grey", "--plan", "-o", options.display};
-  if (!options.light.empty()) plan = plan + Words{"--light", options.light};
-  run({"vam-project", plan + settings_});
+  run({"plan", projector({"grey", "--plan"})});
   io::write_text(file("devices.json"), devices.dump() + "\n");
   correct_lag();
 }
 
-// One that is late is asked again.
 Json Bench::ask(const std::string& tool) {
-  constexpr double pause_s = 2;
   const std::string answer = scratch_.path() + "/answer";
-  for (int tries = 1;; ++tries) {
-    try {
-      run({tool, Words{tool, "identify"} + settings_, {{STDOUT_FILENO, answer, O_WRONLY | O_CREAT | O_TRUNC}}});
-      return parse_json(device::text_of(answer));
-    } catch (const Failed& failed) {
-      if (failed.status != static_cast<int>(Fault::busy) || tries > 2) throw;
-    }
-    device::real_clock().sleep_until(device::real_clock().now_s() + pause_s);
-  }
+  run({tool, Words{tool, "identify"} + settings_, {{STDOUT_FILENO, answer, O_WRONLY | O_CREAT | O_TRUNC}}});
+  return parse_json(device::text_of(answer));
 }
 
 void Bench::begin(const std::string& scan, const std::string& place) {
@@ -128,84 +98,77 @@ void Bench::start(const Command& command) {
 
 void Bench::run(const Command& command) {
   start(command);
-  wait();
-  if (const int status = statuses_.at(command.name); status != 0) fail(command.name, status);
+  wait_for_tools();
+  if (statuses_.at(command.name) != 0) fail(command.name);
 }
 
-void Bench::fail(const std::string& tool, int status) const { throw Failed{status, talk_.text(tool)}; }
+void Bench::fail(const std::string& tool) const { throw Failed{statuses_.at(tool), talk_.text(tool)}; }
 
 // Of a tool that was killed its guardian may have been, too.
-int Bench::took(const std::string& tool, int status) {
+void Bench::record(Child& tool, int status) {
   constexpr int signalled = 128;
-  const bool ordered = status == signalled + SIGHUP || status == signalled + SIGINT || status == signalled + SIGPIPE ||
-                       status == signalled + SIGTERM;
-  statuses_[tool] = status;
-  if (status > signalled && !ordered) {
-    status_line::hide();
-    say("a tool was killed; vam-devices off: " + device::switch_off(talk_, file("printer.toml"), options.light));
-  }
-  return status;
+  constexpr std::array ordered{SIGHUP, SIGINT, SIGPIPE, SIGTERM};
+  statuses_[tool.name()] = status;
+  if (status <= signalled || std::count(ordered.begin(), ordered.end(), status - signalled) > 0) return;
+  status_line::hide();
+  say("a tool was killed; vam-devices off: " + device::switch_off(talk_, file("printer.toml"), options.light));
 }
 
-// Until all have ended; what lights must not end before.
-void Bench::wait() {
-  constexpr int tick_ms = 1000;
-  while (!tools_.empty()) {
-    std::vector<pollfd> events{{device::interrupt_fd(), POLLIN, 0}};
-    for (const auto* children : {&tools_, &projector_}) {
-      for (const Child& child : *children) events.push_back({child.handle(), POLLIN, 0});
-    }
-    poll(events.data(), events.size(), tick_ms);
-    device::check_interrupted();
+// What lights must not end before.
+void Bench::wait(int tick_ms, const std::function<bool()>& done) {
+  while (!done()) {
+    device::wait_for_an_end(tools_, tick_ms);
     const auto taken = std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begun_);
-    if (status_line::possible() && !place_.empty()) {
+    if (status_line::possible() && !place_.empty())
       status_line::show(program_name() + ": " + scan_ + ", " + place_ + ", " + std::to_string(taken.count()) + " s");
-    }
     std::erase_if(tools_, [this](Child& tool) {
       if (!tool.ends_within(0)) return false;
-      took(tool.name(), tool.status());
+      record(tool, tool.status());
       return true;
     });
-    if (projector_.empty() || !projector_.front().ends_within(0)) continue;
-    const int status = took("vam-project", projector_.front().status());
-    projector_.clear();
-    fail("vam-project", status);
+    if (statuses_.contains(light_name)) fail(light_name);
   }
+}
+
+void Bench::wait_for_tools() {
+  constexpr int tick_ms = 1000;
+  wait(tick_ms, [this] {
+    return std::all_of(tools_.begin(), tools_.end(), [](const Child& tool) { return tool.name() == light_name; });
+  });
+}
+
+Words Bench::projector(const Words& words) const {
+  Words whole = Words{light_name, "--pattern"} + words + Words{"-o", options.display};
+  if (!options.light.empty()) whole = whole + Words{"--light", options.light};
+  return whole + settings_;
+}
+
+// A frame with light is in the log, behind what was read of it.
+bool Bench::is_lit_anew() {
+  for (Json line; flips_->next(line);) {
+    if (number_at(line, "frame", -1) >= 0) return true;
+  }
+  return false;
 }
 
 void Bench::light(const Words& pattern) {
-  constexpr int tries = 1000;
   constexpr int tick_ms = 20;
-  const std::uintmax_t before = fs::file_size(flips_);
-  Words words = Words{"vam-project", "--pattern"} + pattern + Words{"--repeat", "-o", options.display};
-  if (!options.light.empty()) words = words + Words{"--light", options.light};
-  words = words + settings_ + Words{"--log", flips_, "--die-with-parent"};
-  talk_.forget("vam-project");
-  projector_.emplace_back(Command{"vam-project", words}, talk_.path("vam-project"), Manner{.with_parent = true});
-  for (int i = 0; !has_frame(flips_, before); ++i) {
-    device::check_interrupted();
-    if (i == tries) {
-      throw Failed{static_cast<int>(Fault::busy),
-                   program_name() + ": " + options.display + ": no frame shown within 20 s\n"};
-    }
-    if (!projector_.front().ends_within(tick_ms)) continue;
-    const int status = took("vam-project", projector_.front().status());
-    projector_.clear();
-    fail("vam-project", status);
-  }
-}
-
-void Bench::dark() {
-  device::end_all(projector_, [this](Child& tool, int status) { took(tool.name(), status); });
+  constexpr std::chrono::seconds limit{20};
+  while (is_lit_anew()) continue;  // those of the scan before
+  start({light_name, projector(pattern + Words{"--repeat"}) + Words{"--log", file("flips"), "--die-with-parent"}});
+  const auto until = std::chrono::steady_clock::now() + limit;
+  wait(tick_ms, [&] {
+    if (is_lit_anew()) return true;
+    if (std::chrono::steady_clock::now() < until) return false;
+    throw Failed{static_cast<int>(Fault::busy),
+                 program_name() + ": " + options.display + ": no frame shown within 20 s\n"};
+  });
 }
 
 void Bench::end() {
   status_line::hide();
-  for (const auto* children : {&projector_, &tools_}) {
-    for (const Child& child : *children) child.order(SIGTERM);
-  }
-  dark();
-  device::end_all(tools_, [this](Child& tool, int status) { took(tool.name(), status); });
+  device::end_all(tools_, [this](Child& tool, int status) { record(tool, status); });
+  statuses_.clear();
 }
 
 void Bench::move(int angle_deg) {
@@ -240,15 +203,15 @@ void Bench::turn(const std::string& name, int turns, const Words& stage, const W
   Command seen = camera(name, Words{"--follow", "-"} + words);
   seen.files = {{STDIN_FILENO, kept, O_RDONLY}};
   start(seen);
-  wait();
-  const int camera_status = statuses_.at("vam-capture");
+  wait_for_tools();
+  const bool is_seen = statuses_.at("vam-capture") == 0;
   const int stage_status = statuses_.at("vam-stage");
-  if (stage_status != 0 && stage_status != 128 + SIGPIPE && camera_status != 0) fail("vam-stage", stage_status);
+  if (stage_status != 0 && stage_status != 128 + SIGPIPE && !is_seen) fail("vam-stage");
   if (statuses_.at("tee") == 1) {  // as it says that it could not write
     throw Failed{static_cast<int>(Fault::io),
                  program_name() + ": " + file("angles.jsonl") + ": cannot be written; free space on the disk\n"};
   }
-  if (camera_status != 0) fail("vam-capture", camera_status);
+  if (!is_seen) fail("vam-capture");
 }
 
 void Bench::measure(const Words& words) {

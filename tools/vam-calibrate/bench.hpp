@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "cli/common.hpp"
 #include "device/os/child.hpp"
 #include "device/os/event_log.hpp"
+#include "io/stream/log_lines.hpp"
 #include "model/printer.hpp"
 
 namespace vam::calibrate_tool {
@@ -50,9 +52,8 @@ class Bench {
   void begin(const std::string& scan, const std::string& place);
 
   void note(const std::string& event, Json facts);
-  /// Shows a pattern, words of vam-project, over and over; its first frame is on.
+  /// Shows a pattern, words of vam-project, over and over until end(); its first frame is on.
   void light(const Words& pattern);
-  void dark();
   /// Moves the stage to an angle of the sinogram.
   void move(int angle_deg);
   /// Frames of vam-capture into NAME.exr; words of it.
@@ -65,7 +66,7 @@ class Bench {
   void correct_lag();
   /// 60 deg/s if the stage can, at least the print's speed: a lag shows by the angle turned meanwhile.
   [[nodiscard]] double brisk_deg_s() const;
-  /// Every tool, politely first.
+  /// Every tool, what lights first, politely.
   void end();
 
   [[nodiscard]] std::string file(const std::string& name) const { return work_ + "/" + name; }
@@ -78,14 +79,18 @@ class Bench {
  private:
   void run(const device::Command& command);
   void start(const device::Command& command);
-  void wait();
+  void wait(int tick_ms, const std::function<bool()>& done);
+  void wait_for_tools();
   [[nodiscard]] device::Command camera(const std::string& name, Words words) const;
   [[nodiscard]] Json ask(const std::string& tool);
-  [[noreturn]] void fail(const std::string& tool, int status) const;
-  int took(const std::string& tool, int status);
+  [[nodiscard]] Words projector(const Words& words) const;
+  [[nodiscard]] bool is_lit_anew();
+  [[noreturn]] void fail(const std::string& tool) const;
+  void record(device::Child& tool, int status);
 
   device::TemporaryFolder scratch_;
-  std::string work_, flips_;
+  std::string work_;
+  std::optional<io::LogLines> flips_;
   device::EventLog log_;
   model::Calibration records_;
   Words settings_;  // of the devices: as given, but for the records
@@ -93,8 +98,8 @@ class Bench {
   std::chrono::steady_clock::time_point begun_;
   double most_deg_s_ = 0;  // of the stage; 0: not known
   device::Talk talk_;
-  std::vector<device::Child> tools_, projector_;
-  std::map<std::string, int> statuses_;
+  std::vector<device::Child> tools_;
+  std::map<std::string, int> statuses_;  // of those that have ended, since end()
 };
 
 }  // namespace vam::calibrate_tool

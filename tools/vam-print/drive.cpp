@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-print/drive.hpp"
 
-#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +16,6 @@
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "device/os/clock.hpp"
-#include "device/os/interrupt.hpp"
 #include "device/os/process.hpp"
 #include "vam-print/commands.hpp"
 
@@ -77,17 +75,10 @@ void Drive::look() {
   if (life_.state() == State::turning && run_.is_lit()) life_.reach(State::lit);
 }
 
-void Drive::wait_for_an_end() {
-  std::vector<pollfd> events{{device::interrupt_fd(), POLLIN, 0}};
-  for (const Child& tool : tools_) events.push_back({tool.handle(), POLLIN, 0});
-  const bool ticks = life_.state() < State::lit || life_.state() == State::held;
-  poll(events.data(), events.size(), ticks ? tick_ms : -1);
-  device::check_interrupted();
-}
-
 int Drive::watch() {
   while (!tools_.empty()) {
-    wait_for_an_end();
+    const bool ticks = life_.state() < State::lit || life_.state() == State::held;
+    device::wait_for_an_end(tools_, ticks ? tick_ms : -1);
     look();
     if (life_.state() == State::held) require_planned_end();
     for (std::size_t i = 0; i < tools_.size(); ++i) {

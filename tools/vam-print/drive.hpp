@@ -60,7 +60,6 @@ class Drive {
 
  private:
   void look();
-  void wait_for_an_end();
   std::optional<int> take_end(Child tool);
   [[nodiscard]] Loss loss_of(const std::string& name) const;
   void order_end();

@@ -140,16 +140,26 @@ int Child::status() {
   return WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how);
 }
 
+void wait_for_an_end(const std::vector<Child>& children, int limit_ms) {
+  std::vector<pollfd> events{{interrupt_fd(), POLLIN, 0}};
+  for (const Child& child : children) events.push_back({child.handle(), POLLIN, 0});
+  while (poll(events.data(), events.size(), limit_ms) < 0 && !interrupted()) continue;
+  check_interrupted();
+}
+
 int run_to_end(const Command& command, const std::string& said, int limit_ms) {
   std::vector<Child> child;
   child.emplace_back(command, said, Manner{.with_parent = true});
-  std::array<pollfd, 2> events{pollfd{child.front().handle(), POLLIN, 0}, pollfd{interrupt_fd(), POLLIN, 0}};
-  int count = 0;
-  while ((count = poll(events.data(), events.size(), limit_ms)) < 0 && !interrupted()) continue;
-  if (events[0].revents != 0) return child.front().status();
-  end_all(child, [](Child&, int) {});
-  check_interrupted();
-  return count == 0 ? timed_out : 128 + SIGTERM;
+  const auto end = [&] { end_all(child, [](Child&, int) {}); };
+  try {
+    wait_for_an_end(child, limit_ms);
+  } catch (const Interrupted&) {
+    end();
+    throw;
+  }
+  if (child.front().ends_within(0)) return child.front().status();
+  end();
+  return timed_out;
 }
 
 void end_all(std::vector<Child>& children, const std::function<void(Child&, int)>& ended) {
@@ -231,12 +241,8 @@ void Talk::show(const std::string& tool, const std::function<bool(const std::str
   const std::string said = trimmed(text(tool), "\n");
   if (said.empty()) return;
   for (const std::string& line : split(said, '\n')) {
-    if (counts(line)) pass_on(line);
+    if (!counts || counts(line)) pass_on(line);
   }
-}
-
-void Talk::show(const std::string& tool) const {
-  show(tool, [](const std::string&) { return true; });
 }
 
 void Talk::keep(const std::string& run) const {

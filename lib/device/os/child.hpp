@@ -62,6 +62,9 @@ class Child {
   int handle_ = -1;
 };
 
+/// Until one of them has ended, or that time is over (-1: never). Throws device::Interrupted when a signal came.
+void wait_for_an_end(const std::vector<Child>& children, int limit_ms);
+
 /// Runs a command to its end, which is ordered after limit_ms (-1: never), and returns its status, then `timed_out`;
 /// throws device::Interrupted when a signal came meanwhile, which is passed on.
 int run_to_end(const Command& command, const std::string& said, int limit_ms = -1);
@@ -81,9 +84,8 @@ class Talk {
   void add(const std::string& tool, const std::string& line) const;
   void forget(const std::string& tool) const;
   void forget() const;
-  /// Shows of the lines that a tool said those that count.
-  void show(const std::string& tool, const std::function<bool(const std::string&)>& counts) const;
-  void show(const std::string& tool) const;
+  /// Shows of the lines that a tool said those that count; all without `counts`.
+  void show(const std::string& tool, const std::function<bool(const std::string&)>& counts = {}) const;
   /// Into a run folder.
   void keep(const std::string& run) const;
 
