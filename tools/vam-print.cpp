@@ -117,8 +117,7 @@ int run(const print_tool::Options& options) {
   if (session::print_printer(options.printer)) return 0;
   require_sound(options);
   cli::find_tools_beside();
-  (void)std::signal(SIGCHLD, SIG_DFL);  // ignored, it would hide how the tools end
-  (void)std::signal(SIGPIPE, SIG_IGN);  // who no longer reads its messages does not end a print
+  device::supervise();
   std::array<bool, ending.size()> ignored{};
   for (std::size_t i = 0; i < ending.size(); ++i) {
     struct sigaction before = {};

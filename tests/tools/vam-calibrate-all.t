@@ -29,20 +29,24 @@ calibrate() { vam-calibrate all --display sdl:0 --light sim: --set stage.speed_d
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'six scans in one run' calibrate 'edges axis beam latency lag response'
 # A signal ends what moves and what is lit at once: a stage that turns for a minute, or a capture beside a lit projector.
-aborted() {  # aborted SCAN CONDITION: TERM to the script alone, once the condition holds
+aborted() {  # aborted SCAN CONDITION SIGNAL STATUS: it goes to this process alone, once the condition holds
   (exec env --default-signal=INT vam-calibrate all --display sdl:0 --light sim: --keep keep --log aborted --scans "$1" --set resin.name=test$$ 2>aborted.err) & scans=$!
   await "$2"
-  sent=$(date +%s%N); kill -TERM $scans; wait $scans
-  is "TERM in $1: status" $? 143
-  holds "TERM in $1: within 2 s" "$(date +%s%N) - $sent < 2000000000"
-  is "TERM in $1: no tool is left" "$(pgrep -f "vam-(capture|project|stage) .* resin.name=test$$ .*calibration.folder=" | wc -l)" 0
+  kill -TSTP $scans
+  sent=$(date +%s%N); kill -"$3" $scans; wait $scans
+  is "$3 in $1: status" $? "$4"
+  [ "$3" != KILL ] || sleep 1  # they end by themselves
+  holds "$3 in $1: within 2 s" "$(date +%s%N) - $sent < 2000000000"
+  is "$3 in $1: no tool is left" "$(pgrep -f "vam-(capture|project|stage) .* resin.name=test$$ .*calibration.folder=" | wc -l)" 0
 }
 turning() { [ -s keep/angles.jsonl ]; }
 rm -f keep/angles.jsonl
-aborted lag turning
+aborted lag turning TERM 143
 capturing() { pgrep -f 'vam-capture .* keep/latency.exr' >looked && grep -q '"frame":1' keep/flips; }
-aborted latency capturing
-is 'TERM in latency: the last image is the dark one' "$(grep '"event":"flip"' keep/flips | tail -n 1 | grep -c '"frame":-1')" 1
+for signal in TERM:143 INT:130 HUP:129 KILL:137; do
+  aborted latency capturing ${signal%:*} ${signal#*:}
+  is "$signal in latency: the last image is the dark one" "$(grep '"event":"flip"' keep/flips | tail -n 1 | grep -c '"frame":-1')" 1
+done
 camera_down
 is 'every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' events)" 0
 is 'in the order of dependence' "$(grep -o '"event":"end","scan":"[a-z]*"' events | cut -d'"' -f8 | tr '\n' ' ')" 'lag latency response axis beam edges '

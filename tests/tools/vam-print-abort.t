@@ -22,7 +22,9 @@ begin interrupt
 is 'a terminal has the print in its foreground, and none of its tools' "$(pgrep -g "$(ps -o pgid= -p $printing | tr -d ' ')" -P $printing)" ''
 end_by INT
 aborted 130 aborted ''; in_time
-begin term; end_by TERM
+begin term; kill -TSTP $printing
+is 'nor does ^Z stop who watches over them' "$(ps -o stat= -p $printing | grep -c T)" 0
+end_by TERM
 aborted 143 aborted ''; in_time
 begin hangup; end_by HUP
 aborted 129 aborted ''; in_time

@@ -243,6 +243,7 @@ void add_all(cli::App& app, int& status) {
                                                            model::forms_of(model::display_schemes)};
                            }
                            cli::find_tools_beside();
+                           device::supervise();
                            device::interruptible([&] { status = take_all(*options); });
                          }),
           *options);

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "base/log/log_lines.hpp"
 #include "base/text/json_fwd.hpp"
 #include "cli/common.hpp"
 #include "device/os/child.hpp"
 #include "device/os/event_log.hpp"
-#include "io/stream/log_lines.hpp"
 #include "model/printer.hpp"
 
 namespace vam::calibrate_tool {
@@ -90,7 +90,7 @@ class Bench {
 
   device::TemporaryFolder scratch_;
   std::string work_;
-  std::optional<io::LogLines> flips_;
+  std::optional<LogLines> flips_;
   device::EventLog log_;
   model::Calibration records_;
   Words settings_;  // of the devices: as given, but for the records

@@ -7,12 +7,12 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "cli/companion.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
-#include "io/stream/log_lines.hpp"
 #include "vam-correct/renewal.hpp"
 
 namespace vam::correct_tool {
@@ -46,15 +46,17 @@ int newest(const std::string& folder) {
   int most = -1;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
     int number = 0;
-    if (std::sscanf(entry.path().filename().c_str(), "scatter-%d.vdb", &number) == 1) most = std::max(most, number);
+    if (std::sscanf(name.c_str(), "scatter-%d", &number) == 1 && name == scatter_name(number))
+      most = std::max(most, number);
   }
   return most;
 }
 
 bool has_ended(const std::string& run) {
   constexpr std::streamoff tail_bytes = 4096;
-  io::LogLines log(run + "/flips.jsonl", tail_bytes);
+  LogLines log(run + "/flips.jsonl", tail_bytes);
   for (Json line; log.next(line);) {
     if (text_at(line, "event") == "end") return true;
   }
@@ -77,6 +79,7 @@ void follow(const RenewOptions& o, Renewal& renewal) {
 void run(const cli::App& /*app*/, RenewOptions& o) {
   if (o.run.starts_with('-')) o.run = "./" + o.run;
   cli::find_tools_beside();
+  device::supervise();
   device::interruptible([&] {
     for (const std::string& file : {o.run + "/sinogram.exr", o.run + "/printer.toml", o.target, o.curve}) {
       if (!fs::is_regular_file(file)) throw Error{Fault::no_input, file + ": cannot open it"};

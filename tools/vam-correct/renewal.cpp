@@ -10,12 +10,12 @@
 
 #include "base/error.hpp"
 #include "base/image.hpp"
+#include "base/log/log_lines.hpp"
 #include "base/text/json.hpp"
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/printer_file.hpp"
-#include "io/stream/log_lines.hpp"
 #include "io/stream/stream.hpp"
 #include "session/exposure.hpp"
 
@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
 constexpr double turn_deg = 360;
+constexpr auto replace = fs::copy_options::overwrite_existing;
 
 // The print goes on as it does.
 [[noreturn]] void hold(const std::string& reason) { throw Error{Fault::judged, reason}; }
@@ -44,7 +45,7 @@ bool is_same(const std::string& one, const std::string& other) {
 
 // The time of a volume, by its line in the log of vam-ost.
 std::optional<double> time_of(const std::string& path, int number) {
-  io::LogLines log(path);
+  LogLines log(path);
   for (Json line; log.next(line);) {
     if (!line.contains("waiting") && number-- == 0) return number_at(line, "time_s");
   }
@@ -123,22 +124,27 @@ void Renewal::attempt(const Words& words) const {
 Renewal::Moment Renewal::look(int number) const {
   Moment moment;
   const auto seen_s = time_of(file("ost.jsonl"), number);
-  io::FlipLog log(options_.run);
+  constexpr const char* unknown = "no light, or no time of the volume, is known yet";
+  if (!seen_s || !fs::exists(file("flips.jsonl"))) hold(unknown);
+  moment.flips = scratch("flips.jsonl");  // a copy: the print goes on
+  fs::copy_file(file("flips.jsonl"), moment.flips, replace);
+  io::FlipLog log(moment.flips);
   log.read();
   const auto last = std::find_if(log.flips().rbegin(), log.flips().rend(),
                                  [](const io::LoggedFlip& flip) { return flip.frame >= 0; });
-  if (!seen_s || last == log.flips().rend()) hold("no light, or no time of the volume, is known yet");
+  if (last == log.flips().rend()) hold(unknown);
   moment.seen_s = *seen_s;
   moment.from_turn = static_cast<int>((last->angle_deg + lead_deg_) / turn_deg) + 1;
   moment.at_s = last->t_s + (turn_deg * moment.from_turn - last->angle_deg) / speed_deg_s_;
+  moment.sinograms = {file("sinogram.exr")};
   for (const io::ShownSinogram& one : log.sinograms()) {
     const std::string name = fs::path(one.name).filename();
-    moment.sinograms.push_back(file(moment.sinograms.empty() ? "sinogram.exr" : "renewed/" + name));
+    if (name.starts_with("turn-")) moment.sinograms.push_back(file("renewed/" + name));
   }
   // What was published, and is shown by now or can still be; what came too late is none.
   int turn = 0;
   double end_turn = 0;
-  io::LogLines renewed(file("renewed.jsonl"));
+  LogLines renewed(file("renewed.jsonl"));
   for (Json line; renewed.next(line);) {
     const auto from = static_cast<int>(number_at(line, "from_turn"));
     const std::string path = file("renewed/turn-" + std::to_string(from) + ".exr");
@@ -156,8 +162,6 @@ Renewal::Moment Renewal::look(int number) const {
 
 // The log of flips as it will be: images go on from angle to angle, from that turn on (0: none) those of new light.
 void Renewal::expect(Moment& moment, int turn, const io::FlipLog& log) const {
-  moment.flips = scratch("flips.jsonl");
-  fs::copy_file(file("flips.jsonl"), moment.flips, fs::copy_options::overwrite_existing);
   if (turn == 0) return;
   const std::string stem = file("renewed/turn-" + std::to_string(turn));
   if (!fs::exists(stem + ".exr"))
@@ -268,10 +272,11 @@ void Renewal::publish(int from_turn) {
     lead_deg_ = elapsed_s() * 1.3 * speed_deg_s_ + 20;
   }
   const std::string name = "turn-" + std::to_string(from_turn);
-  const auto replace = fs::copy_options::overwrite_existing;
-  fs::copy_file(scratch("light.json"), file("renewed/" + name + ".json"), replace);
-  fs::copy_file(scratch("light.exr"), file("renewed/." + name + ".exr"), replace);
-  fs::rename(file("renewed/." + name + ".exr"), file("renewed/" + name + ".exr"));
+  for (const std::string ending : {".json", ".exr"}) {  // vam-project takes what is whole
+    const std::string part = file("renewed/." + name + ending);
+    fs::copy_file(scratch("light" + ending), part, replace);
+    fs::rename(part, file("renewed/" + name + ending));
+  }
 }
 
 }  // namespace vam::correct_tool

@@ -43,8 +43,9 @@ void Run::note(const std::string& event) { note(event, Json::object()); }
 void Run::note(const std::string& event, const Json& facts) {
   try {
     if (!events_) {
-      events_ = std::make_unique<device::EventLog>(file("events.jsonl"), FormatKind("vam-print"));
-      lock = events_->hold();
+      auto events = std::make_unique<device::EventLog>(file("events.jsonl"), FormatKind("vam-print"));
+      lock = events->hold();
+      events_ = std::move(events);
     }
     (*events_)(event, facts);
   } catch (const Error&) {

@@ -70,7 +70,7 @@ void give_way() {
   if (getppid() != parent) _exit(128 + SIGTERM);
   for (const int signal : ended_by) (void)std::signal(signal, manner.undisturbed ? SIG_IGN : SIG_DFL);
   for (const int signal : {SIGINT, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
-  for (const int signal : {SIGPIPE, SIGXFSZ}) (void)std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGTSTP}) (void)std::signal(signal, SIG_DFL);
   setpgid(0, 0);  // what is typed at the terminal, and its end, is for this process alone, which orders theirs
   (void)std::signal(SIGTTOU, SIG_IGN);
   sigprocmask(SIG_SETMASK, &mask, nullptr);
@@ -87,6 +87,11 @@ void give_way() {
 }
 
 }  // namespace
+
+void supervise() {
+  (void)std::signal(SIGCHLD, SIG_DFL);  // ignored, it would hide how the tools end
+  for (const int signal : {SIGPIPE, SIGTSTP, SIGTTOU}) (void)std::signal(signal, SIG_IGN);
+}
 
 Child::Child(const Command& command, const std::string& said, const Manner& manner) : name_(command.name) {
   std::vector<char*> words;
@@ -176,14 +181,17 @@ void end_all(std::vector<Child>& children, const std::function<void(Child&, int)
 }
 
 std::string switch_off(const Talk& talk, const std::string& printer, const std::string& light) {
+  constexpr int limit_ms = 10000;
   std::string printed;
   int status = 1;
   try {
     printed = talk.path("off.out");
-    const Command off{"off",
-                      {"vam-devices", "off", "--printer", printer, "--light", light.empty() ? "none" : light},
-                      {{STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC}}};
-    status = Child(off, talk.path("off"), {.undisturbed = true}).status();
+    const Command command{"off",
+                          {"vam-devices", "off", "--printer", printer, "--light", light.empty() ? "none" : light},
+                          {{STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC}}};
+    Child off(command, talk.path("off"), {.undisturbed = true});
+    if (!off.ends_within(limit_ms)) off.order(SIGKILL);
+    status = off.status();
   } catch (const Error& error) {
     say(error.what());
   }

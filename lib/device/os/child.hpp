@@ -35,6 +35,10 @@ struct Manner {
   bool on_terminal = false;  // standard error is this process's
 };
 
+/// To be called by who runs tools before the first: neither ^Z nor a reader of its messages that ends stops it, as it
+/// would watch over nobody, and it is told how the tools end.
+void supervise();
+
 /// A child of this process, which orders its end; in a process group of its own, so that no terminal does.
 class Child {
  public:

@@ -23,6 +23,36 @@
 
 namespace vam::device {
 
+namespace {
+
+/// Programs that write to a log take turns, but nobody waits for long: a chain that is broken is found out, light that
+/// stays on is not.
+class Turn {
+ public:
+  explicit Turn(int log) : log_(log) {
+    constexpr int tries = 1000;
+    constexpr useconds_t pause_us = 1000;
+    for (int i = 0; i < tries && !(taken_ = set(F_WRLCK)) && errno == EAGAIN; ++i) usleep(pause_us);
+  }
+  ~Turn() {
+    if (taken_) (void)set(F_UNLCK);
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  [[nodiscard]] bool set(short type) const {
+    struct flock whole = {};
+    whole.l_whence = SEEK_SET;
+    whole.l_type = type;
+    return fcntl(log_, F_OFD_SETLK, &whole) == 0;
+  }
+  int log_;
+  bool taken_ = false;
+};
+
+}  // namespace
+
 EventLog::EventLog(const std::string& path, FormatKind schema) : path_(path), schema_(schema) {
   if (path.empty()) return;
   const auto opened = [&](int more) {
@@ -74,28 +104,11 @@ void EventLog::line(const Json& facts) {
   changed_.notify_all();
 }
 
-// Programs take turns, but nobody waits for long: a chain that is broken is found out, light that stays on is not.
 void EventLog::write(const std::vector<std::string>& objects) {
   if (shared_) return append(objects);
-  constexpr int tries = 1000;
-  constexpr useconds_t pause_us = 1000;
-  struct flock turn = {};
-  turn.l_whence = SEEK_SET;
-  turn.l_type = F_WRLCK;
-  bool taken = false;
-  for (int i = 0; i < tries && !(taken = fcntl(fd_, F_OFD_SETLK, &turn) == 0) && errno == EAGAIN; ++i) usleep(pause_us);
-  const auto leave = [&] {
-    turn.l_type = F_UNLCK;
-    if (taken) (void)fcntl(fd_, F_OFD_SETLK, &turn);
-  };
-  try {
-    catch_up();
-    append(objects);
-  } catch (const Error&) {
-    leave();
-    throw;
-  }
-  leave();
+  const Turn turn(fd_);
+  catch_up();
+  append(objects);
 }
 
 void EventLog::append(const std::vector<std::string>& objects) {
