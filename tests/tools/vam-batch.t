@@ -33,6 +33,8 @@ echo junk >batch/one.state
 quiet 'with no checkpoint of the former ones' vam-batch -- parts.tsv
 queue 'part|name|slice|optimize' "box.off|empty|--voxel 0.4 --unit \"\" '\\x' \\y|$optimize"
 is 'empty words and quoted backslashes are kept' "$(vam-batch --plan parts.tsv | sed -n 's/.*--unit \(.*\) -o .*/\1/p')" "'' \\\\x y"
+queue 'part|printer' 'box.off|opencal,vial-16'
+is 'presets are a printer' "$(vam-batch --plan parts.tsv | grep -c '^vam-.*--printer opencal,vial-16')" 3
 queue 'part|slice' 'box.off|--voxel 0.4'
 is '$VAM_PRINTER is followed' "$(VAM_PRINTER=level.toml vam-batch --plan parts.tsv | grep -c '^vam-.*--printer level.toml')" 3
 
@@ -92,6 +94,7 @@ refused 65 'line 1: must name the columns, part among them' 'name' 'box'
 refused 65 'line 2: has 2 cells, but the table has 1 columns' 'part' 'box.off|x'
 refused 65 'line 2: has no part' 'part|name' '|x'
 refused 66 'line 2: none.off: cannot open it' 'part' 'none.off'
+refused 66 'line 2: opncal: is no file, and no preset.*opencal' 'part|printer' 'box.off|opncal'
 refused 65 "line 2: 'a b.off' must consist of letters" 'part' 'a b.off'
 refused 65 "line 2: the name '../x' must" 'part|name' 'box.off|../x'
 refused 65 "line 2: pieces is '0'" 'part|pieces' 'box.off|0'
