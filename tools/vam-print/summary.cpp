@@ -12,7 +12,6 @@
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
-#include "io/settings/run_folder.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-print/run.hpp"
 
@@ -38,8 +37,14 @@ long count_of(const std::string& file, const std::string& event) {
 
 Json simulated(const Run& run) {
   Json devices = Json::array();
-  for (const io::UsedDevice& one : io::used_devices(run.folder)) {
-    if (one.simulated) devices.push_back(one.what);
+  for (const auto& [log, event, device] : {std::array{"stage.jsonl", "begin", "stage"},
+                                           {"capture.jsonl", "begin", "camera"},
+                                           {"flips.jsonl", "light", "light"}}) {
+    for (const Json& entry : entries(run.file(log), "\"simulated\":true")) {
+      if (text_at(entry, "event") != event) continue;
+      devices.push_back(device);
+      break;
+    }
   }
   return devices;
 }
