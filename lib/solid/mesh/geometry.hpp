@@ -42,6 +42,13 @@ struct Bounds {
     return true;
   }
   [[nodiscard]] bool contains(const Bounds& other) const { return contains(other.low) && contains(other.high); }
+  /// They share a point at least.
+  [[nodiscard]] bool meets(const Bounds& other) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (low[a] > other.high[a] || high[a] < other.low[a]) return false;
+    }
+    return true;
+  }
 };
 
 /// Of the corners of all triangles.

@@ -161,11 +161,8 @@ long turn_outwards(const model::TriangleSoup& mesh, std::vector<Component>& comp
 // Pieces that are not closed by themselves (cracks, facets missing all round) may still surround a volume together.
 void turn_pieces(const model::TriangleSoup& mesh, std::vector<Component>& components) {
   Bounds bounds;
-  for (const Component& piece : components) {
-    if (piece.solid) continue;
-    bounds.add(piece.bounds.low);
-    bounds.add(piece.bounds.high);
-  }
+  for (const Component& piece : components)
+    if (!piece.solid) bounds.join(piece.bounds);
   Measure all;
   for (const Component& piece : components) {
     if (piece.solid) continue;

@@ -57,10 +57,7 @@ std::vector<std::vector<int>> crossed(const model::TriangleSoup& mesh, const Pie
     const TriangleCorners c = corners(mesh, t);
     Bounds own;
     for (const Vector3& corner : c) own.add(corner);
-    bool apart = false;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      apart = apart || own.low[axis] > box.high[axis] || own.high[axis] < box.low[axis];
-    for (std::size_t side = 0; side < 3 && !apart; ++side)
+    for (std::size_t side = 0; side < 3 && own.meets(box); ++side)
       pieces.add_others(pieces.piece(static_cast<int>(t)), c[side], c[(side + 1) % 3], found[t]);
   });
   return found;

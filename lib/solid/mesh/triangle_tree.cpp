@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <numeric>
-#include <tuple>
 
 #include "base/index.hpp"
 
@@ -25,7 +24,7 @@ int node_count(int triangles) {
 }
 
 /// Builds the nodes over an order of the triangles. As the median splits, every node's place is known beforehand, and
-/// subtrees are built side by side.
+/// halves are built side by side.
 class TreeBuilder {
  public:
   TreeBuilder(const std::vector<TriangleCorners>& soup, std::vector<TriangleNode>& nodes) : soup_(soup), nodes_(nodes) {
@@ -34,78 +33,46 @@ class TreeBuilder {
     for (const TriangleCorners& t : soup) centroids_.push_back((1.0 / 3.0) * (t[0] + t[1] + t[2]));
     if (soup.empty()) return;
     nodes_.resize(static_cast<std::size_t>(node_count(count_of(soup))));
-    build_from_the_top();
+    build(0, 0, count_of(soup));
   }
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
 
  private:
-  struct Subtree {
-    int root, begin, end;
-  };
-
   [[nodiscard]] std::size_t at(int position) const { return static_cast<std::size_t>(order_[position]); }
 
-  void build_from_the_top() {
-    constexpr int levels = 6;
-    constexpr int few = 1000;  // triangles: not worth a split
-    std::vector<std::vector<Subtree>> upper{{{0, 0, count_of(soup_)}}};
-    for (int level = 0; level < levels; ++level) {
-      const std::vector<Subtree>& wide = upper.back();
-      if (wide[0].end - wide[0].begin < few) break;
-      std::vector<Subtree> halves(2 * wide.size());
-      parallel_for(count_of(wide), [&](int i) {
-        const auto [left, right] = split(wide[i]);
-        halves[2 * static_cast<std::size_t>(i)] = left;
-        halves[2 * static_cast<std::size_t>(i) + 1] = right;
-      });
-      upper.push_back(std::move(halves));
+  void build(int root, int begin, int end) {
+    constexpr int few = 1000;  // triangles: not worth a thread
+    TriangleNode& node = nodes_[root];
+    node.begin = begin;
+    node.end = end;
+    if (end - begin <= leaf_size) {
+      for (int i = begin; i < end; ++i)
+        for (const Vector3& corner : soup_[at(i)]) node.box.add(corner);
+      return;
     }
-    parallel_for(count_of(upper.back()), [&](int i) { build(upper.back()[i]); });
-    for (auto level = upper.rbegin() + 1; level != upper.rend(); ++level)
-      for (const Subtree& node : *level) join_halves(nodes_[node.root], node.root);
+    const int middle = split(begin, end);
+    node.right = root + 1 + node_count(middle - begin);
+    const auto half = [&](int i) { i == 0 ? build(root + 1, begin, middle) : build(node.right, middle, end); };
+    if (end - begin < few) {
+      half(0);
+      half(1);
+    } else {
+      parallel_for(2, half);
+    }
+    node.box = nodes_[root + 1].box;
+    node.box.join(nodes_[node.right].box);
   }
 
-  void build(const Subtree& tree) {
-    TriangleNode& node = nodes_[tree.root];
-    if (tree.end - tree.begin > leaf_size) {
-      const auto [left, right] = split(tree);
-      build(left);
-      build(right);
-      return join_halves(node, tree.root);
-    }
-    node = {.low = soup_[at(tree.begin)][0], .high = soup_[at(tree.begin)][0], .begin = tree.begin, .end = tree.end};
-    for (int i = tree.begin; i < tree.end; ++i)
-      for (const Vector3& corner : soup_[at(i)]) grow(node.low, node.high, corner);
-  }
-
-  /// Orders its triangles, and names its halves in its node.
-  std::pair<Subtree, Subtree> split(const Subtree& tree) {
-    const auto [root, begin, end] = tree;
-    Vector3 low = centroids_[at(begin)];
-    Vector3 high = low;
-    for (int i = begin; i < end; ++i) grow(low, high, centroids_[at(i)]);
-    const Vector3 size = high - low;
+  /// Orders these triangles; returns where the second half begins.
+  int split(int begin, int end) {
+    Bounds box;
+    for (int i = begin; i < end; ++i) box.add(centroids_[at(i)]);
+    const Vector3 size = box.size();
     const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
     const int middle = begin + (end - begin) / 2;
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                      [&](int a, int b) { return centroids_[a][axis] < centroids_[b][axis]; });
-    const int right = root + 1 + node_count(middle - begin);
-    nodes_[root] = {.begin = begin, .end = end, .right = right};
-    return {{root + 1, begin, middle}, {right, middle, end}};
-  }
-
-  void join_halves(TriangleNode& node, int root) const {
-    node.low = nodes_[root + 1].low;
-    node.high = nodes_[root + 1].high;
-    grow(node.low, node.high, nodes_[node.right].low);
-    grow(node.low, node.high, nodes_[node.right].high);
-  }
-
-  static void grow(Vector3& low, Vector3& high, const Vector3& p) {
-    for (std::size_t d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], p[d]);
-      high[d] = std::max(high[d], p[d]);
-    }
+    return middle;
   }
 
   const std::vector<TriangleCorners>& soup_;
@@ -117,7 +84,7 @@ class TreeBuilder {
 double distance2(const TriangleNode& node, const Vector3& p) {
   double sum = 0;
   for (std::size_t d = 0; d < 3; ++d) {
-    const double out = std::max(std::max(node.low[d] - p[d], p[d] - node.high[d]), 0.0);
+    const double out = std::max(std::max(node.box.low[d] - p[d], p[d] - node.box.high[d]), 0.0);
     sum += out * out;
   }
   return sum;
@@ -160,13 +127,6 @@ bool meets(const TriangleCorners& triangle, double half_side) {
       const Vector3 edge = triangle[(side + 1) % 3] - triangle[side];
       if (is_between(cross(axis, edge), triangle, half_side)) return false;
     }
-  }
-  return true;
-}
-
-bool overlap(const TriangleNode& node, const Vector3& low, const Vector3& high) {
-  for (std::size_t d = 0; d < 3; ++d) {
-    if (node.low[d] > high[d] || node.high[d] < low[d]) return false;
   }
   return true;
 }
@@ -216,16 +176,16 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
 
 namespace {
 
-/// visit(i) of the triangles in leaves that overlap a box, until one returns true, which is returned.
+/// visit(i) of the triangles in leaves that meet a box, until one returns true, which is returned.
 template <class Visit>
-bool any_in_box(const TriangleTree& tree, const Vector3& low, const Vector3& high, const Visit& visit) {
+bool any_in_box(const TriangleTree& tree, const Bounds& box, const Visit& visit) {
   std::array<int, 64> stack;  // the median split keeps the depth below 32
   std::size_t waiting = 0;
   stack[waiting++] = 0;
   while (waiting > 0) {
     const int index = stack[--waiting];
     const TriangleNode& node = tree.nodes[index];
-    if (!overlap(node, low, high)) continue;
+    if (!node.box.meets(box)) continue;
     if (node.right != 0) {
       stack[waiting++] = node.right;
       stack[waiting++] = index + 1;
@@ -242,12 +202,11 @@ bool any_in_box(const TriangleTree& tree, const Vector3& low, const Vector3& hig
 
 std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& along, double least, double most,
                                            const std::function<bool(int triangle)>& counts) const {
-  const Vector3 end = from + most * along;
-  Vector3 low{};
-  Vector3 high{};
-  for (std::size_t d = 0; d < 3; ++d) std::tie(low[d], high[d]) = std::minmax(from[d], end[d]);
+  Bounds box;
+  box.add(from);
+  box.add(from + most * along);
   std::optional<Hit> first;
-  any_in_box(*this, low, high, [&](int i) {
+  any_in_box(*this, box, [&](int i) {
     const auto distance = distance_to(triangles[i], from, along);
     if (distance && *distance >= least && *distance <= most && (!first || *distance < first->distance) &&
         (!counts || counts(i)))
@@ -259,7 +218,7 @@ std::optional<Hit> TriangleTree::first_hit(const Vector3& from, const Vector3& a
 
 bool TriangleTree::meets_cube(const Vector3& centre, double half_side) const {
   const Vector3 half{half_side, half_side, half_side};
-  return any_in_box(*this, centre - half, centre + half, [&](int i) {
+  return any_in_box(*this, {centre - half, centre + half}, [&](int i) {
     const auto& [a, b, c] = triangles[i];
     return meets({a - centre, b - centre, c - centre}, half_side);
   });

@@ -43,7 +43,7 @@ double triangle_angles(const TriangleCorners* begin, const TriangleCorners* end,
 
 double farthest_corner(const TriangleNode& node, const Vector3& from) {
   Vector3 way{};
-  for (std::size_t d = 0; d < 3; ++d) way[d] = std::max(from[d] - node.low[d], node.high[d] - from[d]);
+  for (std::size_t d = 0; d < 3; ++d) way[d] = std::max(from[d] - node.box.low[d], node.box.high[d] - from[d]);
   return length(way);
 }
 

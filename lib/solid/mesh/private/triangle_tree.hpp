@@ -14,6 +14,7 @@
 #include "base/compute/parallel.hpp"
 #include "base/vector3.hpp"
 #include "model/mesh.hpp"
+#include "solid/mesh/geometry.hpp"
 
 namespace vam::solid {
 
@@ -40,8 +41,7 @@ void for_chunks(std::size_t count, const Work& work, std::size_t chunk = 1024) {
 /// A node holds triangles [begin, end); an inner one has children at index + 1 and at `right`, so children follow their
 /// parent and the root is node 0.
 struct TriangleNode {
-  Vector3 low{};
-  Vector3 high{};
+  Bounds box;
   int begin = 0;
   int end = 0;
   int right = 0;  // 0 in a leaf
