@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
@@ -68,50 +69,19 @@ std::vector<Shift> best_apart(std::vector<Shift> shifts, double pitch, std::size
   return best;
 }
 
+/// Around the box, and a little beyond it.
+model::Grid search_grid(const Bounds& box) {
+  const double margin = beyond * box.largest_side();
+  model::Grid grid;
+  grid.voxel_mm = box.largest_side() / cells_along;
+  grid.origin_mm = box.low - Vector3{margin, margin, margin};
+  const auto cells = [&](double side) { return ceil_int((side + 2 * margin) / grid.voxel_mm) + 1; };
+  const Vector3 size = box.size();
+  std::tie(grid.nx, grid.ny, grid.nz) = std::tuple(cells(size[0]), cells(size[1]), cells(size[2]));
+  return grid;
+}
+
 }  // namespace
-
-// Distance to the design on a grid, cut off, as lookups must be quick.
-class OverlapSearch::DistanceGrid {
- public:
-  DistanceGrid(const Bounds& box, const Surface& design) : cell_(box.largest_side() / cells_along), most_(2 * cell_) {
-    for (int a = 0; a < 3; ++a) {
-      low_[a] = box.low[a] - beyond * box.largest_side();
-      n_[a] = ceil_int((box.high[a] - box.low[a] + 2 * beyond * box.largest_side()) / cell_) + 1;
-    }
-    values_.resize(product(product(n_[0], n_[1]), n_[2]));
-    parallel_for(n_[2], [&](int k) {
-      int start = 0;
-      for (int j = 0; j < n_[1]; ++j) {
-        for (int i = 0; i < n_[0]; ++i) {
-          const Vector3 p{low_[0] + i * cell_, low_[1] + j * cell_, low_[2] + k * cell_};
-          const ClosestPoint foot = design.closest(p, start);
-          start = foot.triangle;
-          values_[at(i, j, k)] = static_cast<float>(std::min(most_, length(p - foot.point)));
-        }
-      }
-    });
-  }
-
-  [[nodiscard]] float operator()(const Vector3d& p) const {
-    const int i = round_int((p[0] - low_[0]) / cell_);
-    const int j = round_int((p[1] - low_[1]) / cell_);
-    const int k = round_int((p[2] - low_[2]) / cell_);
-    if (i < 0 || j < 0 || k < 0 || i >= n_[0] || j >= n_[1] || k >= n_[2]) return static_cast<float>(most_);
-    return values_[at(i, j, k)];
-  }
-  [[nodiscard]] double cell() const { return cell_; }
-
- private:
-  [[nodiscard]] std::size_t at(int i, int j, int k) const {
-    return flat_index(flat_index(static_cast<std::size_t>(k), n_[1], j), n_[0], i);
-  }
-
-  double cell_;
-  double most_;
-  double low_[3];
-  int n_[3];
-  std::vector<float> values_;
-};
 
 std::vector<Matrix3d> even_rotations() {
   std::vector<Matrix3d> all;
@@ -132,13 +102,23 @@ std::vector<Matrix3d> even_rotations() {
 }
 
 OverlapSearch::OverlapSearch(const Bounds& box, const Surface& design)
-    : box_(box), distance_(std::make_unique<DistanceGrid>(box, design)) {}
+    : box_(box),
+      most_(2 * box.largest_side() / cells_along),
+      distances_(distance_band(design, search_grid(box), most_)) {}
 
-OverlapSearch::~OverlapSearch() = default;
+float OverlapSearch::distance_at(const Vector3d& p) const {
+  const model::Grid& grid = distances_.grid;
+  const auto cell = [&](int axis) { return round_int((p[axis] - grid.origin_mm[axis]) / grid.voxel_mm); };
+  const int i = cell(0);
+  const int j = cell(1);
+  const int k = cell(2);
+  if (i < 0 || j < 0 || k < 0 || i >= grid.nx || j >= grid.ny || k >= grid.nz) return static_cast<float>(most_);
+  return std::abs(distances_.slice(k)[flat_index(j, grid.nx, i)]);
+}
 
 std::vector<Motion> OverlapSearch::poses(const std::vector<Vector3d>& print, const std::vector<Matrix3d>& rotations,
                                          std::size_t shifts, std::size_t count) const {
-  const double pitch = 2 * distance_->cell();
+  const double pitch = 2 * distances_.grid.voxel_mm;
   std::vector<std::vector<Candidate>> of_turn(rotations.size());
   Progress progress("searching the overlap", count_of(rotations));
   parallel_for(count_of(rotations), [&](int i) {
@@ -149,7 +129,7 @@ std::vector<Motion> OverlapSearch::poses(const std::vector<Vector3d>& print, con
       const int layer = row / tried.steps[1];
       const Vector3d shift = tried.first + pitch * Vector3d(n % tried.steps[0], row % tried.steps[1], layer);
       float sum = 0;
-      for (const Vector3d& p : tried.some) sum += (*distance_)(p + shift);
+      for (const Vector3d& p : tried.some) sum += distance_at(p + shift);
       all.push_back({sum / static_cast<float>(tried.some.size()), shift});
     }
     for (const Shift& shift : best_apart(std::move(all), pitch, shifts)) {

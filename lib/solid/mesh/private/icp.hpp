@@ -5,9 +5,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/Dense>
-#include <memory>
 #include <vector>
 
+#include "model/grid.hpp"
 #include "solid/mesh/align.hpp"
 #include "solid/mesh/geometry.hpp"
 #include "solid/mesh/signed_distance.hpp"
@@ -39,7 +39,6 @@ struct Motion {
 class OverlapSearch {
  public:
   OverlapSearch(const Bounds& box, const Surface& design);
-  ~OverlapSearch();
 
   /// The `count` best poses; of each rotation the `shifts` best, at least two steps of the grid apart.
   [[nodiscard]] std::vector<Motion> poses(const std::vector<Eigen::Vector3d>& print,
@@ -47,9 +46,11 @@ class OverlapSearch {
                                           std::size_t count) const;
 
  private:
-  class DistanceGrid;
+  [[nodiscard]] float distance_at(const Eigen::Vector3d& p) const;
+
   Bounds box_;
-  std::unique_ptr<DistanceGrid> distance_;
+  double most_;              // mm, at which distances are cut off, as lookups must be quick
+  model::Volume distances_;  // to the design
 };
 
 [[nodiscard]] Similarity to_similarity(const Motion& pose);
