@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
+#include "base/index.hpp"
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/triangle_tree.hpp"
 
@@ -47,68 +48,76 @@ std::vector<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
   return keys;
 }
 
-std::vector<char> marks(const std::vector<std::size_t>& numbers, std::size_t count) {
-  std::vector<char> all(count, 0);
-  for (const std::size_t number : numbers) all[number] = 1;
-  return all;
-}
-
-// An edge of triangles that are asked for, and of others. A balance is of those that run up less those that run down.
-struct AskedEdge {
-  std::vector<std::size_t> patch;  // of those that are asked for
-  std::size_t others = 0;
-  long balance = 0;  // of the others
-  long with = 0;     // of all
-};
-
-// Visits the edges of triangles that are asked for, without the others that are dropped.
-template <class Visit>
-void for_asked_edges(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<char>& asked,
-                     const Visit& visit) {
-  std::vector<Triangle> rest;
-  std::vector<std::size_t> original;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (drop[t] != 0 && asked[t] == 0) continue;
-    rest.push_back(mesh.triangles[t]);
-    original.push_back(t);
-  }
-  EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
-    AskedEdge found;
-    for (const HalfEdge& half : edge) {
-      const std::size_t t = original[half.triangle];
-      found.with += half.rising ? 1 : -1;
-      if (asked[t] != 0) {
-        found.patch.push_back(t);
-      } else {
-        ++found.others;
-        found.balance += half.rising ? 1 : -1;
-      }
-    }
-    if (!found.patch.empty()) visit(found);
-  });
-}
-
-// Which of the triangles left over from copies that cancel are needless: a patch of them is when the other triangles
-// meet it and are closed if it is removed, as where two solids touch, or when it is a surface of its own within the
-// others, as where one solid fills a cavity of another. A patch that closes a hole stays, and so does a surface of its
-// own that is not within others.
+/// Triangles that are there several times, of which either one stays or as many as run one way more than the other:
+/// none of those that cancel. A patch of them hangs together by edges that no others have. All edges that it has with
+/// others vote, by what closes them: one, to close a hole; more, where two overlapping solids end in one face; none,
+/// where two solids touch. A surface of its own stays once unless it cancels within others, as where one solid fills a
+/// cavity of another.
 class Patches {
  public:
-  Patches(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& cancelling)
-      : mesh_(mesh), patches_(mesh.triangles.size()), keep_(mesh.triangles.size(), 0), met_(mesh.triangles.size(), 0) {
-    const std::vector<char> doubtful = marks(cancelling, drop.size());
-    for (std::size_t t = 0; t < drop.size(); ++t)
-      if (drop[t] == 0 && doubtful[t] == 0) rest_.push_back(mesh.triangles[t]);
-    for_asked_edges(mesh, drop, doubtful, [&](const AskedEdge& edge) { join(edge.patch, edge.others); });
+  /// times: how often each triangle stays but for that; copied: those for which that is asked.
+  Patches(const model::TriangleSoup& mesh, const std::vector<int>& times, const std::vector<char>& copied)
+      : mesh_(mesh), times_(times), copied_(copied), patches_(times.size()), votes_(times.size()), met_(times.size()) {
+    std::vector<Triangle> there;
+    for (std::size_t t = 0; t < times.size(); ++t) {
+      if (times[t] == 0 && copied[t] == 0) continue;
+      there.push_back(mesh.triangles[t]);
+      places_.push_back(t);
+      if (copied[t] == 0) rest_.push_back(mesh.triangles[t]);
+    }
+    EdgeTable(there, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) { vote(edge); });
   }
 
-  [[nodiscard]] bool needless(std::size_t triangle) {
+  [[nodiscard]] bool stays_once(std::size_t triangle) {
     const std::size_t root = patches_.of(triangle);
-    if (met_[root] == 0) return is_within_others(root);
-    return keep_[root] == 0;
+    return votes_[root] >= 0 && (times_[triangle] > 0 || met_[root] != 0 || !is_within_others(root));
   }
 
  private:
+  void vote(std::span<const HalfEdge> edge) {
+    std::vector<std::size_t> asked;
+    std::size_t others = 0;
+    long balance = 0;  // of the others: those that run up less those that run down
+    long with_one = 0;
+    long with_all = 0;
+    for (const HalfEdge& half : edge) {
+      const std::size_t t = places_[half.triangle];
+      const int way = half.rising ? 1 : -1;
+      if (copied_[t] == 0) {
+        ++others;
+        balance += way;
+      } else {
+        asked.push_back(t);
+        with_one += way;
+        with_all += way * times_[t];
+      }
+    }
+    for (const std::size_t t : asked) {
+      const std::size_t root = patches_.of(t);
+      if (others == 0) {
+        join(patches_.of(asked.front()), root);
+        continue;
+      }
+      met_[root] = 1;
+      // Which way round one of those that cancel runs means nothing.
+      if (times_[t] == 0) votes_[root] += others % 2 == 1 ? 1 : -1;
+      if (times_[t] > 0) votes_[root] += (balance + with_one == 0 ? 1 : 0) - (balance + with_all == 0 ? 1 : 0);
+    }
+  }
+  void join(std::size_t root, std::size_t other) {
+    if (root == other) return;
+    patches_.join(root, other);
+    votes_[root] += votes_[other];
+    met_[root] |= met_[other];
+  }
+  bool is_within_others(std::size_t patch) {
+    const auto [known, is_new] = within_.try_emplace(patch, false);
+    if (is_new) {
+      if (!others_) others_.emplace(model::TriangleSoup{mesh_.points, rest_});
+      known->second = is_mostly_within(patch);
+    }
+    return known->second;
+  }
   /// Single triangles of the others may be turned over still, and mislead beside them.
   bool is_mostly_within(std::size_t patch) {
     std::vector<int> points;
@@ -122,110 +131,45 @@ class Patches {
       within += std::abs((*others_)(mesh_.points[points[i]])) > 0.5 ? 1 : 0;
     return 2 * within > asked;
   }
-  bool is_within_others(std::size_t patch) {
-    const auto [known, is_new] = within_.try_emplace(patch, false);
-    if (is_new) {
-      if (!others_) others_.emplace(model::TriangleSoup{mesh_.points, rest_});
-      known->second = is_mostly_within(patch);
-    }
-    return known->second;
-  }
-  // An edge of the patch with so many other triangles.
-  void join(const std::vector<std::size_t>& patch, std::size_t others) {
-    std::size_t root = patches_.of(patch.front());
-    for (const std::size_t t : patch) {
-      const std::size_t other = patches_.of(t);
-      if (others > 0 || other == root) continue;
-      patches_.join(root, other);
-      keep_[root] |= keep_[other];
-      met_[root] |= met_[other];
-    }
-    for (const std::size_t t : patch) {
-      if (others > 0) met_[patches_.of(t)] = 1;
-      if (others % 2 == 1) keep_[patches_.of(t)] = 1;
-    }
-  }
 
   const model::TriangleSoup& mesh_;
+  const std::vector<int>& times_;
+  const std::vector<char>& copied_;
   DisjointSets<> patches_;
-  std::vector<char> keep_;
-  std::vector<char> met_;
-  std::vector<Triangle> rest_;           // that do not cancel
+  std::vector<long> votes_;  // for one
+  std::vector<char> met_;    // has an edge with others
+  std::vector<std::size_t> places_;
+  std::vector<Triangle> rest_;           // of which there are no copies
   std::optional<WindingNumber> others_;  // of these; made when first needed
   std::map<std::size_t, bool> within_;
-};
-
-// Which of further copies that run the same way round must stay: patches without which edges that are balanced would
-// not be, as where two overlapping solids end in one face.
-class Copies {
- public:
-  Copies(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& copies)
-      : patches_(mesh.triangles.size()), gain_(mesh.triangles.size(), 0) {
-    for_asked_edges(mesh, drop, marks(copies, drop.size()),
-                    [&](const AskedEdge& edge) { join(edge.patch, edge.balance, edge.with); });
-  }
-
-  [[nodiscard]] bool needed(std::size_t triangle) { return gain_[patches_.of(triangle)] > 0; }
-
- private:
-  // An edge of these copies.
-  void join(const std::vector<std::size_t>& copies, long balance, long with) {
-    if (with != 0) {
-      for (const std::size_t t : copies) gain_[patches_.of(t)] -= balance == 0 ? 1 : 0;
-      return;
-    }
-    const std::size_t root = patches_.of(copies.front());
-    for (const std::size_t t : copies) {
-      const std::size_t other = patches_.of(t);
-      if (other == root) continue;
-      patches_.join(root, other);
-      gain_[root] += gain_[other];
-    }
-    gain_[root] += balance != 0 ? 1 : 0;
-  }
-
-  DisjointSets<> patches_;
-  std::vector<long> gain_;  // edges that a patch balances, less those that it unbalances
 };
 
 }  // namespace
 
 long drop_duplicates(model::TriangleSoup& mesh) {
   const std::vector<TriangleKey> keys = sorted_keys(mesh);
-  std::vector<char> drop(mesh.triangles.size(), 0);
-  std::vector<std::size_t> cancelling;  // the first of copies that cancel
-  std::vector<std::size_t> copies;      // beyond the first of those that do not
+  std::vector<int> times(mesh.triangles.size(), 0);
+  std::vector<char> copied(mesh.triangles.size(), 0);
   for (auto group = keys.begin(); group != keys.end();) {
-    long balance = 0;
+    int balance = 0;
     auto stop = group;
     for (; stop != keys.end() && stop->sorted == group->sorted; ++stop) balance += stop->even ? 1 : -1;
     const auto keep =
         std::find_if(group, stop, [&](const TriangleKey& key) { return balance == 0 || key.even == (balance > 0); });
-    for (auto key = group; key != stop; ++key) drop[key->index] = key != keep ? 1 : 0;
-    long further = std::abs(balance) - 1;
-    for (auto key = keep; further > 0; ++key) {
-      if (key == keep || key->even != keep->even) continue;
-      copies.push_back(static_cast<std::size_t>(key->index));
-      --further;
-    }
-    if (balance == 0) cancelling.push_back(static_cast<std::size_t>(keep->index));
+    times[keep->index] = std::abs(balance);
+    copied[keep->index] = std::abs(balance) != 1 ? 1 : 0;
     group = stop;
   }
-  if (!cancelling.empty()) {
-    Patches patches(mesh, drop, cancelling);
-    for (const std::size_t index : cancelling) drop[index] = patches.needless(index) ? 1 : 0;
+  const bool any_copied = std::find(copied.begin(), copied.end(), 1) != copied.end();
+  std::optional<Patches> patches;
+  if (any_copied) patches.emplace(mesh, times, copied);
+  std::vector<Triangle> kept;
+  for (std::size_t t = 0; t < times.size(); ++t) {
+    const int count = copied[t] != 0 && patches->stays_once(t) ? 1 : times[t];
+    kept.insert(kept.end(), count, mesh.triangles[t]);
   }
-  if (!copies.empty()) {
-    Copies patches(mesh, drop, copies);
-    for (const std::size_t index : copies) drop[index] = patches.needed(index) ? 0 : 1;
-  }
-  const std::size_t before = mesh.triangles.size();
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < before; ++i) {
-    if (drop[i] == 0) mesh.triangles[kept++] = mesh.triangles[i];
-  }
-  mesh.triangles.resize(kept);
-  return static_cast<long>(before - kept);
+  mesh.triangles.swap(kept);
+  return static_cast<long>(kept.size()) - count_of(mesh.triangles);
 }
 
 }  // namespace vam::solid
