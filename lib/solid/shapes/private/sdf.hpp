@@ -45,13 +45,6 @@ namespace vam::solid::sdf {
   return std::hypot(std::hypot(p[0], p[1]) - ring_radius, p[2]) - tube_radius;
 }
 
-/// Distance from p to the segment a b.
-[[nodiscard]] inline double segment(const Point& p, const Point& a, const Point& b) {
-  const Point ab = b - a;
-  const double t = std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0);
-  return length(p - (a + t * ab));
-}
-
 /// Frustum about the z axis, radius `bottom` at z = -half_height and `top` at +half_height.
 [[nodiscard]] inline double frustum(const Point& p, double bottom, double top, double half_height) {
   const double r = std::hypot(p[0], p[1]);
