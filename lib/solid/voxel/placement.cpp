@@ -121,11 +121,11 @@ double fitting_factor(const PlacedExtent& part, const Writable& room, double vox
   return factor;
 }
 
-PlacedExtent extent(const model::TriangleSoup& soup) {
+PlacedExtent extent(const model::TriangleSoup& soup, const Affine& map) {
   PlacedExtent result;
   for (const auto& triangle : soup.triangles) {
     for (const int index : triangle) {
-      const Point& p = soup.points[index];
+      const Point p = map(soup.points[index]);
       result.box.add(p);
       result.radius_mm = std::max(result.radius_mm, std::hypot(p[0], p[1]));
     }
@@ -137,18 +137,7 @@ PlacedExtent extent(const Field& field) { return {field.box, field.radius_mm}; }
 
 Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
              const std::string& subject) {
-  const auto under = [&](const Affine& map) {
-    PlacedExtent result;
-    for (const auto& triangle : soup.triangles) {
-      for (const int index : triangle) {
-        const Point p = map(soup.points[index]);
-        result.box.add(p);
-        result.radius_mm = std::max(result.radius_mm, std::hypot(p[0], p[1]));
-      }
-    }
-    return result;
-  };
-  return place(under, placement, room, subject);
+  return place([&](const Affine& map) { return extent(soup, map); }, placement, room, subject);
 }
 
 Affine place(const Field& field, const Placement& placement, const Writable& room, const std::string& subject) {

@@ -51,7 +51,7 @@ struct PlacedExtent {
   Bounds box;
   double radius_mm = 0;  // about the z axis
 };
-[[nodiscard]] PlacedExtent extent(const model::TriangleSoup& soup);
+[[nodiscard]] PlacedExtent extent(const model::TriangleSoup& soup, const Affine& map = {});
 [[nodiscard]] PlacedExtent extent(const Field& field);
 
 /// The factor that makes a placed part fit the cylinder when it is scaled about the origin and lifted by whole voxels
