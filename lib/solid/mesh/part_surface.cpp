@@ -113,37 +113,29 @@ Place beside(const Place& place, int n) {
   return {place[0] + n % 3 - 1, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1};
 }
 
-/// The voxels of a grid, which goes on beyond its ends, and the part that is on them.
-class Voxels {
- public:
-  Voxels(const SurfaceTree& surface, const model::Grid& grid) : surface_(surface), grid_(grid) {}
-  /// Whether the voxel that holds a point, or one of its 26 neighbours, is wholly outside the part.
-  [[nodiscard]] bool has_void_near(const Vector3& point) const {
-    constexpr int neighbours = 27;
-    for (int n = 0; n < neighbours; ++n) {
-      const Place step = beside({}, n);
-      Vector3 centre{};
-      for (std::size_t d = 0; d < 3; ++d) {
-        const double at = std::round((point[d] - grid_.origin_mm[d]) / grid_.voxel_mm) + step[d];
-        centre[d] = grid_.origin_mm[d] + at * grid_.voxel_mm;
-      }
-      if (!surface_.tree->meets_cube(centre, touched * grid_.voxel_mm) && surface_.winding()(centre) < 0.5) return true;
+/// Whether the voxel of the grid that holds a point, or one of its 26 neighbours, is wholly outside the part; the grid
+/// goes on beyond its ends.
+bool has_void_near(const SurfaceTree& surface, const model::Grid& grid, const Vector3& point) {
+  constexpr double touched = 0.499;  // half of a side: what cuts off less is rounding
+  for (int n = 0; n < 27; ++n) {
+    const Place step = beside({}, n);
+    Vector3 centre{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double at = std::round((point[d] - grid.origin_mm[d]) / grid.voxel_mm) + step[d];
+      centre[d] = grid.origin_mm[d] + at * grid.voxel_mm;
     }
-    return false;
+    if (!surface.tree->meets_cube(centre, touched * grid.voxel_mm) && surface.winding()(centre) < 0.5) return true;
   }
-
- private:
-  static constexpr double touched = 0.499;  // half of a side: what cuts off less is rounding
-  const SurfaceTree& surface_;
-  const model::Grid& grid_;
-};
+  return false;
+}
 
 /// Of the gaps those that no voxel resolves.
-Ways blocked(const Ways& gaps, const Voxels& voxels, double voxel_mm) {
+Ways blocked(const Ways& gaps, const SurfaceTree& surface, const model::Grid& grid) {
   Ways found(gaps.size());
   parallel_for(count_of(gaps), [&](int i) {
     const auto& gap = gaps[i];
-    if (gap && gap->is_between_faces(voxel_mm) && !voxels.has_void_near(gap->at(0.5 * gap->distance))) found[i] = gap;
+    if (!gap || !gap->is_between_faces(grid.voxel_mm)) return;
+    if (!has_void_near(surface, grid, gap->at(0.5 * gap->distance))) found[i] = gap;
   });
   return found;
 }
@@ -257,7 +249,7 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   model::PartSurface found;
   found.walls = between_faces(without_lone(all.inwards, all, voxel_mm), lost, all.each, voxel_mm);
   found.gaps = between_faces(gaps, lost, all.each, voxel_mm);
-  found.blocked = between_faces(blocked(gaps, Voxels(surface, grid), voxel_mm), reach, all.each, voxel_mm);
+  found.blocked = between_faces(blocked(gaps, surface, grid), reach, all.each, voxel_mm);
   found.relief = relief(all, voxel_mm);
   found.solids = solids.count();
   found.specks = solids.specks();
