@@ -72,23 +72,30 @@ Alignment align_whole(const Task& task, Motion& pose) {
   return run_icp(task.all, task.reference, task.options, task.options.max_iterations, task.size(), pose);
 }
 
-// Share of the reference's points that have a sample of the print within 4 % of the size, about twice the distance
-// between samples.
+// The samples of the print at a pose; whether one of them is within 4 % of the size, about twice the distance between
+// samples.
+class PlacedSamples {
+ public:
+  PlacedSamples(const Task& task, const Motion& pose) : near2_(std::pow(0.04 * task.size(), 2)) {
+    for (const Vector3d& p : task.all) moved_.push_back(pose(p));
+  }
+  [[nodiscard]] bool has_near(const Vector3d& q) const {
+    return std::any_of(moved_.begin(), moved_.end(), [&](const auto& p) { return (p - q).squaredNorm() < near2_; });
+  }
+
+ private:
+  double near2_;
+  std::vector<Vector3d> moved_;
+};
+
+// Share of the reference's points that have a sample of the print near.
 double overlap_of(const Task& task, const Motion& pose) {
-  constexpr double near = 0.04;
   constexpr std::size_t asked = 1000;
-  std::vector<Vector3d> moved;
-  for (const Vector3d& p : task.all) moved.push_back(pose(p));
+  const PlacedSamples print(task, pose);
   const std::size_t every = std::max<std::size_t>(1, task.reference_points.size() / asked);
   const auto count = static_cast<int>(task.reference_points.size() / every);
-  const double most2 = std::pow(near * task.size(), 2);
   std::vector<char> covered(count);
-  parallel_for(count, [&](int i) {
-    const Vector3d& q = task.reference_points[i * every];
-    covered[i] =
-        std::any_of(moved.begin(), moved.end(), [&](const Vector3d& p) { return (p - q).squaredNorm() < most2; }) ? 1
-                                                                                                                  : 0;
-  });
+  parallel_for(count, [&](int i) { covered[i] = print.has_near(task.reference_points[i * every]) ? 1 : 0; });
   return static_cast<double>(std::count(covered.begin(), covered.end(), char{1})) / std::max(1, count);
 }
 
@@ -119,18 +126,12 @@ std::vector<Motion> symmetries(const Task& task) {
 }
 
 // Is the print at one pose where it is at the other, but for symmetries of the reference and its own? Its samples then
-// have one of the other pose within 4 % of the size.
+// have one of the other pose near.
 bool is_same_place(const Task& task, const Motion& one, const Motion& other, const std::vector<Motion>& symmetric) {
-  constexpr double near = 0.04;
-  const double most2 = std::pow(near * task.size(), 2);
-  std::vector<Vector3d> there;
-  for (const Vector3d& p : task.all) there.push_back(other(p));
+  const PlacedSamples there(task, other);
   return std::any_of(symmetric.begin(), symmetric.end(), [&](const Motion& motion) {
-    return std::all_of(task.few.begin(), task.few.end(), [&](const Vector3d& p) {
-      const Vector3d here = motion(one(p));
-      return std::any_of(there.begin(), there.end(),
-                         [&](const Vector3d& q) { return (here - q).squaredNorm() < most2; });
-    });
+    return std::all_of(task.few.begin(), task.few.end(),
+                       [&](const Vector3d& p) { return there.has_near(motion(one(p))); });
   });
 }
 
