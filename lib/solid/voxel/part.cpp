@@ -110,48 +110,45 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
 
 namespace {
 
-/// Adds what a row at y holds.
-void count_row(const model::Grid& grid, double y, const float* row, FillSummary& content, double& voxels) {
-  int first = grid.nx;
-  int last = -1;
-  for (int i = 0; i < grid.nx; ++i) {
-    const float value = row[i];
-    if (value == 0) continue;
-    voxels += value;
-    content.most = std::max(content.most, value);
-    const model::Label label = model::label_of(value);
-    if (label == model::Label::void_) continue;
-    ++(label == model::Label::part ? content.solid_voxels : content.surface_voxels);
-    first = std::min(first, i);
-    last = i;
+/// What a slice holds, its volume in voxels.
+FillSummary summary_of(const model::Grid& grid, const float* row) {
+  FillSummary content;
+  for (int j = 0; j < grid.ny; ++j, row += grid.nx) {
+    int first = grid.nx;
+    int last = -1;
+    for (int i = 0; i < grid.nx; ++i) {
+      const float value = row[i];
+      if (value == 0) continue;
+      content.volume_mm3 += value;
+      content.most = std::max(content.most, value);
+      const model::Label label = model::label_of(value);
+      if (label == model::Label::void_) continue;
+      ++(label == model::Label::part ? content.solid_voxels : content.surface_voxels);
+      first = std::min(first, i);
+      last = i;
+    }
+    if (last < 0) continue;
+    const double x = std::max(std::abs(grid.x_mm(first)), std::abs(grid.x_mm(last)));
+    content.radius_mm = std::max(content.radius_mm, std::hypot(x, grid.y_mm(j)));
   }
-  if (last < 0) return;
-  const double x = std::max(std::abs(grid.x_mm(first)), std::abs(grid.x_mm(last)));
-  content.radius_mm = std::max(content.radius_mm, std::hypot(x, y));
+  return content;
 }
 
 }  // namespace
 
 FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   FillSummary content;
-  double voxels = 0;
   verdict::SubVoxelFinder finder(grid);
   verdict::CavityFinder cavities(grid);
   content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
     std::vector<FillSummary> of_slice(static_cast<std::size_t>(count));
-    std::vector<double> covered(of_slice.size());
-    parallel_for(count, [&](int k) {
-      const float* slice = slices + product(k, grid.slice_size());
-      for (int j = 0; j < grid.ny; ++j) {
-        count_row(grid, grid.y_mm(j), slice + product(j, grid.nx), of_slice[k], covered[k]);
-      }
-    });
-    for (int k = 0; k < count; ++k) {
-      voxels += covered[k];
-      content.most = std::max(content.most, of_slice[k].most);
-      content.solid_voxels += of_slice[k].solid_voxels;
-      content.surface_voxels += of_slice[k].surface_voxels;
-      content.radius_mm = std::max(content.radius_mm, of_slice[k].radius_mm);
+    parallel_for(count, [&](int k) { of_slice[k] = summary_of(grid, slices + product(k, grid.slice_size())); });
+    for (const FillSummary& slice : of_slice) {
+      content.volume_mm3 += slice.volume_mm3;
+      content.most = std::max(content.most, slice.most);
+      content.solid_voxels += slice.solid_voxels;
+      content.surface_voxels += slice.surface_voxels;
+      content.radius_mm = std::max(content.radius_mm, slice.radius_mm);
     }
     finder.add(count, slices);
     cavities.add(count, slices);
@@ -160,11 +157,11 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
   content.unresolved = finder.found();
   content.cavities = cavities.found();
   if (part.surface) content.unresolved.surface = {part.surface(grid), grid.voxel_mm};
-  if (voxels == 0) {
+  if (content.volume_mm3 == 0) {
     throw Error{Fault::data, part.subject + ": covers no voxel of " + format_number(grid.voxel_mm) +
                                  " mm; check its unit and the voxel size"};
   }
-  content.volume_mm3 = voxels * grid.voxel_mm * grid.voxel_mm * grid.voxel_mm;
+  content.volume_mm3 *= grid.voxel_mm * grid.voxel_mm * grid.voxel_mm;
   return content;
 }
 
