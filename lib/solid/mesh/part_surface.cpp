@@ -68,8 +68,9 @@ void look_across(const SurfaceTree& surface, const SeparateSolids& solids, const
     const auto hit = surface.tree->first_hit(sample.point, along, least, most);
     if (!hit) return;
     const Vector3 normal = twice_area(surface.tree->triangles[hit->triangle]);
-    found[i] = Crossing{sample.point, along, hit->distance, dot(normal, sample.normal) / length(normal),
-                        !solids.are_one(sample.triangle, surface.place(hit->triangle))};
+    found[i] =
+        Crossing{sample.point, along, hit->distance, dot(normal, sample.normal) / length(normal),
+                 !solids.are_one(surface.point_of(sample.triangle), surface.point_of(surface.place(hit->triangle)))};
   });
 }
 
@@ -239,7 +240,8 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   all.samples = sample_surface(mesh, static_cast<int>(std::clamp(area / face, least_samples, most_samples)));
   all.each = area / static_cast<double>(all.samples.size());
   const double touching = least_gap * voxel_mm;
-  const SeparateSolids solids(surface, repaired, all.samples, touching, least_solid * face * voxel_mm);
+  const SeparateSolids solids =
+      separate_solids(surface, repaired, all.samples, touching, least_solid * face * voxel_mm);
   const double lost = model::lost_voxels * voxel_mm;
   const double reach = model::free_voxels * voxel_mm;
   look_across(surface, solids, all.samples, -1, own_face * lost, lost, all.inwards);
@@ -251,8 +253,8 @@ model::PartSurface part_surface(const model::TriangleSoup& mesh, const Repair& r
   found.gaps = between_faces(gaps, lost, all.each, voxel_mm);
   found.blocked = between_faces(blocked(gaps, surface, grid), reach, all.each, voxel_mm);
   found.relief = relief(all, voxel_mm);
-  found.solids = solids.count();
-  found.specks = solids.specks();
+  found.solids = solids.count;
+  found.specks = solids.specks;
   return found;
 }
 

@@ -22,7 +22,7 @@ std::vector<int> roots(DisjointSets<int>& connected) {
 
 /// Of connected points.
 struct Piece {
-  double volume = 0;
+  Measure measure;
   int farthest = 0;  // the point of the largest x
 };
 
@@ -31,7 +31,7 @@ class Pieces {
  public:
   Pieces(const SurfaceTree& surface, std::vector<int> piece_of) : surface_(surface), piece_of_(std::move(piece_of)) {}
   /// By a triangle of the mesh.
-  [[nodiscard]] int piece(int triangle) const { return piece_of_[surface_.mesh.triangles[triangle][0]]; }
+  [[nodiscard]] int piece(int triangle) const { return piece_of_[surface_.point_of(triangle)]; }
   /// Adds triangles on this way: one of each other piece that `found` has none of.
   void add_others(int own, const Vector3& from, const Vector3& to, std::vector<int>& found) const {
     const Vector3 way = to - from;
@@ -63,58 +63,54 @@ std::vector<std::vector<int>> crossed(const model::TriangleSoup& mesh, const Pie
   return found;
 }
 
-}  // namespace
-
-SeparateSolids::SeparateSolids(const SurfaceTree& surface, const Repair& repaired,
-                               const std::vector<SurfaceSample>& samples, double near_mm, double least_mm3)
-    : mesh_(surface.mesh) {
-  if (!repaired.closed() || repaired.unorientable > 0) return;
-  count_ = 1;
-  if (repaired.components > 1) find(surface, repaired.shared, samples, near_mm, least_mm3);
-}
-
-void SeparateSolids::find(const SurfaceTree& surface, const Bounds& shared, const std::vector<SurfaceSample>& samples,
-                          double near_mm, double least_mm3) {
-  const Bounds bounds = bounding_box(mesh_);
-  DisjointSets<int> connected(mesh_.points.size());
+/// For each point of the mesh: the representative of its solid.
+std::vector<int> solids_of_points(const SurfaceTree& surface, const Bounds& shared,
+                                  const std::vector<SurfaceSample>& samples, double near_mm) {
+  DisjointSets<int> connected(surface.mesh.points.size());
   const auto join = [&](int a, int b) { connected.join(connected.of(b), connected.of(a)); };
-  for (const Triangle& triangle : mesh_.triangles) {
+  for (const Triangle& triangle : surface.mesh.triangles) {
     join(triangle[0], triangle[1]);
     join(triangle[0], triangle[2]);
   }
-  const auto point_of = [&](int triangle) { return mesh_.triangles[triangle][0]; };
-  const Pieces pieces_alone(surface, roots(connected));
-  const std::vector<std::vector<int>> crossing = crossed(mesh_, pieces_alone, shared);
+  const Pieces pieces(surface, roots(connected));
+  const std::vector<std::vector<int>> crossing = crossed(surface.mesh, pieces, shared);
   std::vector<std::vector<int>> touching(samples.size());
   for_chunks(samples.size(), [&](std::size_t i, int) {
     const Vector3 near = near_mm * samples[i].normal;
-    pieces_alone.add_others(pieces_alone.piece(samples[i].triangle), samples[i].point - near, samples[i].point + near,
-                            touching[i]);
+    pieces.add_others(pieces.piece(samples[i].triangle), samples[i].point - near, samples[i].point + near, touching[i]);
   });
   for (int t = 0; t < count_of(crossing); ++t)
-    for (const int other : crossing[t]) join(point_of(t), point_of(other));
+    for (const int other : crossing[t]) join(surface.point_of(t), surface.point_of(other));
   for (std::size_t i = 0; i < samples.size(); ++i)
-    for (const int other : touching[i]) join(point_of(samples[i].triangle), point_of(other));
+    for (const int other : touching[i]) join(surface.point_of(samples[i].triangle), surface.point_of(other));
+  return roots(connected);
+}
 
-  solid_ = roots(connected);
+}  // namespace
+
+SeparateSolids separate_solids(const SurfaceTree& surface, const Repair& repaired,
+                               const std::vector<SurfaceSample>& samples, double near_mm, double least_mm3) {
+  if (!repaired.closed() || repaired.unorientable > 0) return {};
+  if (repaired.components == 1) return {1, 0, {}};
+  const model::TriangleSoup& mesh = surface.mesh;
+  SeparateSolids found{0, 0, solids_of_points(surface, repaired.shared, samples, near_mm)};
+  const Vector3 middle = bounding_box(mesh).centre();
   std::map<int, Piece> pieces;
-  for (const Triangle& triangle : mesh_.triangles) {
-    const auto [at, is_new] = pieces.try_emplace(solid_[triangle[0]]);
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto [at, is_new] = pieces.try_emplace(found.of_points[triangle[0]]);
     Piece& piece = at->second;
     if (is_new) piece.farthest = triangle[0];
-    Measure own;
-    add(own, mesh_, triangle, bounds.centre());
-    piece.volume += own.volume;
+    add(piece.measure, mesh, triangle, middle);
     for (const int corner : triangle)
-      if (mesh_.points[corner][0] > mesh_.points[piece.farthest][0]) piece.farthest = corner;
+      if (mesh.points[corner][0] > mesh.points[piece.farthest][0]) piece.farthest = corner;
   }
-  count_ = 0;
   for (const auto& [point, piece] : pieces) {
-    const Vector3 beyond = mesh_.points[piece.farthest] + Vector3{near_mm, 0, 0};
+    const Vector3 beyond = mesh.points[piece.farthest] + Vector3{near_mm, 0, 0};
     if (surface.winding()(beyond) > 0.5) continue;  // a cavity, or within another
-    ++count_;
-    specks_ += piece.volume < least_mm3 ? 1 : 0;
+    ++found.count;
+    found.specks += piece.measure.volume < least_mm3 ? 1 : 0;
   }
+  return found;
 }
 
 }  // namespace vam::solid

@@ -28,32 +28,28 @@ struct SurfaceTree {
   }
   /// In the mesh, of a triangle of the tree.
   [[nodiscard]] int place(int triangle) const { return places[tree->order[triangle]]; }
+  /// A point of a triangle of the mesh.
+  [[nodiscard]] int point_of(int triangle) const { return mesh.triangles[triangle][0]; }
 
  private:
   mutable std::optional<WindingNumber> winding_;
 };
 
+struct SeparateSolids {
+  int count = 0;  // 0: they cannot be told, as the mesh is not closed
+  int specks = 0;
+  std::vector<int> of_points;  // of the mesh; empty: all are one, or cannot be told
+
+  /// Whether two points are of one surface, or of surfaces that touch, as far as that can be told.
+  [[nodiscard]] bool are_one(int point, int other) const {
+    return of_points.empty() || of_points[point] == of_points[other];
+  }
+};
+
 /// Solids of a repaired mesh that are apart: no edge of one crosses the other, neither holds the other, and they are no
 /// nearer than `near_mm` where a sample of the surface shows it. Smaller ones than `least_mm3` are specks.
-class SeparateSolids {
- public:
-  SeparateSolids(const SurfaceTree& surface, const Repair& repaired, const std::vector<SurfaceSample>& samples,
-                 double near_mm, double least_mm3);
-  /// 0: they cannot be told, as the mesh is not closed.
-  [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] int specks() const { return specks_; }
-  /// Whether two triangles are of one surface, or of surfaces that touch, as far as that can be told.
-  [[nodiscard]] bool are_one(int triangle, int other) const {
-    return solid_.empty() || solid_[mesh_.triangles[triangle][0]] == solid_[mesh_.triangles[other][0]];
-  }
-
- private:
-  void find(const SurfaceTree& surface, const Bounds& shared, const std::vector<SurfaceSample>& samples, double near_mm,
-            double least_mm3);
-
-  const model::TriangleSoup& mesh_;
-  std::vector<int> solid_;  // of each point; empty: all are one, or cannot be told
-  int count_ = 0, specks_ = 0;
-};
+[[nodiscard]] SeparateSolids separate_solids(const SurfaceTree& surface, const Repair& repaired,
+                                             const std::vector<SurfaceSample>& samples, double near_mm,
+                                             double least_mm3);
 
 }  // namespace vam::solid
