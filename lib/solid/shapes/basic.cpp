@@ -13,7 +13,7 @@ void require(bool holds, const std::string& line) {
 Field solid(std::function<double(const Point&)> value, const Point& low, const Point& high, double radius_mm,
             double curvature_per_mm) {
   Field field;
-  field.value = std::move(value);
+  field.some = point_by_point(std::move(value));
   field.box = {low, high};
   field.radius_mm = std::min(radius_mm, std::hypot(std::max(-low[0], high[0]), std::max(-low[1], high[1])));
   field.ball_mm = 0.5 * field.box.diagonal();

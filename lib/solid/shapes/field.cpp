@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solid/shapes/field.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -18,10 +17,6 @@ double Field::support_mm(const Point& d) const {
 }
 
 void values_at(const Field& field, std::span<const Point> points, double* values) {
-  if (!field.some) {
-    std::transform(points.begin(), points.end(), values, field.value);
-    return;
-  }
   for (std::size_t at = 0; at < points.size(); at += Field::together) {
     field.some(points.subspan(at, std::min(Field::together, points.size() - at)), values + at);
   }
@@ -74,14 +69,11 @@ Field transformed(const Field& field, const Affine& map) {
   for (const Point& row : map.linear) stretch = std::max(stretch, length(row));
   result.ball_mm = std::min(0.5 * result.box.diagonal(),
                             stretch * field.ball_mm + length(map(field.box.centre()) - result.box.centre()));
-  result.value = [inner = field.value, back](const Point& p) { return inner(back(p)); };
-  if (field.some) {
-    result.some = [inner = field.some, back](std::span<const Point> points, double* values) {
-      std::array<Point, Field::together> before{};
-      std::transform(points.begin(), points.end(), before.begin(), back);
-      inner(std::span(before).first(points.size()), values);
-    };
-  }
+  result.some = [inner = field.some, back](std::span<const Point> points, double* values) {
+    std::array<Point, Field::together> before;
+    std::transform(points.begin(), points.end(), before.begin(), back);
+    inner(std::span(before).first(points.size()), values);
+  };
   return result;
 }
 

@@ -2,8 +2,10 @@
 // Solids given by a function: negative inside. What the parametric test parts are made of.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
+#include <utility>
 
 #include "model/grid.hpp"
 #include "solid/mesh/geometry.hpp"
@@ -12,10 +14,14 @@ namespace vam::solid {
 
 /// A solid { p : value(p) < 0 }, p in mm.
 struct Field {
-  std::function<double(const Point&)> value;
-  /// The same at up to so many points, where that is faster than one by one; empty otherwise. See values_at().
+  /// At up to so many points. See values_at().
   static constexpr std::size_t together = 32;
   std::function<void(std::span<const Point> points, double* values)> some;
+  [[nodiscard]] double value(const Point& p) const {
+    double one = 0;
+    some({&p, 1}, &one);
+    return one;
+  }
   /// |value(p)| <= lipschitz * (distance from p to the surface), so a large value proves a ball free of surface.
   double lipschitz = 1;
   /// Largest curvature of the smooth parts of the surface, 1/mm: tells roundness from edges within a voxel.
@@ -28,6 +34,14 @@ struct Field {
   /// upright cylinders and balls.
   [[nodiscard]] double support_mm(const Point& d) const;
 };
+
+/// Field::some of a function of one point.
+template <class Value>
+[[nodiscard]] auto point_by_point(Value value) {
+  return [value = std::move(value)](std::span<const Point> points, double* values) {
+    std::transform(points.begin(), points.end(), values, value);
+  };
+}
 
 /// The field at every point, mm.
 void values_at(const Field& field, std::span<const Point> points, double* values);

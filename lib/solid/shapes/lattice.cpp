@@ -46,14 +46,8 @@ Field gyroid(Values v) {
       values[i] = hull > half_sheet ? hull : std::max(hull, sheet[i] / k - half_sheet);
     }
   };
-  Field field = solid(
-      [=](const Point& p) {
-        double value = 0;
-        some({&p, 1}, &value);
-        return value;
-      },
-      {-radius, -radius, -half}, {radius, radius, half}, radius,
-      1 / (0.2 * v[0] - half_sheet));  // the minimal surface bends to a radius of 0.2 cell
+  Field field = solid({}, {-radius, -radius, -half}, {radius, radius, half}, radius,
+                      1 / (0.2 * v[0] - half_sheet));  // the minimal surface bends to a radius of 0.2 cell
   field.some = some;
   field.ball_mm = std::hypot(radius, half);
   return field;

@@ -303,10 +303,9 @@ TEST_CASE("errors of shapes state the valid range") {
 }
 
 TEST_CASE("a box under any map is bounded by its mapped corners") {
-  Field field{.value =
-                  [](const Point& p) {
-                    return std::max({1 - p[0], p[0] - 2, -3 - p[1], p[1], 4 - p[2], p[2] - 9});
-                  },
+  Field field{.some = point_by_point([](const Point& p) {
+                return std::max({1 - p[0], p[0] - 2, -3 - p[1], p[1], 4 - p[2], p[2] - 9});
+              }),
               .box = {{1, -3, 4}, {2, 0, 9}}};
   field.radius_mm = field.ball_mm = 1e3;  // neither bounds the corners
   const Affine map{{{{0.9, -0.3, 0.2}, {0.5, 1.1, -0.4}, {-0.2, 0.6, 0.8}}}, {3, -7, 1}};
