@@ -127,17 +127,6 @@ long duplicate_triangles(model::TriangleSoup mesh) {
   return drop_duplicates(mesh);
 }
 
-namespace {
-
-struct Lid {
-  Vector3 sum{};  // of the middles of its border's edges
-  double edges = 0;
-  double reach_mm = 0;
-  int middle = 0;  // index of a point
-};
-
-}  // namespace
-
 long close_holes(model::TriangleSoup& mesh, double widest_mm) {
   weld_equal_points(mesh);
   drop_degenerate(mesh);
@@ -149,23 +138,17 @@ long close_holes(model::TriangleSoup& mesh, double widest_mm) {
     open.push_back(edge.front().rising ? std::array{high, low} : std::array{low, high});
     borders.join(borders.of(low), borders.of(high));
   });
-  std::map<int, Lid> lids;
-  for (const auto& [from, to] : open) {
-    Lid& lid = lids[borders.of(from)];
-    lid.sum = lid.sum + 0.5 * (mesh.points[from] + mesh.points[to]);
-    ++lid.edges;
-  }
-  for (auto& [border, lid] : lids) {
-    lid.middle = count_of(mesh.points);
-    mesh.points.push_back((1 / lid.edges) * lid.sum);
-  }
-  for (const auto& [from, to] : open) {
-    Lid& lid = lids[borders.of(from)];
-    lid.reach_mm = std::max(lid.reach_mm, length(mesh.points[from] - mesh.points[lid.middle]));
-  }
-  for (const auto& [from, to] : open) {
-    const Lid& lid = lids[borders.of(from)];
-    if (2 * lid.reach_mm <= widest_mm) mesh.triangles.push_back({from, to, lid.middle});
+  std::map<int, std::vector<std::array<int, 2>>> holes;  // by their borders
+  for (const auto& edge : open) holes[borders.of(edge[0])].push_back(edge);
+  for (const auto& [border, edges] : holes) {
+    Vector3 middle{};
+    for (const auto& [from, to] : edges) middle = middle + 0.5 * (mesh.points[from] + mesh.points[to]);
+    middle = (1 / static_cast<double>(edges.size())) * middle;
+    double reach_mm = 0;
+    for (const auto& [from, to] : edges) reach_mm = std::max(reach_mm, length(mesh.points[from] - middle));
+    if (2 * reach_mm > widest_mm) continue;
+    for (const auto& [from, to] : edges) mesh.triangles.push_back({from, to, count_of(mesh.points)});
+    mesh.points.push_back(middle);
   }
   return static_cast<long>(open.size());
 }
