@@ -14,15 +14,6 @@ namespace vam::solid {
 
 namespace {
 
-/// Visits the neighbours of a voxel in its slice.
-template <class Visit>
-void beside(const model::Grid& grid, int i, int j, Visit visit) {
-  if (i > 0) visit(i - 1, j);
-  if (i + 1 < grid.nx) visit(i + 1, j);
-  if (j > 0) visit(i, j - 1);
-  if (j + 1 < grid.ny) visit(i, j + 1);
-}
-
 std::size_t place(const model::Grid& grid, int i, int j) { return flat_index(j, grid.nx, i); }
 
 }  // namespace
@@ -35,6 +26,7 @@ GrownInsert::GrownInsert(const model::Grid& grid, const std::function<void(int k
   std::vector<float> here(grid.slice_size(), 0.0F);
   std::vector<float> above(grid.slice_size(), 0.0F);
   read(0, here.data());
+  const auto nx = static_cast<std::size_t>(grid.nx);
   for (int k = 0; k < grid.nz; ++k) {
     std::fill(above.begin(), above.end(), 0.0F);
     if (k + 1 < grid.nz) read(k + 1, above.data());
@@ -42,8 +34,9 @@ GrownInsert::GrownInsert(const model::Grid& grid, const std::function<void(int k
       for (int i = 0; i < grid.nx; ++i) {
         const std::size_t at = place(grid, i, j);
         if (here[at] <= 0) continue;
-        bool rim = here[at] < 1 || below[at] < 1 || above[at] < 1;
-        beside(grid, i, j, [&](int x, int y) { rim = rim || here[place(grid, x, y)] < 1; });
+        const bool rim = here[at] < 1 || below[at] < 1 || above[at] < 1 || (i > 0 && here[at - 1] < 1) ||
+                         (i + 1 < grid.nx && here[at + 1] < 1) || (j > 0 && here[at - nx] < 1) ||
+                         (j + 1 < grid.ny && here[at + nx] < 1);
         if (rim) rims_[k].push_back({i, j, here[at]});
       }
     }
