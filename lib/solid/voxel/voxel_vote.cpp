@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
@@ -103,7 +105,7 @@ long settle_undecided(const model::Grid& grid, float* out) {
   const auto count = static_cast<long>(open.size());
   const auto nx = static_cast<std::size_t>(grid.nx);
   while (!open.empty()) {
-    std::vector<float> means;
+    std::vector<std::pair<std::size_t, float>> means;
     for (const std::size_t at : open) {
       float sum = 0;
       float decided = 0;
@@ -116,18 +118,12 @@ long settle_undecided(const model::Grid& grid, float* out) {
       look(at % nx + 1 < nx, at + 1);
       look(at >= nx, at - nx);
       look(at + nx < grid.slice_size(), at + nx);
-      means.push_back(decided > 0 ? sum / decided : undecided);
+      if (decided > 0) means.emplace_back(at, sum / decided);
     }
-    std::vector<std::size_t> still;
-    for (std::size_t n = 0; n < open.size(); ++n) {
-      out[open[n]] = means[n];
-      if (std::isnan(means[n])) still.push_back(open[n]);
-    }
-    if (still.size() == open.size()) {
-      for (const std::size_t at : still) out[at] = 0;
-      break;
-    }
-    open = std::move(still);
+    for (const auto& [at, mean] : means) out[at] = mean;
+    if (means.empty())
+      for (const std::size_t at : open) out[at] = 0;
+    std::erase_if(open, [&](std::size_t at) { return !std::isnan(out[at]); });
   }
   return count;
 }
