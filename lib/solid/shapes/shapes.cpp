@@ -21,7 +21,7 @@ ShapeParameter count(std::string_view name, double value, double low, double hig
   return {name, value, "", low, high};
 }
 
-std::vector<ShapeKind> lattices() {
+std::vector<ShapeKind> catalogue() {
   return {
       {"gyroid",
        "gyroid sheet in a cylinder [OST22 fig 6]",
@@ -35,11 +35,6 @@ std::vector<ShapeKind> lattices() {
        "octet truss [CAL17 fig 8C]",
        {mm("cell", 5), mm("strut", 0.8), count("across", 2, 1, 1000), count("layers", 2, 1, 1000)},
        build::octet},
-  };
-}
-
-std::vector<ShapeKind> test_targets() {
-  return {
       {"disc-grid",
        "discs on a square grid, constant cross-section [RAY21 fig 7]; 35 and 8 px of 0.065 mm",
        {mm("period", 2.275), mm("radius", 0.52), mm("diameter", 16), mm("height", 2)},
@@ -61,11 +56,6 @@ std::vector<ShapeKind> test_targets() {
        {mm("finest", 0.195), mm("coarsest", 1.82), count("steps", 8, 1, 100), mm("diameter", 15), mm("height", 2),
         mm("base", 0.5, 0)},
        build::resolution},
-  };
-}
-
-std::vector<ShapeKind> prints_of_papers() {
-  return {
       {"boat",
        "boat with thin walls, cabin and funnel [OST22 fig 5]",
        {mm("length", 14), mm("wall", 0.7)},
@@ -82,25 +72,12 @@ std::vector<ShapeKind> prints_of_papers() {
        "fluted handle, bored for the shaft [CAL19 fig 4]",
        {mm("diameter", 12), mm("length", 16), mm("bore", 4), count("flutes", 8, 3, 100)},
        build::handle},
-  };
-}
-
-std::vector<ShapeKind> solids() {
-  return {
       {"sphere", "ball", {mm("diameter", 10)}, build::sphere},
       {"cylinder", "upright cylinder", {mm("diameter", 10), mm("height", 10)}, build::cylinder},
       {"box", "box, square by default [CAL17 fig 7]", {mm("x", 10), mm("y", 10), mm("z", 10)}, build::box},
       {"cone", "frustum, pointed by default", {mm("bottom", 10), mm("top", 0, 0), mm("height", 10)}, build::cone},
       {"torus", "ring [CAL19 fig 2I]", {mm("outer", 12), mm("tube", 3)}, build::torus},
   };
-}
-
-std::vector<ShapeKind> catalogue() {
-  std::vector<ShapeKind> all;
-  for (const auto& some : {lattices(), test_targets(), prints_of_papers(), solids()}) {
-    all.insert(all.end(), some.begin(), some.end());
-  }
-  return all;
 }
 
 // The entry of that name; Fault::usage suggests the nearest one otherwise, or lists them all.
