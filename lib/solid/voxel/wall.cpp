@@ -62,7 +62,7 @@ Field padded(const model::Volume& part) {
     for (int j = 0; j < grid.ny; ++j) {
       const float* row = part.slice(k) + static_cast<std::ptrdiff_t>(j) * grid.nx;
       for (int i = 0; i < grid.nx; ++i)
-        field.solid[static_cast<std::size_t>(field.index(i + 1, j + 1, k + 1))] = model::half_covered(row[i]) ? 1 : 0;
+        field.solid[field.index(i + 1, j + 1, k + 1)] = model::half_covered(row[i]) ? 1 : 0;
     }
   }
   for (std::size_t at = 0; at < all; ++at)
@@ -77,11 +77,11 @@ void sweep(Field& field, std::int64_t first, std::int64_t stride, int count) {
   std::vector<std::int32_t> found(static_cast<std::size_t>(count));
   std::vector<double> heights(found.size());
   const auto at = [&](int n) { return static_cast<std::size_t>(first + n * stride); };
-  const auto height = [&](int n) { return heights[static_cast<std::size_t>(n)]; };
+  const auto height = [&](int n) { return heights[n]; };
   for (int n = 0; n < count; ++n) {
-    const std::int32_t own = found[static_cast<std::size_t>(n)] = field.nearest[at(n)];
+    const std::int32_t own = found[n] = field.nearest[at(n)];
     if (own < 0) continue;
-    heights[static_cast<std::size_t>(n)] = static_cast<double>(field.squared(static_cast<std::int64_t>(at(n)), own));
+    heights[n] = static_cast<double>(field.squared(static_cast<std::int64_t>(at(n)), own));
     double from = -static_cast<double>(far_away);
     while (!hull.empty()) {
       const int m = hull.back();
@@ -97,7 +97,7 @@ void sweep(Field& field, std::int64_t first, std::int64_t stride, int count) {
   std::size_t piece = 0;
   for (int n = 0; n < count && !hull.empty(); ++n) {
     while (piece + 1 < hull.size() && begin[piece + 1] < n) ++piece;
-    field.nearest[at(n)] = found[static_cast<std::size_t>(hull[piece])];
+    field.nearest[at(n)] = found[hull[piece]];
   }
 }
 
@@ -115,10 +115,10 @@ void find_nearest(Field& field) {
 /// No voxel around is farther from the void.
 bool is_middle(const Field& field, int i, int j, int k) {
   const std::int64_t here = field.index(i, j, k);
-  const std::int64_t own = field.squared(here, field.nearest[static_cast<std::size_t>(here)]);
+  const std::int64_t own = field.squared(here, field.nearest[here]);
   for (int n = 0; n < 27; ++n) {
     const std::int64_t there = field.index(i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1);
-    if (field.squared(there, field.nearest[static_cast<std::size_t>(there)]) > own) return false;
+    if (field.squared(there, field.nearest[there]) > own) return false;
   }
   return true;
 }
@@ -132,15 +132,14 @@ struct Crossing {
 
 Crossing crossing(const Field& field, std::int64_t here) {
   const auto p = field.place(here);
-  const auto v = field.place(field.nearest[static_cast<std::size_t>(here)]);
-  const double distance =
-      std::sqrt(static_cast<double>(field.squared(here, field.nearest[static_cast<std::size_t>(here)])));
+  const auto v = field.place(field.nearest[here]);
+  const double distance = std::sqrt(static_cast<double>(field.squared(here, field.nearest[here])));
   constexpr double step = 0.25;
   for (double way = step;; way += step) {
     std::array<int, 3> at{};
     for (std::size_t axis = 0; axis < 3; ++axis)
       at[axis] = static_cast<int>(std::lround(p[axis] + way * (p[axis] - v[axis]) / distance));
-    if (field.solid[static_cast<std::size_t>(field.index(at[0], at[1], at[2]))] == 0) {
+    if (field.solid[field.index(at[0], at[1], at[2])] == 0) {
       return {distance - 0.5 + way - 0.5 * step, 2 * distance - 1, v, at};  // faces are half a voxel from the middles
     }
   }
@@ -230,7 +229,7 @@ Places middle_of(const model::Volume& part, const Field& field, double stretch_z
     for (int j = 1; j + 1 < field.size[1]; ++j) {
       for (int i = 1; i + 1 < field.size[0]; ++i) {
         const std::int64_t here = field.index(i, j, slice + 1);
-        if (field.solid[static_cast<std::size_t>(here)] == 0 || !is_middle(field, i, j, slice + 1)) continue;
+        if (field.solid[here] == 0 || !is_middle(field, i, j, slice + 1)) continue;
         const Crossing across = crossing(field, here);
         if (tapers(part, across)) {
           own.tapering.push_back(across);
@@ -283,8 +282,7 @@ std::optional<Wall> thinnest_neck(const Field& field, double stretch_z) {
   std::vector<std::int32_t> squared(field.solid.size());
   parallel_for(field.size[2], [&](int k) {
     for (std::int64_t at = field.index(0, 0, k); at < field.index(0, 0, k + 1); ++at) {
-      const auto here = static_cast<std::size_t>(at);
-      if (field.solid[here] != 0) squared[here] = static_cast<std::int32_t>(field.squared(at, field.nearest[here]));
+      if (field.solid[at] != 0) squared[at] = static_cast<std::int32_t>(field.squared(at, field.nearest[at]));
     }
   });
   std::optional<Wall> thinnest;
