@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/buckets.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "solid/mesh/private/topology.hpp"
@@ -24,28 +25,22 @@ struct TriangleKey {
 };
 
 // All triangles, those with the same corners next to each other, in the order of the file.
-std::vector<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
-  // Counting sort by the lowest corner, then each short bucket by the others.
-  std::vector<std::size_t> first(mesh.points.size() + 1);
-  for (const Triangle& t : mesh.triangles) ++first[std::min({t[0], t[1], t[2]}) + 1];
-  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  std::vector<TriangleKey> keys(mesh.triangles.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    Triangle t = mesh.triangles[i];
-    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    const bool even = t[1] < t[2];
-    if (!even) std::swap(t[1], t[2]);
-    keys[next[t[0]]++] = {t, static_cast<int>(i), even};
+Buckets<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
+  Buckets<TriangleKey> by_lowest(mesh.points.size(), [&](const auto& put) {
+    for (int i = 0; i < count_of(mesh.triangles); ++i) {
+      Triangle t = mesh.triangles[i];
+      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+      const bool even = t[1] < t[2];
+      if (!even) std::swap(t[1], t[2]);
+      put(t[0], TriangleKey{t, i, even});
+    }
+  });
+  for (std::size_t low = 0; low < by_lowest.size(); ++low) {
+    std::sort(by_lowest[low].begin(), by_lowest[low].end(), [](const TriangleKey& a, const TriangleKey& b) {
+      return a.sorted != b.sorted ? a.sorted < b.sorted : a.index < b.index;
+    });
   }
-  for (std::size_t low = 0; low + 1 < first.size(); ++low) {
-    std::sort(keys.begin() + static_cast<std::ptrdiff_t>(first[low]),
-              keys.begin() + static_cast<std::ptrdiff_t>(first[low + 1]),
-              [](const TriangleKey& a, const TriangleKey& b) {
-                return a.sorted != b.sorted ? a.sorted < b.sorted : a.index < b.index;
-              });
-  }
-  return keys;
+  return by_lowest;
 }
 
 /// Triangles that are there several times, of which either one stays or as many as run one way more than the other:
@@ -65,7 +60,7 @@ class Patches {
       places_.push_back(t);
       if (copied[t] == 0) rest_.push_back(mesh.triangles[t]);
     }
-    EdgeTable(there, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) { vote(edge); });
+    for_each_edge(there, mesh.points.size(), [&](int, std::span<const HalfEdge> edge) { vote(edge); });
   }
 
   [[nodiscard]] bool stays_once(std::size_t triangle) {
@@ -147,7 +142,8 @@ class Patches {
 }  // namespace
 
 long drop_duplicates(model::TriangleSoup& mesh) {
-  const std::vector<TriangleKey> keys = sorted_keys(mesh);
+  const Buckets<TriangleKey> by_lowest = sorted_keys(mesh);
+  const std::vector<TriangleKey>& keys = by_lowest.items();
   std::vector<int> times(mesh.triangles.size(), 0);
   std::vector<char> copied(mesh.triangles.size(), 0);
   for (auto group = keys.begin(); group != keys.end();) {
@@ -160,10 +156,10 @@ long drop_duplicates(model::TriangleSoup& mesh) {
     copied[keep->index] = std::abs(balance) != 1 ? 1 : 0;
     group = stop;
   }
-  const bool any_copied = std::find(copied.begin(), copied.end(), 1) != copied.end();
   std::optional<Patches> patches;
-  if (any_copied) patches.emplace(mesh, times, copied);
+  if (std::find(copied.begin(), copied.end(), 1) != copied.end()) patches.emplace(mesh, times, copied);
   std::vector<Triangle> kept;
+  kept.reserve(times.size());
   for (std::size_t t = 0; t < times.size(); ++t) {
     const int count = copied[t] != 0 && patches->stays_once(t) ? 1 : times[t];
     kept.insert(kept.end(), count, mesh.triangles[t]);

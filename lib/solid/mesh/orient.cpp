@@ -11,26 +11,22 @@ namespace vam::solid {
 
 namespace {
 
-// The triangle across each side, -1 where there is none or the edge has more than two.
-struct Neighbours {
-  std::vector<std::array<int, 3>> across;
-  std::vector<std::array<bool, 3>> agrees;  // runs through the edge the other way, as it should
+// The triangle across a side.
+struct Neighbour {
+  int triangle = -1;   // none, or the edge has more than two
+  bool agrees = true;  // runs through the edge the other way, as it should
 };
 
-Neighbours neighbours(const model::TriangleSoup& mesh) {
-  Neighbours result;
-  result.across.assign(mesh.triangles.size(), {-1, -1, -1});
-  result.agrees.assign(mesh.triangles.size(), {true, true, true});
-  EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
+// By triangle and side.
+std::vector<std::array<Neighbour, 3>> neighbours(const model::TriangleSoup& mesh) {
+  std::vector<std::array<Neighbour, 3>> all(mesh.triangles.size());
+  for_each_edge(mesh.triangles, mesh.points.size(), [&](int, std::span<const HalfEdge> edge) {
     if (edge.size() != 2) return;
-    for (std::size_t one = 0; one < 2; ++one) {
-      const auto triangle = static_cast<std::size_t>(edge[one].triangle);
-      const auto side = static_cast<std::size_t>(edge[one].side);
-      result.across[triangle][side] = edge[1 - one].triangle;
-      result.agrees[triangle][side] = edge[0].rising != edge[1].rising;
-    }
+    const bool agrees = edge[0].rising != edge[1].rising;
+    for (std::size_t one = 0; one < 2; ++one)
+      all[edge[one].triangle][edge[one].side] = {edge[1 - one].triangle, agrees};
   });
-  return result;
+  return all;
 }
 
 // A set of triangles that hang together.
@@ -44,7 +40,7 @@ struct Component {
 
 // Components by flood fill; turn[t] = 1 makes triangle t agree with its component's majority.
 std::vector<Component> flood(const model::TriangleSoup& mesh, std::vector<char>& turn, long& unorientable) {
-  const Neighbours next = neighbours(mesh);
+  const auto next = neighbours(mesh);
   std::vector<char> seen(mesh.triangles.size(), 0);
   std::vector<Component> components;
   for (std::size_t seed = 0; seed < mesh.triangles.size(); ++seed) {
@@ -55,10 +51,10 @@ std::vector<Component> flood(const model::TriangleSoup& mesh, std::vector<char>&
     std::size_t turned = 0;
     for (std::size_t done = 0; done < component.triangles.size(); ++done) {
       const auto t = static_cast<std::size_t>(component.triangles[done]);
-      for (std::size_t side = 0; side < 3; ++side) {
-        if (next.across[t][side] < 0) continue;
-        const auto other = static_cast<std::size_t>(next.across[t][side]);
-        const char wanted = next.agrees[t][side] ? turn[t] : static_cast<char>(1 - turn[t]);
+      for (const Neighbour& across : next[t]) {
+        if (across.triangle < 0) continue;
+        const auto other = static_cast<std::size_t>(across.triangle);
+        const char wanted = across.agrees ? turn[t] : static_cast<char>(1 - turn[t]);
         if (seen[other] == 0) {
           seen[other] = 1;
           turn[other] = wanted;
@@ -80,14 +76,9 @@ std::vector<Component> flood(const model::TriangleSoup& mesh, std::vector<char>&
 Triangle turned_over(const Triangle& t) { return {t[0], t[2], t[1]}; }
 
 void measure(const model::TriangleSoup& mesh, Component& component) {
-  for (const int t : component.triangles) {
-    for (const int corner : mesh.triangles[t]) {
-      component.bounds.add(mesh.points[corner]);
-    }
-  }
-  for (const int t : component.triangles) {
-    add(component.measure, mesh, mesh.triangles[t], component.bounds.centre());
-  }
+  for (const int t : component.triangles)
+    for (const int corner : mesh.triangles[t]) component.bounds.add(mesh.points[corner]);
+  for (const int t : component.triangles) add(component.measure, mesh, mesh.triangles[t], component.bounds.centre());
   // The vector area of a surface is minus that of its holes; a half sphere has a half of its area, a closed surface 0.
   component.solid =
       length(component.measure.vector_area) < 0.1 * component.measure.area && component.measure.volume != 0;
@@ -103,9 +94,7 @@ class Nesting {
     if (!components_[outer].bounds.contains(components_[inner].bounds)) return false;
     if (winding_[outer] == nullptr) {
       model::TriangleSoup surface{mesh_.points, {}};
-      for (const int t : components_[outer].triangles) {
-        surface.triangles.push_back(mesh_.triangles[t]);
-      }
+      for (const int t : components_[outer].triangles) surface.triangles.push_back(mesh_.triangles[t]);
       winding_[outer] = std::make_unique<WindingNumber>(surface);
     }
     const std::vector<int>& triangles = components_[inner].triangles;
@@ -129,9 +118,8 @@ class Nesting {
 // keeps its sense relative to it.
 long turn_outwards(const model::TriangleSoup& mesh, std::vector<Component>& components) {
   std::vector<std::size_t> solids;
-  for (std::size_t c = 0; c < components.size(); ++c) {
+  for (std::size_t c = 0; c < components.size(); ++c)
     if (components[c].solid) solids.push_back(c);
-  }
   std::sort(solids.begin(), solids.end(), [&](std::size_t a, std::size_t b) {
     const double size_a = components[a].bounds.diagonal();
     const double size_b = components[b].bounds.diagonal();

@@ -49,7 +49,7 @@ struct Border {
 
 Border border(const model::TriangleSoup& mesh) {
   Border result;
-  EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int low, std::span<const HalfEdge> edge) {
+  for_each_edge(mesh.triangles, mesh.points.size(), [&](int low, std::span<const HalfEdge> edge) {
     if (edge.size() % 2 == 0) return;
     const int high = edge.front().high;
     result.points.push_back(low);
@@ -77,7 +77,7 @@ void close_cracks(model::TriangleSoup& mesh, Repair& done) {
 }
 
 void count_edges(const model::TriangleSoup& mesh, Repair& done) {
-  EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
+  for_each_edge(mesh.triangles, mesh.points.size(), [&](int, std::span<const HalfEdge> edge) {
     const auto rising = std::count_if(edge.begin(), edge.end(), [](const HalfEdge& half) { return half.rising; });
     if (edge.size() % 2 != 0) ++done.boundary_edges;
     if (edge.size() > 2) ++done.non_manifold_edges;
@@ -132,7 +132,7 @@ long close_holes(model::TriangleSoup& mesh, double widest_mm) {
   drop_degenerate(mesh);
   std::vector<std::array<int, 2>> open;
   DisjointSets<int> borders(mesh.points.size());
-  EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int low, std::span<const HalfEdge> edge) {
+  for_each_edge(mesh.triangles, mesh.points.size(), [&](int low, std::span<const HalfEdge> edge) {
     if (edge.size() % 2 == 0) return;
     const int high = edge.front().high;
     open.push_back(edge.front().rising ? std::array{high, low} : std::array{low, high});

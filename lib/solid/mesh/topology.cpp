@@ -11,31 +11,20 @@
 
 namespace vam::solid {
 
-EdgeTable::EdgeTable(std::span<const Triangle> triangles, std::size_t points) : first_(points + 1) {
-  // Counting sort by the lower index, then each short bucket by the higher one.
-  const auto low_of = [](const Triangle& t, std::size_t side) {
-    return static_cast<std::size_t>(std::min(t[side], t[(side + 1) % 3]));
-  };
-  for (const Triangle& t : triangles) {
-    for (std::size_t side = 0; side < 3; ++side) ++first_[low_of(t, side) + 1];
-  }
-  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  half_edges_.resize(first_.back());
-  for (std::size_t index = 0; index < triangles.size(); ++index) {
-    const Triangle& t = triangles[index];
-    for (std::size_t side = 0; side < 3; ++side) {
-      const int from = t[side];
-      const int to = t[(side + 1) % 3];
-      half_edges_[next[low_of(t, side)]++] = {std::max(from, to), static_cast<int>(index), static_cast<int>(side),
-                                              from < to};
+Buckets<HalfEdge> half_edges(std::span<const Triangle> triangles, std::size_t points) {
+  Buckets<HalfEdge> by_low(points, [&](const auto& put) {
+    for (int index = 0; index < count_of(triangles); ++index) {
+      for (int side = 0; side < 3; ++side) {
+        const int from = triangles[index][side];
+        const int to = triangles[index][(side + 1) % 3];
+        put(std::min(from, to), HalfEdge{std::max(from, to), index, side, from < to});
+      }
     }
-  }
-  for (std::size_t low = 0; low < points; ++low) {
-    const auto begin = half_edges_.begin() + static_cast<std::ptrdiff_t>(first_[low]);
-    const auto end = half_edges_.begin() + static_cast<std::ptrdiff_t>(first_[low + 1]);
-    std::stable_sort(begin, end, [](const HalfEdge& a, const HalfEdge& b) { return a.high < b.high; });
-  }
+  });
+  for (std::size_t low = 0; low < points; ++low)
+    std::stable_sort(by_low[low].begin(), by_low[low].end(),
+                     [](const HalfEdge& a, const HalfEdge& b) { return a.high < b.high; });
+  return by_low;
 }
 
 void add(Measure& measure, const model::TriangleSoup& mesh, const Triangle& triangle,

@@ -58,29 +58,15 @@ Polygon polygon(const TriangleCorners& corners) {
   return result;
 }
 
-Bins::Bins(const std::vector<TriangleCorners>& triangles, std::size_t axis, int layers)
-    : first_(static_cast<std::size_t>(layers) + 1) {
-  std::vector<Span> spans;
-  spans.reserve(triangles.size());
-  for (const TriangleCorners& t : triangles) {
-    const double low = std::min({t[0][axis], t[1][axis], t[2][axis]});
-    const double high = std::max({t[0][axis], t[1][axis], t[2][axis]});
-    spans.push_back(span_of(low, high, layers));
-    for (int k = spans.back().first; k <= spans.back().last; ++k) ++first_[k + 1];
-  }
-  for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  members_.resize(first_.back());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (int k = spans[t].first; k <= spans[t].last; ++k) {
-      members_[next[k]++] = static_cast<int>(t);
-    }
-  }
-}
-
-std::span<const int> Bins::operator[](int layer) const {
-  const auto k = static_cast<std::size_t>(layer);
-  return std::span<const int>(members_).subspan(first_[k], first_[k + 1] - first_[k]);
+Buckets<int> by_layer(const std::vector<TriangleCorners>& triangles, std::size_t axis, int layers) {
+  return {static_cast<std::size_t>(layers), [&](const auto& put) {
+            for (int i = 0; i < count_of(triangles); ++i) {
+              const auto& [a, b, c] = triangles[i];
+              const auto [low, high] = std::minmax({a[axis], b[axis], c[axis]});
+              const Span span = span_of(low, high, layers);
+              for (int k = span.first; k <= span.last; ++k) put(k, i);
+            }
+          }};
 }
 
 Moment moment(const Polygon& piece, std::size_t axis) {

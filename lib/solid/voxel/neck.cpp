@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/buckets.hpp"
 #include "base/disjoint_sets.hpp"
 
 namespace vam::solid {
@@ -13,32 +14,23 @@ namespace {
 /// The solid voxels, the deepest first.
 std::vector<std::int32_t> by_depth(const std::vector<std::int32_t>& squared) {
   const std::int32_t deepest = squared.empty() ? 0 : *std::max_element(squared.begin(), squared.end());
-  std::vector<std::int64_t> place(static_cast<std::size_t>(deepest) + 1, 0);  // of the next voxel of a depth
-  for (const std::int32_t depth : squared) ++place[static_cast<std::size_t>(depth)];
-  std::int64_t solid = 0;
-  for (std::int32_t depth = deepest; depth > 0; --depth) {
-    const std::int64_t count = place[static_cast<std::size_t>(depth)];
-    place[static_cast<std::size_t>(depth)] = solid;
-    solid += count;
-  }
-  std::vector<std::int32_t> order(static_cast<std::size_t>(solid));
-  for (std::size_t at = 0; at < squared.size(); ++at) {
-    if (squared[at] == 0) continue;
-    order[static_cast<std::size_t>(place[static_cast<std::size_t>(squared[at])]++)] = static_cast<std::int32_t>(at);
-  }
-  return order;
+  return Buckets<std::int32_t>(static_cast<std::size_t>(deepest),
+                               [&](const auto& put) {
+                                 for (std::size_t at = 0; at < squared.size(); ++at)
+                                   if (squared[at] > 0) put(deepest - squared[at], static_cast<std::int32_t>(at));
+                               })
+      .items();
 }
 
 }  // namespace
 
 std::vector<std::int64_t> necks(const std::array<int, 3>& size, const std::vector<std::int32_t>& squared,
                                 std::int32_t most, double least_deeper) {
-  const auto depth_of = [&](std::int32_t voxel) { return squared[static_cast<std::size_t>(voxel)]; };
+  const auto depth_of = [&](std::int32_t voxel) { return squared[voxel]; };
   std::array<std::int32_t, 26> around{};
   for (int n = 0; n < 27; ++n) {
     if (n == 13) continue;
-    around[static_cast<std::size_t>(n < 13 ? n : n - 1)] =
-        (n / 9 - 1) * size[0] * size[1] + (n / 3 % 3 - 1) * size[0] + n % 3 - 1;
+    around[n < 13 ? n : n - 1] = (n / 9 - 1) * size[0] * size[1] + (n / 3 % 3 - 1) * size[0] + n % 3 - 1;
   }
   std::vector<std::int64_t> found;
   DisjointSets<std::int32_t> sets(squared.size());  // of voxels that touch; each is named by its deepest one

@@ -29,7 +29,7 @@ std::size_t column(const model::Grid& grid, int i, int j) { return flat_index(j,
 // For every column along z the total of its pieces, which is 0 unless a hole lies above or below.
 std::vector<double> column_totals(const std::vector<TriangleCorners>& triangles, const model::Grid& grid) {
   std::vector<double> totals(grid.slice_size(), 0.0);
-  const Bins bins(triangles, 1, grid.ny);
+  const Buckets<int> bins = by_layer(triangles, 1, grid.ny);
   parallel_for(grid.ny, [&](int j) {
     for (const int t : bins[j]) {
       const Polygon strip = layer(polygon(triangles[t]), 1, j, grid.ny);
@@ -132,7 +132,7 @@ long settle_undecided(const model::Grid& grid, float* out) {
 
 Vote vote(const std::vector<TriangleCorners>& triangles, const model::Grid& grid, const SliceSink& sink) {
   const std::vector<double> z_totals = column_totals(triangles, grid);
-  const Bins bins(triangles, 2, grid.nz);
+  const Buckets<int> bins = by_layer(triangles, 2, grid.nz);
   std::vector<SliceSums> sums(slab);
   std::vector<double> below(grid.slice_size(), 0.0);  // winding numbers that the slices below hand up
   std::vector<float> slices(grid.slice_size() * slab);

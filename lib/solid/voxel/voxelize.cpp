@@ -208,7 +208,7 @@ Vote voxelize(const model::TriangleSoup& mesh, const model::Grid& grid, Fill fil
               const SliceSink& sink) {
   const std::vector<TriangleCorners> triangles = in_voxels(mesh, grid);
   if (fill == Fill::vote) return vote(triangles, grid, sink);
-  const Bins bins(triangles, 2, grid.nz);
+  const Buckets<int> bins = by_layer(triangles, 2, grid.nz);
   const SharedRows shared_rows(shared, grid);
   std::vector<VoxelRows> rows(slab);
   std::vector<float> slices(grid.slice_size() * slab);

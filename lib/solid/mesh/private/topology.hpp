@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/buckets.hpp"
 #include "model/mesh.hpp"
 #include "solid/mesh/geometry.hpp"
 
@@ -22,30 +23,23 @@ struct HalfEdge {
   bool rising = false;  // runs from the lower index to the higher
 };
 
-/// All half-edges, those of the same edge next to each other.
-class EdgeTable {
- public:
-  EdgeTable(std::span<const Triangle> triangles, std::size_t points);
+/// By the lower point, in the order of the higher.
+[[nodiscard]] Buckets<HalfEdge> half_edges(std::span<const Triangle> triangles, std::size_t points);
 
-  /// Calls visit(low, half_edges) for every edge, by ascending point indices.
-  template <typename Visit>
-  void for_each(const Visit& visit) const {
-    for (std::size_t low = 0; low + 1 < first_.size(); ++low) {
-      std::size_t begin = first_[low];
-      const std::size_t end = first_[low + 1];
-      while (begin < end) {
-        std::size_t next = begin + 1;
-        while (next < end && half_edges_[next].high == half_edges_[begin].high) ++next;
-        visit(static_cast<int>(low), std::span<const HalfEdge>(half_edges_).subspan(begin, next - begin));
-        begin = next;
-      }
+/// Calls visit(low, half_edges) for every edge, by ascending point indices.
+template <typename Visit>
+void for_each_edge(std::span<const Triangle> triangles, std::size_t points, const Visit& visit) {
+  const Buckets<HalfEdge> by_low = half_edges(triangles, points);
+  for (std::size_t low = 0; low < points; ++low) {
+    std::span<const HalfEdge> rest = by_low[low];
+    while (!rest.empty()) {
+      std::size_t same = 1;
+      while (same < rest.size() && rest[same].high == rest[0].high) ++same;
+      visit(static_cast<int>(low), rest.first(same));
+      rest = rest.subspan(same);
     }
   }
-
- private:
-  std::vector<std::size_t> first_;  // by lower index
-  std::vector<HalfEdge> half_edges_;
-};
+}
 
 /// Signed volume, area and the like of a set of triangles.
 struct Measure {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/buckets.hpp"
 #include "base/vector3.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
@@ -22,15 +23,7 @@ using TriangleCorners = std::array<Vector3, 3>;
 [[nodiscard]] Polygon polygon(const TriangleCorners& corners);
 
 /// For every layer along one axis the triangles that meet it, in ascending order.
-class Bins {
- public:
-  Bins(const std::vector<TriangleCorners>& triangles, std::size_t axis, int layers);
-  [[nodiscard]] std::span<const int> operator[](int layer) const;
-
- private:
-  std::vector<std::size_t> first_;
-  std::vector<int> members_;
-};
+[[nodiscard]] Buckets<int> by_layer(const std::vector<TriangleCorners>& triangles, std::size_t axis, int layers);
 
 /// Of a piece: the component of its vector area along an axis, and that times its mean coordinate.
 struct Moment {
