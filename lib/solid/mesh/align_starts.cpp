@@ -30,14 +30,6 @@ PrincipalAxes principal_frame(const std::vector<Vector3d>& points) {
   return frame;
 }
 
-// Turns about `axis` by steps that a short ICP can bridge.
-void add_turns(const Vector3d& axis, std::vector<Matrix3d>& turns) {
-  constexpr int steps = 18;  // a quarter turn is in the 24 already: 5 degrees between starts
-  for (int k = 1; k < steps; ++k) {
-    turns.push_back(Eigen::AngleAxisd(k * std::numbers::pi / 2 / steps, axis).toRotationMatrix());
-  }
-}
-
 // Rotations, in the reference's principal frame, that the second moments cannot tell from the identity.
 std::vector<Matrix3d> undetermined_turns(const Vector3d& spread) {
   constexpr double alike = 0.1;  // relative difference of spreads up to which the axes may be mixed up
@@ -58,10 +50,11 @@ std::vector<Matrix3d> undetermined_turns(const Vector3d& spread) {
         }
       }
     }
-  } else if (low_pair) {
-    add_turns(Vector3d::UnitZ(), turns);
-  } else if (high_pair) {
-    add_turns(Vector3d::UnitX(), turns);
+  } else if (low_pair || high_pair) {
+    constexpr int steps = 18;  // that a short ICP can bridge: a quarter turn is in the 24 already
+    const Vector3d axis = low_pair ? Vector3d::UnitZ() : Vector3d::UnitX();
+    for (int k = 1; k < steps; ++k)
+      turns.push_back(Eigen::AngleAxisd(k * std::numbers::pi / 2 / steps, axis).toRotationMatrix());
   }
   return turns;
 }
