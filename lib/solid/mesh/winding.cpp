@@ -62,20 +62,13 @@ WindingNumber::WindingNumber(std::shared_ptr<const TriangleTree> tree) : tree_(s
 }
 
 WindingNumber::Cluster WindingNumber::of_leaf(const TriangleNode& node) const {
-  Cluster leaf;
-  for (int i = node.begin; i < node.end; ++i) {
+  const auto of_triangle = [&](int i) {
     const TriangleCorners& t = tree_->triangles[i];
-    const Vector3 a = area_vector(t);
-    leaf.weight += length(a);
-    leaf.area = leaf.area + a;
-    leaf.centre = leaf.centre + length(a) * centroid(t);
-  }
-  leaf.centre = (1 / leaf.weight) * leaf.centre;
-  for (int i = node.begin; i < node.end; ++i) {
-    const TriangleCorners& t = tree_->triangles[i];
-    const Vector3 offset = centroid(t) - leaf.centre;
-    for (std::size_t d = 0; d < 3; ++d) leaf.second[d] = leaf.second[d] + offset[d] * area_vector(t);
-  }
+    const Vector3 area = area_vector(t);
+    return Cluster{.centre = centroid(t), .area = area, .weight = length(area)};
+  };
+  Cluster leaf = of_triangle(node.begin);
+  for (int i = node.begin + 1; i < node.end; ++i) leaf = merged(leaf, of_triangle(i));
   return leaf;
 }
 
