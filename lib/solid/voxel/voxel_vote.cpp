@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solid/voxel/private/voxel_vote.hpp"
-
+// Inside by the vote of three axes, for meshes with holes; see voxelize.hpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 
 #include "base/compute/parallel.hpp"
 #include "base/index.hpp"
+#include "solid/voxel/private/coverage.hpp"
 
 namespace vam::solid {
 

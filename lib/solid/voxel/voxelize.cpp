@@ -8,7 +8,6 @@
 #include "base/compute/parallel.hpp"
 #include "solid/voxel/private/clip.hpp"
 #include "solid/voxel/private/coverage.hpp"
-#include "solid/voxel/private/voxel_vote.hpp"
 
 namespace vam::solid {
 

@@ -11,6 +11,7 @@
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "solid/voxel/private/clip.hpp"
+#include "solid/voxel/voxelize.hpp"
 
 namespace vam::solid {
 
@@ -34,6 +35,11 @@ struct Moment {
 
 /// The share of a piece's area that its own voxel `index` takes; the voxels behind take all of it.
 [[nodiscard]] inline double own_share(const Moment& m, int index) { return (index + 1) * m.area - m.first; }
+
+/// Coverage 0 ... 1 of the voxels of `grid`, each triangle's corners in voxels from the grid's corner and in any
+/// orientation that the mesh has consistently; slices go to the sink in ascending order. Returns how many voxels are
+/// inside and about how many the axes disagree (Fill::vote). Throws Fault::bug when a corner lies outside in x or y.
+Vote vote(const std::vector<TriangleCorners>& triangles, const model::Grid& grid, const SliceSink& sink);
 
 /// Rows of a slice, each with one entry more than it has voxels. Only touched rows are cleared.
 class VoxelRows {
