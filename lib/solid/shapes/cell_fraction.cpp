@@ -46,17 +46,11 @@ constexpr double even_most = 0.04;
 constexpr double odd_limit = 0.01;
 
 // The field at a cell's corners as a plane and what is left.
-struct Fit {
-  double mean = 0;
-  Point slope{};    // change of the field across the cell along each axis
+struct Fit : Plane {
   double even = 0;  // largest residual that is the same at opposite corners, the cell's middle included
   double odd = 0;   // largest residual that changes its sign
 
-  Fit(const CubeValues& corners, double middle) {
-    for (unsigned c = 0; c < 8; ++c) {
-      mean += corners[c] / 8;
-      slope = slope + (corners[c] / 2) * corner_sign(c);
-    }
+  Fit(const CubeValues& corners, double middle) : Plane(corners) {
     CubeValues residual{};
     for (unsigned c = 0; c < 8; ++c) residual[c] = corners[c] - mean - dot(slope, corner_sign(c));
     even = std::abs(middle - mean);
@@ -122,8 +116,7 @@ double cell_fraction(const Field& field, const Point& centre, double edge_mm, do
     if (*low >= 0 && middle >= 0) return 0;
   }
   if (steepness == 0) return middle < 0 ? 1 : 0;
-  // The mean over the cell of a field that is quadratic: two thirds centre, one third corners.
-  return cube_fraction((2 * middle + fit.mean) / 3, fit.slope);
+  return fit.fraction(middle);
 }
 
 }  // namespace vam::solid

@@ -10,7 +10,6 @@
 #include "base/index.hpp"
 #include "solid/shapes/field.hpp"
 #include "solid/shapes/private/cell_fraction.hpp"
-#include "solid/shapes/private/lattice_values.hpp"
 #include "solid/shapes/private/smooth_block.hpp"
 
 namespace vam::solid {
@@ -19,33 +18,6 @@ namespace {
 
 constexpr int block = 4;    // voxels along the edge of the smallest box
 constexpr int widest = 16;  // and of the largest one
-
-// The field at the middles and corners of a block's voxels.
-class SampleLattice {
- public:
-  SampleLattice(const Field& field, const Point& first, double voxel_mm)
-      : middles_(lattice_values<block>(field, first, 0, voxel_mm)),
-        corners_(lattice_values<block + 1>(field, first, -0.5, voxel_mm)) {}
-
-  // Of the voxel that is the i, j, k-th of the block.
-  [[nodiscard]] double middle(int i, int j, int k) const { return middles_[index<block>(i, j, k)]; }
-  [[nodiscard]] CubeValues corners(int i, int j, int k) const {
-    CubeValues corners{};
-    for (int c = 0; c < 8; ++c) {
-      corners[c] = corners_[index<block + 1>(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))];
-    }
-    return corners;
-  }
-
- private:
-  template <std::size_t side>
-  static std::size_t index(int i, int j, int k) {
-    return flat_index(k, side, j) * side + i;
-  }
-  static constexpr std::size_t edge = block;
-  std::array<double, edge * edge * edge> middles_;
-  std::array<double, (edge + 1) * (edge + 1) * (edge + 1)> corners_;
-};
 
 class Cover {
  public:
@@ -106,10 +78,10 @@ class Cover {
 
   void voxel_by_voxel(int i, int j, int k) {
     const double edge_mm = grid_.voxel_mm;
-    const SampleLattice lattice(field_, voxel(i, j, k), edge_mm);
+    const LatticeValues<block> middles(field_, voxel(i, j, k), 0, edge_mm);
+    const LatticeValues<block + 1> corners(field_, voxel(i, j, k), -0.5, edge_mm);
     each(block, i, j, k, [&](int x, int y, int z) {
-      return cell_fraction(field_, voxel(i + x, j + y, k + z), edge_mm, lattice.middle(x, y, z),
-                           lattice.corners(x, y, z));
+      return cell_fraction(field_, voxel(i + x, j + y, k + z), edge_mm, middles(x, y, z), corners.corners(x, y, z));
     });
   }
 

@@ -3,9 +3,6 @@
 
 #include <cmath>
 
-#include "solid/shapes/private/cell_fraction.hpp"
-#include "solid/shapes/private/lattice_values.hpp"
-
 namespace vam::solid {
 
 namespace {
@@ -16,16 +13,16 @@ constexpr double between_limit = 0.005;  // from the interpolant, between its no
 /// Weights of the nodes at -1, 0, 1 for the value at t.
 std::array<double, 3> weights_at(double t) { return {0.5 * t * (t - 1), 1 - t * t, 0.5 * t * (t + 1)}; }
 
-/// Values at `count` places along each axis, from `first` in steps of `step`, from 3 x 3 x 3 nodes.
+/// Values at places along each axis, from `first` in steps of `step`, from 3 x 3 x 3 nodes.
 template <std::size_t count>
-void spread(const std::array<double, 27>& nodes, double first, double step, double* to) {
+void spread(const LatticeValues<3>& nodes, double first, double step, LatticeValues<count>& to) {
   std::array<std::array<double, 3>, count> weights{};
   for (std::size_t i = 0; i < count; ++i) weights[i] = weights_at(first + step * static_cast<double>(i));
   std::array<double, 9 * count> along_x{};
   for (std::size_t row = 0; row < 9; ++row) {
     for (std::size_t i = 0; i < count; ++i) {
       const auto& w = weights[i];
-      const double* node = &nodes[3 * row];
+      const double* node = &nodes.values[3 * row];
       along_x[row * count + i] = w[0] * node[0] + w[1] * node[1] + w[2] * node[2];
     }
   }
@@ -43,7 +40,7 @@ void spread(const std::array<double, 27>& nodes, double first, double step, doub
   for (std::size_t k = 0; k < count; ++k) {
     const auto& w = weights[k];
     for (std::size_t i = 0; i < plane; ++i) {
-      to[k * plane + i] = w[0] * along_xy[i] + w[1] * along_xy[plane + i] + w[2] * along_xy[2 * plane + i];
+      to.values[k * plane + i] = w[0] * along_xy[i] + w[1] * along_xy[plane + i] + w[2] * along_xy[2 * plane + i];
     }
   }
 }
@@ -52,20 +49,21 @@ void spread(const std::array<double, 27>& nodes, double first, double step, doub
 
 template <int side>
 SmoothBlock<side>::SmoothBlock(const Field& field, const Point& middle, double voxel_mm)
-    : clear_mm_(clear_mm(field, half_diagonal * voxel_mm)) {
+    : clear_mm_(clear_mm(field, half_diagonal * voxel_mm)), nodes_(field, middle, -1, 0.5 * side * voxel_mm) {
   const double half_mm = 0.5 * side * voxel_mm;
-  nodes_ = lattice_values<3>(field, middle, -1, half_mm);
-  const Point slope{nodes_[14] - nodes_[12], nodes_[16] - nodes_[10], nodes_[22] - nodes_[4]};
+  const Point slope{nodes_(2, 1, 1) - nodes_(0, 1, 1), nodes_(1, 2, 1) - nodes_(1, 0, 1),
+                    nodes_(1, 1, 2) - nodes_(1, 1, 0)};
   steepness_ = length(slope) / side;
   if (!is_quadratic()) return;
-  interpolate();
+  spread(nodes_, -1, 2.0 / side, corners_);
+  spread(nodes_, 1.0 / side - 1, 2.0 / side, centres_);
   std::array<Point, 8> between;
   for (unsigned c = 0; c < 8; ++c) between[c] = middle + half_mm * corner_sign(c);
   CubeValues values;
   values_at(field, between, values.data());
   for (unsigned c = 0; c < 8; ++c) {
     const auto place = [&](unsigned a) { return ((c >> a) & 1U) == 0 ? side / 4 : 3 * side / 4; };
-    const double expected = corner(place(0), place(1), place(2));
+    const double expected = corners_(place(0), place(1), place(2));
     if (std::abs(values[c] - expected) > between_limit * steepness_) return;
   }
   holds_ = true;
@@ -73,7 +71,7 @@ SmoothBlock<side>::SmoothBlock(const Field& field, const Point& middle, double v
 
 template <int side>
 bool SmoothBlock<side>::is_quadratic() const {
-  const auto node = [&](int i, int j, int k) { return nodes_[index<3>(i + 1, j + 1, k + 1)]; };
+  const auto node = [&](int i, int j, int k) { return nodes_(i + 1, j + 1, k + 1); };
   const double middle = node(0, 0, 0);
   const double even =
       0.5 * (node(1, 0, 0) + node(-1, 0, 0) + node(0, 1, 0) + node(0, -1, 0) + node(0, 0, 1) + node(0, 0, -1)) -
@@ -96,25 +94,10 @@ bool SmoothBlock<side>::is_quadratic() const {
 }
 
 template <int side>
-void SmoothBlock<side>::interpolate() {
-  spread<side + 1>(nodes_, -1, 2.0 / side, corners_.data());
-  spread<side>(nodes_, 1.0 / side - 1, 2.0 / side, centres_.data());
-}
-
-template <int side>
 double SmoothBlock<side>::fraction(int i, int j, int k) const {
-  const double middle = centres_[this->template index<side>(i, j, k)];
+  const double middle = centres_(i, j, k);
   if (std::abs(middle) > clear_mm_) return middle < 0 ? 1 : 0;
-  double mean = 0;
-  Point slope{};
-  for (unsigned c = 0; c < 8; ++c) {
-    const Point sign = corner_sign(c);
-    const auto step = [&](unsigned a) { return static_cast<int>((c >> a) & 1U); };
-    const double value = corner(i + step(0), j + step(1), k + step(2));
-    mean += value / 8;
-    slope = slope + (value / 2) * sign;
-  }
-  return cube_fraction((2 * middle + mean) / 3, slope);  // the mean over the cell of a field that is quadratic
+  return Plane(corners_.corners(i, j, k)).fraction(middle);
 }
 
 template class SmoothBlock<4>;

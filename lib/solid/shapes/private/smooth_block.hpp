@@ -2,10 +2,7 @@
 // Coverage where the surface is smooth on the scale of several voxels: a quadratic instead of a value per corner.
 #pragma once
 
-#include <array>
-#include <cstddef>
-
-#include "solid/shapes/field.hpp"
+#include "solid/shapes/private/cell_fraction.hpp"
 
 namespace vam::solid {
 
@@ -22,22 +19,14 @@ class SmoothBlock {
   [[nodiscard]] double fraction(int i, int j, int k) const;
 
  private:
-  void interpolate();
   [[nodiscard]] bool is_quadratic() const;
-  [[nodiscard]] double corner(int i, int j, int k) const { return corners_[index<side + 1>(i, j, k)]; }
-
-  static constexpr std::size_t cubed(std::size_t n) { return n * n * n; }
-  template <int edge>
-  static std::size_t index(int i, int j, int k) {
-    return (static_cast<std::size_t>(k) * edge + j) * edge + i;
-  }
 
   double clear_mm_;
   double steepness_ = 0;  // mm per voxel, in the middle
   bool holds_ = false;
-  std::array<double, 27> nodes_{};
-  std::array<double, cubed(side + 1)> corners_;  // of the voxels
-  std::array<double, cubed(side)> centres_;
+  LatticeValues<3> nodes_;
+  LatticeValues<side + 1> corners_;  // of the voxels
+  LatticeValues<side> centres_;
 };
 
 }  // namespace vam::solid
