@@ -14,12 +14,6 @@
 
 namespace vam::solid::build {
 
-namespace {
-
-using GyroidDistances = decltype(&baseline::gyroid_distances);
-
-}  // namespace
-
 Field gyroid(Values v) {
   const double k = 2 * std::numbers::pi / v[0];
   const double half_sheet = v[1] / 2;
@@ -30,7 +24,7 @@ Field gyroid(Values v) {
                                   " mm, beyond which the offset surface is not smooth; reduce it");
   // Exact well beyond the sheet's surface, but not near the extrema of F (1.5), where Newton's steps go astray.
   const double near = std::min(1.6 * k * half_sheet, 1.25 / std::numbers::sqrt3);
-  const GyroidDistances distances = VAM_KERNEL(gyroid_distances, simd_level());
+  const auto distances = VAM_KERNEL(gyroid_distances, simd_level());
   const auto some = [=](std::span<const Point> points, double* values) {
     std::array<std::array<double, Field::together>, 3> at{};
     for (std::size_t i = 0; i < points.size(); ++i) {
