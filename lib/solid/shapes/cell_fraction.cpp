@@ -80,18 +80,16 @@ double halved_fraction(const Field& field, const Point& centre, double edge_mm, 
   std::array<double, points.size()> values;
   values_at(field, points, values.data());
 
-  std::array<double, 27> nodes;
+  LatticeValues<3> nodes;
   const double* value = values.data();
   for (unsigned n = 0; n < 27; ++n) {
-    nodes[n] = is_corner(n)       ? corners[n % 3 / 2 + n / 3 % 3 / 2 * 2 + n / 9 / 2 * 4]
-               : n == middle_node ? middle
-                                  : *value++;
+    nodes.values[n] = is_corner(n)       ? corners[n % 3 / 2 + n / 3 % 3 / 2 * 2 + n / 9 / 2 * 4]
+                      : n == middle_node ? middle
+                                         : *value++;
   }
   double fraction = 0;
-  for (unsigned part = 0; part < 8; ++part) {
-    const unsigned first = (part & 1U) + 3 * (part >> 1U & 1U) + 9 * (part >> 2U);
-    CubeValues part_corners{};
-    for (unsigned c = 0; c < 8; ++c) part_corners[c] = nodes[first + (c & 1U) + 3 * (c >> 1U & 1U) + 9 * (c >> 2U)];
+  for (int part = 0; part < 8; ++part) {
+    const CubeValues part_corners = nodes.corners(part & 1, part >> 1 & 1, part >> 2);
     fraction += cell_fraction(field, centre + (edge_mm / 2) * corner_sign(part), edge_mm / 2, *value++, part_corners,
                               depth + 1) /
                 8;

@@ -36,16 +36,10 @@ using ExtentUnder = std::function<PlacedExtent(const Affine&)>;
 Affine place(const ExtentUnder& under, const Placement& placement, const Writable& room, const std::string& subject) {
   Affine map =
       rotation(placement.rotate_deg) * (scaling({placement.scale, placement.scale, placement.scale}) * placement.axes);
-  PlacedExtent part = under(map);
-  const auto centred = [](const Affine& m, const PlacedExtent& e) {
-    Affine moved = m;
-    moved.shift = moved.shift - e.box.centre();
-    return moved;
-  };
-  const Point size = part.box.size();
-  const double largest = std::max({size[0], size[1], size[2]});
+  const PlacedExtent part = under(map);
+  const double largest = part.box.largest_side();
   if (!(largest > 0)) throw Error{Fault::data, subject + ": has no size, all its points coincide; save the mesh again"};
-  if (placement.centre) map = centred(map, part);
+  if (placement.centre) map.shift = map.shift - part.box.centre();
   double factor = 1;
   if (placement.fit_mm) factor = *placement.fit_mm / largest;
   if (placement.fit_writable) {
