@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "solid/mesh/private/topology.hpp"
 #include "solid/mesh/private/triangle_tree.hpp"
@@ -73,7 +74,7 @@ std::vector<Component> flood(const model::TriangleSoup& mesh, std::vector<char>&
   return components;
 }
 
-Triangle turned_over(const Triangle& t) { return {t[0], t[2], t[1]}; }
+void turn_over(Triangle& triangle) { std::swap(triangle[1], triangle[2]); }
 
 void measure(const model::TriangleSoup& mesh, Component& component) {
   for (const int t : component.triangles)
@@ -166,9 +167,8 @@ Orientation orient(model::TriangleSoup& mesh) {
   Orientation result;
   std::vector<char> turn(mesh.triangles.size(), 0);
   std::vector<Component> components = flood(mesh, turn, result.unorientable);
-  for (std::size_t t = 0; t < turn.size(); ++t) {
-    if (turn[t] != 0) mesh.triangles[t] = turned_over(mesh.triangles[t]);
-  }
+  for (std::size_t t = 0; t < turn.size(); ++t)
+    if (turn[t] != 0) turn_over(mesh.triangles[t]);
   for (Component& component : components) measure(mesh, component);
   result.components = components.size();
   result.cavities = turn_outwards(mesh, components);
@@ -177,9 +177,8 @@ Orientation orient(model::TriangleSoup& mesh) {
     const bool inward = component.solid && (component.measure.volume < 0) != component.turn;
     if (!inward) result.outward.push_back(component.bounds);
     if (!component.turn) continue;
-    for (const int index : component.triangles) {
-      const auto t = static_cast<std::size_t>(index);
-      mesh.triangles[t] = turned_over(mesh.triangles[t]);
+    for (const int t : component.triangles) {
+      turn_over(mesh.triangles[t]);
       turn[t] ^= 1;
     }
   }
