@@ -207,10 +207,6 @@ struct Wall {
 struct Places {
   std::vector<Wall> walls;
   std::vector<Crossing> tapering;
-  void add(const Places& more) {
-    walls.insert(walls.end(), more.walls.begin(), more.walls.end());
-    tapering.insert(tapering.end(), more.tapering.begin(), more.tapering.end());
-  }
 };
 
 /// A way across, of which the part along z is shorter in the print.
@@ -239,7 +235,8 @@ Places middle_of(const model::Volume& part, const Field& field, double stretch_z
       }
     }
     const std::lock_guard lock(mutex);
-    all.add(own);
+    all.walls.insert(all.walls.end(), own.walls.begin(), own.walls.end());
+    all.tapering.insert(all.tapering.end(), own.tapering.begin(), own.tapering.end());
   });
   return all;
 }
