@@ -11,15 +11,6 @@ namespace vam::solid {
 
 namespace {
 
-// Where pixels land: the image's centre on the axis; in y half a voxel off where its sides differ in parity.
-struct Offsets {
-  int i;
-  int j;
-};
-Offsets offsets(const ImageStack& stack, const model::Grid& grid) {
-  return {floor_int((grid.nx - stack.width) / 2.0), floor_int((grid.ny - stack.height) / 2.0)};
-}
-
 PlacedExtent image_extent(const ImageStack& stack, double voxel_mm, double stretch_z) {
   PlacedExtent result;
   for (int k = 0; k < stack.count; ++k) {
@@ -42,20 +33,22 @@ PlacedExtent image_extent(const ImageStack& stack, double voxel_mm, double stret
   return result;
 }
 
-// Adds share times an image to a slice; pixels outside the grid are empty (the grid holds the extent).
-void add_image(const Image& image, float share, const model::Grid& grid, Offsets at, float* slice) {
+// Adds share times an image to a slice, its centre on the axis; in y half a voxel off where its sides differ in parity.
+// Pixels outside the grid are empty (the grid holds the extent).
+void add_image(const Image& image, float share, const model::Grid& grid, float* slice) {
+  const int left = floor_int((grid.nx - image.width) / 2.0);
+  const int front = floor_int((grid.ny - image.height) / 2.0);
   for (int row = 0; row < image.height; ++row) {
-    const int j = at.j + image.height - 1 - row;
+    const int j = front + image.height - 1 - row;
     if (j < 0 || j >= grid.ny) continue;
-    const int first = std::max(0, -at.i);
-    const int last = std::min(image.width, grid.nx - at.i);
-    float* line = slice + std::ptrdiff_t{j} * grid.nx + at.i;
+    const int first = std::max(0, -left);
+    const int last = std::min(image.width, grid.nx - left);
+    float* line = slice + std::ptrdiff_t{j} * grid.nx + left;
     for (int column = first; column < last; ++column) line[column] += share * image(column, row);
   }
 }
 
 void fill_images(const ImageStack& stack, double stretch_z, const model::Grid& grid, const SliceSink& sink) {
-  const Offsets at = offsets(stack, grid);
   std::vector<float> slices(grid.slice_size() * slab);
   Image image;
   int held = -1;
@@ -72,7 +65,7 @@ void fill_images(const ImageStack& stack, double stretch_z, const model::Grid& g
       for (int p = std::max(0, floor_int(low + 1e-9)); p <= last; ++p) {
         if (p != held) image = stack.read(held = p);
         const double share = (std::min<double>(high, p + 1) - std::max<double>(low, p)) / (high - low);
-        add_image(image, static_cast<float>(share), grid, at, slice);
+        add_image(image, static_cast<float>(share), grid, slice);
       }
     }
     for (float& value : slices) value = value > 1 - 1e-6F ? 1.0F : value;  // shares that add up to 1 but for rounding
