@@ -57,14 +57,11 @@ SmoothBlock<side>::SmoothBlock(const Field& field, const Point& middle, double v
   if (!is_quadratic()) return;
   spread(nodes_, -1, 2.0 / side, corners_);
   spread(nodes_, 1.0 / side - 1, 2.0 / side, centres_);
-  std::array<Point, 8> between;
-  for (unsigned c = 0; c < 8; ++c) between[c] = middle + half_mm * corner_sign(c);
-  CubeValues values;
-  values_at(field, between, values.data());
+  const LatticeValues<2> between(field, middle, -0.5, half_mm);
   for (unsigned c = 0; c < 8; ++c) {
     const auto place = [&](unsigned a) { return ((c >> a) & 1U) == 0 ? side / 4 : 3 * side / 4; };
     const double expected = corners_(place(0), place(1), place(2));
-    if (std::abs(values[c] - expected) > between_limit * steepness_) return;
+    if (std::abs(between.values[c] - expected) > between_limit * steepness_) return;
   }
   holds_ = true;
 }
