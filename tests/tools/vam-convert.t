@@ -332,7 +332,9 @@ $npy of minus.npy 1,2,3 'i - 0.5 - i * j'
 vam-convert minus.npy --geometry parallel --pixel 1 -o minus.exr 2>err
 is 'light that no projector shows is reported' "$(grep -c 'minus.npy: has values down to -0.5' err)" 1
 $npy of five.npy 1,5,1 j
-vam-convert five.npy --geometry parallel --view-step 90 -o five.exr && vam-convert five.exr -o b.npy
+vam-convert five.npy --geometry parallel --view-step 90 -o five.exr 2>said; vam-convert five.exr -o b.npy
+fails 65 'five.npy: --axis-column 2 is beside its 1 columns by more than half of them; give one of -1 to 1$' vam-convert five.npy --geometry parallel --axis-column 2 -o x.exr
+is 'more than a turn of parallel light is said' "$(grep -c 'warning: five.npy: 5 projections make 1.25 turns, and a sinogram of parallel light is one' said)" 1
 is 'what is shown twice is as bright as on average, and counted' "$(shown b.npy) $($exr attr five.exr vam:shown_turns | tr -d ' ')" '1 4 1 <f4 2 1 2 3 1.25'
 fails 64 '--speed: frames is no video, and has no times; give --view-step' vam-convert frames --geometry parallel --speed 12 -o x.exr
 misuse --speed --view-step vam-convert film.mkv --geometry parallel --speed 12 --view-step 1 -o x.exr

@@ -79,6 +79,11 @@ void tell_turns(const Options& options, const Slices& slices, const std::vector<
          format_number(0.5 * (edges_deg[count - 1] + edges_deg[count]), 4) + ", the axis in column " +
          format_number(axis));
   }
+  if (!options.in_vial() && options.view_step_deg && turns.count() > 1) {
+    warn(name + std::to_string(count) + " projections make " + format_number(turns.count(), 4) +
+         " turns, and a sinogram of parallel light is one: of those at the same angle the mean counts; check "
+         "--view-step");
+  }
   if (are_angles_stated(options, slices.source())) {
     const double reach = std::max({axis - slices.lit().first, slices.lit().second - axis, 0.5});
     return note(name + std::to_string(count) + " projections in " + format_number(turns.count()) +
@@ -95,6 +100,13 @@ void tell_turns(const Options& options, const Slices& slices, const std::vector<
 }
 
 double axis_column(const Options& options, const model::Projector& projector, int columns) {
+  const double middle = 0.5 * (columns - 1);
+  if (std::abs(options.axis_column.value_or(middle) - middle) > columns) {
+    throw Error{Fault::data, io::input_name(options.input) + ": --axis-column " + format_number(*options.axis_column) +
+                                 " is beside its " + std::to_string(columns) + " columns by more than half of them; " +
+                                 "give one of " + format_number(middle - columns) + " to " +
+                                 format_number(middle + columns)};
+  }
   if (options.axis_column) return *options.axis_column;
   const bool own = options.in_vial() && options.from == "none" && columns == projector.columns;
   return own ? projector.axis_column : axis_of(columns, convention_of(options.from).columns_at_half);
