@@ -31,6 +31,7 @@
 #include "vam-dose/place.hpp"
 #include "vam-dose/shown.hpp"
 #include "vam-dose/sink.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::dose_tool {
 
@@ -160,7 +161,7 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
     const double whole = unit.turn * (of_print ? unit.showings : 1.0);
     model::StrayCure outside =
         exposed.outside->at(of_print ? *printer.resin.critical_dose_mj_cm3 / whole
-                                     : score::aimed_dose(exposed.metrics, model::threshold_dose(light.extra)));
+                                     : verdict::aimed_dose(exposed.metrics, model::threshold_dose(light.extra)));
     outside.max_dose *= whole;
     append_json(report, outside);
   }

@@ -18,7 +18,7 @@
 #include "optimize/methods/method.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
-#include "score/exposure.hpp"
+#include "session/dose_score.hpp"
 #include "session/exposure.hpp"
 #include "session/job_volumes.hpp"
 #include "session/printer.hpp"
@@ -80,7 +80,7 @@ void run(const cli::App& app, Options& options) {
   options.stack.late = planned;
   optimize::VolumeTask task = make_task(scene, in, options);
   task.slices = slices;
-  task.count_pieces = !options.bits;  // else those of the frames
+  if (!options.demands.grey) task.unresolved = session::unresolved(in.target.front());
   const auto light = session::make_light(scene, options);
   optimize_tool::require_independent(task, *light);
   std::optional<optimize_tool::Initial> initial;
@@ -104,21 +104,19 @@ void run(const cli::App& app, Options& options) {
     return;
   }
   const bool void_piece = slices && outcome.metrics.part == 0;
-  if (!options.demands.grey && !void_piece) {  // whose figures are misses, not doses
-    optimize::require_light(outcome, subject, task.source.band_px);
-  }
-  const auto [plan, full_scale, threshold, seconds] = judge_printed(task, *light, sink, scene, info, options, outcome);
+  if (!options.demands.grey && !void_piece) optimize::require_light(outcome, subject, task.source.band_px);
+  const auto printing = judge_printed(task, *light, sink, scene, info, options, outcome);
+  const verdict::Verdict verdict = verdict_of(task, outcome, printing, scene, in.target.front(), info, options);
   std::optional<optimize::Trials> trials;
   if (options.printer_tolerances || options.tolerances) {
-    const double aimed = threshold.value_or(score::aimed_dose(outcome.metrics, options.demands.window.threshold()));
-    trials = run_trials(make_trial(scene, seconds, aimed, options), task, sink.kept());
+    trials = run_trials(make_trial(scene, printing.seconds, printing.threshold.dose, options), task, sink.kept());
   }
-  if (planned && plan) {
-    session::state_exposure(info.extra, plan->turns, full_scale);
+  if (planned && printing.plan) {
+    session::state_exposure(info.extra, printing.plan->turns, printing.full_scale);
     sink.state(info.extra);
   }
   sink.commit();  // hours of work, which no figure or report shall undo
-  publish(task, outcome, trials, scene, in.target.front(), plan, threshold, info, options);
+  publish(task, outcome, printing, verdict, trials, scene, in.target.front(), info, options);
   if (checkpoint) checkpoint->remove();
 }
 

@@ -8,6 +8,7 @@
 #include "base/index.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::score {
 
@@ -66,22 +67,12 @@ Json TurnDoses::exposures(const model::Printer& printer, double scale) const {
   return figures;
 }
 
-double window_middle(const model::DoseMetrics& doses) {
-  return doses.min_part > doses.max_void ? 0.5 * (doses.min_part + doses.max_void) : doses.iou_threshold;
-}
-
-double aimed_dose(const model::DoseMetrics& doses, std::optional<double> threshold) {
-  const double quarter = 0.25 * (doses.min_part - doses.max_void);
-  const double middle = window_middle(doses);
-  return threshold && std::abs(*threshold - middle) <= quarter ? *threshold : middle;
-}
-
 ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer,
                            double turns_of_frames, std::optional<double> threshold) {
   constexpr double rounding = 1e-9;  // a dose that needs 3.0000000001 turns is given 3
   const double critical = *printer.resin.critical_dose_mj_cm3;
-  const double middle = mj_cm3 * window_middle(doses);
-  const double aim = mj_cm3 * aimed_dose(doses, threshold);
+  const double middle = mj_cm3 * verdict::window_middle(doses);
+  const double aim = mj_cm3 * verdict::aimed_dose(doses, threshold);
   const double quarter = mj_cm3 * std::max(0.0, 0.25 * (doses.min_part - doses.max_void));
   if (!(middle > 0) || !(critical / middle <= most_turns)) {
     throw Error{Fault::data, "exposure: at full intensity the middle of the process window is at " +

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
@@ -12,6 +13,7 @@
 #include "base/text/figure_text.hpp"
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
+#include "model/dose/figures.hpp"
 
 namespace vam::score {
 
@@ -19,10 +21,25 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-template <class Known, class Value>
-double of(const std::optional<Known>& known, Value Known::*value) {
-  return known ? static_cast<double>((*known).*value) : none;
+template <auto Find, auto Value>
+Json known(const Score& score) {
+  const auto found = (score.*Find)();
+  return found ? static_cast<double>((*found).*Value) : none;
 }
+
+constexpr std::pair<const char*, const char*> of_doses[] = {  // of model::figure()
+    {"latitude", "minimum part dose - maximum void dose, of their middle: half of it is forgiven either way"},
+    {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels"},
+    {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)"},
+    {"ipdr", "in-part dose range: maximum - minimum part dose"},
+    {"cv", "coefficient of variation of the part dose"},
+    {"iou", "|print and part| / |print or part| at the best threshold"},
+    {"threshold", "best threshold"},
+    {"min_part", "minimum dose in the part"},
+    {"mean_part", "mean dose in the part"},
+    {"max_part", "maximum dose in the part"},
+    {"max_void", "maximum dose in the void"},
+    {"max_dose", "maximum dose"}};
 
 double number(const Json& value) { return value.is_null() ? none : value.get<double>(); }
 
@@ -35,33 +52,17 @@ struct Score::Figure {
 };
 
 const std::vector<Score::Figure>& Score::figure_list() {
-  using model::StrayCure;
   using model::ThresholdMetrics;
   static const std::vector<Figure> all = [] {
-    std::vector<Figure> list{
-        {"latitude", "minimum part dose - maximum void dose, of their middle: half of it is forgiven either way",
-         [](const Score& score) { return score.metrics().latitude; }},
-        {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels",
-         [](const Score& score) { return score.metrics().ver; }},
-        {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)",
-         [](const Score& score) { return score.metrics().pw; }},
-        {"ipdr", "in-part dose range: maximum - minimum part dose",
-         [](const Score& score) { return score.metrics().ipdr; }},
-        {"cv", "coefficient of variation of the part dose", [](const Score& score) { return score.metrics().cv; }},
-        {"iou", "|print and part| / |print or part| at the best threshold",
-         [](const Score& score) { return score.metrics().iou; }},
-        {"threshold", "best threshold", [](const Score& score) { return score.metrics().iou_threshold; }},
-        {"min_part", "minimum dose in the part", [](const Score& score) { return score.metrics().min_part; }},
-        {"mean_part", "mean dose in the part", [](const Score& score) { return score.metrics().mean_part; }},
-        {"max_part", "maximum dose in the part", [](const Score& score) { return score.metrics().max_part; }},
-        {"max_void", "maximum dose in the void", [](const Score& score) { return score.metrics().max_void; }},
-        {"max_dose", "maximum dose", [](const Score& score) { return score.metrics().max_dose; }},
-        {"outside_voxels", "void voxels outside the box around the part",
-         [](const Score& score) { return of(score.outside(), &StrayCure::voxels); }},
-        {"outside_gelled_voxels", "void voxels outside the box that gel in the print",
-         [](const Score& score) { return of(score.outside(), &StrayCure::gelled_voxels); }},
-        {"outside_max_dose", "maximum dose of void voxels outside the box",
-         [](const Score& score) { return of(score.outside(), &StrayCure::max_dose); }}};
+    std::vector<Figure> list;
+    for (const auto& [name, meaning] : of_doses)
+      list.push_back({name, meaning, [of = name](const Score& score) { return model::figure(score.metrics(), of); }});
+    list.insert(list.end(), {{"outside_voxels", "void voxels outside the box around the part",
+                              known<&Score::outside, &model::StrayCure::voxels>},
+                             {"outside_gelled_voxels", "void voxels outside the box that gel in the print",
+                              known<&Score::outside, &model::StrayCure::gelled_voxels>},
+                             {"outside_max_dose", "maximum dose of void voxels outside the box",
+                              known<&Score::outside, &model::StrayCure::max_dose>}});
     for (const verdict::Figure& of : verdict::figures())
       list.push_back({of.name, of.meaning, [value = of.value](const Score& score) { return value(score.verdict()); }});
     list.insert(
@@ -69,21 +70,20 @@ const std::vector<Score::Figure>& Score::figure_list() {
         {{"trimmed_ver", "ver with the extremes trimmed", [](const Score& score) { return score.trimmed().ver; }},
          {"trimmed_pw", "pw with the extremes trimmed", [](const Score& score) { return score.trimmed().pw; }},
          {"cured_part", "at the critical dose: fraction of the part that cures",
-          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::part_cured); }},
+          known<&Score::at_critical, &ThresholdMetrics::part_cured>},
          {"cured_void", "at the critical dose: fraction of the void that cures",
-          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::void_cured); }},
+          known<&Score::at_critical, &ThresholdMetrics::void_cured>},
          {"cured_iou", "at the critical dose: |print and part| / |print or part|",
-          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::iou); }},
+          known<&Score::at_critical, &ThresholdMetrics::iou>},
          {"cured_wrong", "at the critical dose: fraction of wrong voxels",
-          [](const Score& score) { return of(score.at_critical(), &ThresholdMetrics::wrong); }},
+          known<&Score::at_critical, &ThresholdMetrics::wrong>},
          {"turns", "whole turns that put the critical dose in the middle half of the process window",
-          [](const Score& score) { return of(score.plan(), &ExposurePlan::turns); }},
-         {"duration_s", "duration of these turns",
-          [](const Score& score) { return of(score.plan(), &ExposurePlan::seconds); }},
+          known<&Score::plan, &ExposurePlan::turns>},
+         {"duration_s", "duration of these turns", known<&Score::plan, &ExposurePlan::seconds>},
          {"multiplier", "fraction of full intensity during these turns",
-          [](const Score& score) { return of(score.plan(), &ExposurePlan::multiplier); }},
+          known<&Score::plan, &ExposurePlan::multiplier>},
          {"peak_intensity_mw_cm2", "intensity of the brightest pixel during these turns, mW/cm2",
-          [](const Score& score) { return of(score.plan(), &ExposurePlan::peak_intensity_mw_cm2); }},
+          known<&Score::plan, &ExposurePlan::peak_intensity_mw_cm2>},
          {"efficiency", "mean / maximum of the projections",
           [](const Score& score) { return score.light_.count > 0 ? score.light_.value() : none; }}});
     return list;
@@ -168,17 +168,16 @@ double Score::figure(const std::string& name) const {
 std::optional<ExposurePlan> Score::plan() const {
   if (!options_.exposure) return std::nullopt;
   const model::DoseMetrics doses = whole_.metrics(false);
-  if (!(window_middle(doses) > 0)) return std::nullopt;
+  if (!(verdict::window_middle(doses) > 0)) return std::nullopt;
   return plan_exposure(doses, 1 / options_.exposure->full_intensity_turns.value_or(1), options_.exposure->printer, 1,
                        options_.aimed_at);
 }
 
-double Score::print_threshold() const {
-  if (options_.threshold) return *options_.threshold;
-  if (const auto plan = this->plan()) {
-    return *options_.exposure->printer.resin.critical_dose_mj_cm3 / (plan->turns * plan->multiplier);
-  }
-  return aimed_dose(whole_.metrics(false), options_.aimed_at);
+verdict::PrintThreshold Score::sets_at() const {
+  std::optional<double> of_exposure = options_.threshold;
+  if (const auto plan = of_exposure ? std::nullopt : this->plan())
+    of_exposure = *options_.exposure->printer.resin.critical_dose_mj_cm3 / (plan->turns * plan->multiplier);
+  return verdict::print_threshold(whole_.metrics(false), of_exposure, options_.aimed_at);
 }
 
 Json Score::figures() const {
@@ -216,6 +215,7 @@ verdict::Verdict Score::verdict() const {
   verdict::GivenPrint print{whole_.metrics(), with_cut_.metrics(), pieces_,
                             options_.grid,    options_.stretch_z,  options_.light};
   print.threshold = options_.threshold;
+  if (const verdict::PrintThreshold at = sets_at(); at.best && pieces_) print.best = at.dose;
   if (print.threshold) {
     if (options_.exposure) print.seconds = options_.exposure->seconds;
   } else if (const auto plan = this->plan()) {
@@ -241,6 +241,10 @@ std::string Score::table(const std::string& ending) const {
     text += "judged       all void within " + format_number(*radius_mm, 3) + " mm of the axis; the " +
             (rim_px_ < options_.circle.radius ? "volume" : "light") + " ends before the writable radius of " +
             format_number(options_.writable_mm, 3) + " mm\n";
+  }
+  if (options_.stated) {
+    text += "judged at    the critical dose that is given, " + format_number(*options_.threshold) +
+            "; the dose states " + format_number(*options_.stated) + "\n";
   }
   return text + "verdict      " + verdict().words + ending + "\n";
 }

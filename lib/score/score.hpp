@@ -35,6 +35,7 @@ struct ScoreOptions {
   bool absolute = false;                 // PW and IPDR in the dose's unit instead of fractions of the largest dose
   double trim = 0.02;                    // alpha: extremes are also given at the alpha/2 percentiles
   std::optional<double> threshold;       // the critical dose, in the dose's unit; none: that of the planned exposure
+  std::optional<double> stated;          // what the dose states in its place, where it is given
   std::optional<double> aimed_at;        // the threshold that its light was made for, in the dose's unit
   model::LightWidth light;               // of the dose, as it states it
   std::optional<Exposure> exposure;      // known when the dose is in mJ/cm3
@@ -63,9 +64,8 @@ class Score {
   /// The figures by name (for --require), in the order of the table.
   [[nodiscard]] static const std::vector<std::string>& names();
   [[nodiscard]] double figure(const std::string& name) const;
-  /// The dose whose isosurface the print is: the critical dose, for the dose of one turn what the planned exposure
-  /// brings to it, else score::aimed_dose.
-  [[nodiscard]] double print_threshold() const;
+  /// The dose whose isosurface the print is (verdict::print_threshold), for the dose of a turn by the planned exposure.
+  [[nodiscard]] double print_threshold() const { return sets_at().dose; }
   /// None where the exposure is not known, or nothing is lit.
   [[nodiscard]] std::optional<ExposurePlan> plan() const;
   /// Of the relative figures, whatever the options say.
@@ -78,6 +78,7 @@ class Score {
   struct Figure;
   [[nodiscard]] static const std::vector<Figure>& figure_list();
 
+  [[nodiscard]] verdict::PrintThreshold sets_at() const;
   [[nodiscard]] const model::DoseStatistics& judged() const { return options_.surface ? with_cut_ : whole_; }
   [[nodiscard]] model::DoseMetrics metrics() const { return judged().metrics(!options_.absolute); }
   [[nodiscard]] model::DoseMetrics trimmed() const { return judged().trimmed(options_.trim, !options_.absolute); }

@@ -75,10 +75,14 @@ void resolve_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, co
   how.light = model::stated_width(dose.metadata);
   how.aimed_at = model::threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
-  if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
-  how.exposure = {printer, model::stated_number(dose.metadata, "vam:full_intensity_turns"),
-                  model::stated_number(dose.metadata, "vam:print_s")};
-  if (!how.threshold && how.exposure->full_intensity_turns) how.threshold = printer.resin.critical_dose_mj_cm3;
+  std::optional<double> stated = how.aimed_at;
+  if (dose.units == "mJ/cm3" && printer.resin.critical_dose_mj_cm3) {
+    how.exposure = {printer, model::stated_number(dose.metadata, "vam:full_intensity_turns"),
+                    model::stated_number(dose.metadata, "vam:print_s")};
+    if (how.exposure->full_intensity_turns) stated = printer.resin.critical_dose_mj_cm3;
+  }
+  if (how.threshold && stated != how.threshold) how.stated = stated;
+  if (!how.threshold && how.exposure && how.exposure->full_intensity_turns) how.threshold = stated;
 }
 
 score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of a verdict: each stands once, for tables, conditions and reports.
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -22,6 +23,23 @@ Json of_pieces(const Verdict& verdict) {
 }
 
 }  // namespace
+
+double window_middle(const model::DoseMetrics& doses) {
+  return doses.min_part > doses.max_void ? 0.5 * (doses.min_part + doses.max_void) : doses.iou_threshold;
+}
+
+double aimed_dose(const model::DoseMetrics& doses, std::optional<double> threshold) {
+  const double quarter = 0.25 * (doses.min_part - doses.max_void);
+  const double middle = window_middle(doses);
+  return threshold && std::abs(*threshold - middle) <= quarter ? *threshold : middle;
+}
+
+PrintThreshold print_threshold(const model::DoseMetrics& doses, std::optional<double> of_exposure,
+                               std::optional<double> of_light) {
+  if (of_exposure) return {*of_exposure, false};
+  const double aimed = aimed_dose(doses, of_light);
+  return {aimed, aimed != of_light};
+}
 
 std::optional<ThresholdMargin> threshold_margin(const GivenPrint& print) {
   const model::DoseMetrics& doses = print.whole;

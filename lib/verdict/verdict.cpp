@@ -131,6 +131,7 @@ std::string reasons(const Verdict& verdict) {
     line += differences.empty() ? "; its pieces are those of the part within +-" + percent(dose_margin) + " of dose"
                                 : differences;
   }
+  if (print.best) line += "; judged at the best threshold, " + format_number(*print.best, 3);
   line += unjudged(verdict.unresolved);
   if (print.light != model::LightWidth{}) line += "; by " + model::words(print.light);
   if (print.seconds) line += "; duration " + format_number(*print.seconds, 4) + " s";

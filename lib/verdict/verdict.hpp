@@ -16,6 +16,23 @@
 
 namespace vam::verdict {
 
+/// The dose half way between the void's largest and the part's least; where void takes more than part, the middle of
+/// the thresholds that print best. `doses` are absolute (DoseStatistics::metrics(false)), in any unit.
+[[nodiscard]] double window_middle(const model::DoseMetrics& doses);
+
+/// The dose that a print brings to the critical one: the threshold that its light was made for, while that is in the
+/// middle half of the window, as the dose at the part's surface is that; else the window's middle.
+[[nodiscard]] double aimed_dose(const model::DoseMetrics& doses, std::optional<double> threshold);
+
+/// The dose at which a print sets, to every tool: what its exposure brings to the critical dose, as stated, planned or
+/// given, else what one would be aimed at. best: neither exposure nor light state it.
+struct PrintThreshold {
+  double dose = 0;
+  bool best = false;
+};
+[[nodiscard]] PrintThreshold print_threshold(const model::DoseMetrics& doses, std::optional<double> of_exposure,
+                                             std::optional<double> of_light);
+
 /// A dose on the voxels of a part. Figures are relative (DoseStatistics::metrics(true)).
 struct GivenPrint {
   model::DoseMetrics whole = {};     // of the voxels wholly in part or void
@@ -26,6 +43,7 @@ struct GivenPrint {
   model::LightWidth light = {};                      // that the dose is of
   std::optional<double> seconds = std::nullopt;      // that it takes; none: the resin is not known
   std::optional<double> threshold = std::nullopt;  // dose that sets the resin; none: the exposure puts it in the window
+  std::optional<double> best = std::nullopt;       // at which the pieces are counted where nothing states it
 
   /// A voxel of the largest of these defects, in mm of the print.
   [[nodiscard]] std::optional<std::array<double, 3>> place_mm(const Defects& found) const {

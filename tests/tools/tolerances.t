@@ -43,8 +43,7 @@ judge() {  # judge OPTIONS...: whether the print of that light is right everywhe
 for part in 'boat --scale 0.25 --set projector.telecentric=true' 'hollow-cylinder:outer=5,inner=3.6,height=2 --set projector.telecentric=true' 'ladder:rungs=2 --scale 0.6'; do
   lens=$(echo "$part" | grep -o -- '--set .*')
   vam-slice --shape $part -o part.vdb 2>.log/slice && vam-optimize part.vdb $lens --angles 60 --tolerances -o light.exr --report ends.json
-  vam-dose light.exr --like part.vdb -o as-set.vdb && vam-score as-set.vdb --target part.vdb --absolute --report set.json >.log/score
-  threshold=$(python3 -c 'import json; m = json.load(open("set.json")); a, b = m["min_part"], m["max_void"]; print(0.8 if abs(0.8 - (a + b) / 2) <= (a - b) / 4 else (a + b) / 2)')
+  threshold=$(json ends.json print_threshold)
   python3 deviate.py >ends
   holds "${part%% *}: some deviation ends it" "$(wc -l <ends) >= 2"
   ok 'the verdict names the first' grep -q "$(sed -n '1s/ .*//p' ends) of [-+]*[0-9.]* [a-z]* (expected: [0-9.]* [a-z]*) ends it first" ends.json

@@ -39,7 +39,6 @@ ok "so it may where only its voxels are known" sh -c 'vam-score --grid target ba
 vam-score --grid target wall.vdb --require 'pw>0,unresolved_part<=0.02' >table 2>why
 is "can be required to be judged" "$?" 1
 ok "with its share" grep -q '^vam-score: unresolved_part = 0.2[0-9]*, but unresolved_part<=0.02 is required$' why
-vam-optimize --angles 30 --iterations 5 wall.vdb -o wall.exr --report wall.json 2>&1
 # Such a wall on a block, and the same without its lowest layer: only voxels that the surface cuts are missing.
 on_block() { boxes '3 4 1' "0.26 4 $2 0 0 $1"; }  # on_block LOW HEIGHT
 on_block 1 3 >stand.off
@@ -61,8 +60,6 @@ quiet "a part that will print as designed" vam-score --grid target part.vdb --ta
 boxes '4 4 1' '0.1 4 1.5 0 0 1' >fin.off
 vam-slice fin.off --voxel 0.2 --stretch-z 1 --no-centre --place 0 -o fin.vdb 2>.log/fin
 ok "a wall that will be missing" sh -c 'vam-score --grid target fin.vdb | grep -q "^verdict  *will not print as designed: .*; [0-9.]* % of the part is in walls too thin for the voxels and will be missing"'
-json wall.json verdict >said
-ok "vam-optimize says the same" grep -q 'print.* walls of 1.3 voxels are not judged; smaller voxels' said
 
 vam-score --grid target part.vdb --require 'pw>1.5,ver<=0' >table 2>why
 is "an unmet condition is status 1" $? 1

@@ -25,8 +25,7 @@ double full_grey(const model::Printer& printer, double showings, const Options& 
 }
 
 std::optional<double> fixed_threshold(const Options& options) {
-  if (options.delivered.empty()) return std::nullopt;
-  return options.demands.window.threshold();
+  return options.delivered.empty() ? std::nullopt : std::optional(options.demands.window.threshold());
 }
 
 std::optional<score::ExposurePlan> plan_of(const model::DoseMetrics& doses, double peak, const model::Printer& printer,
@@ -43,7 +42,7 @@ std::optional<score::ExposurePlan> plan_of(const model::DoseMetrics& doses, doub
   model::DoseMetrics exact;
   exact.iou_threshold = threshold;
   const model::DoseMetrics& aim = fixed_threshold(options) ? exact : doses;
-  const double middle = *per_radian / full_scale * score::window_middle(aim);
+  const double middle = *per_radian / full_scale * verdict::window_middle(aim);
   if (!(full_scale > 0) || !(*printer.resin.critical_dose_mj_cm3 <= score::most_turns * middle)) return std::nullopt;
   return score::plan_exposure(aim, *per_radian / full_scale, printer, optics::turns_of(info), threshold);
 }
@@ -59,30 +58,30 @@ Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light,
   const model::Resin& resin = scene.printer.resin;
   const double compensated = session::diffusion_s(scene, options);
   const bool planned = states_exposure(info, scene.printer, options);
-  Printing print;
-  const auto plan = [&](const optimize::VolumeOutcome& seen) {
-    print.plan = plan_of(seen.metrics, seen.peak_intensity, scene.printer, info, options);
-    print.full_scale =
-        options.full_scale.value_or(seen.peak_intensity) / (planned && print.plan ? print.plan->multiplier : 1);
-  };
-  plan(outcome);
-  sink.finish(print.full_scale, outcome.peak_intensity);
-  const bool is_rounded = options.bits && planned && print.plan;  // for that exposure
   const double aim = options.demands.window.threshold();
-  print.threshold = fixed_threshold(options);
-  if (is_rounded && !print.threshold)
-    print.threshold =
-        aim * print.full_scale / full_grey(scene.printer, print.plan->turns / optics::turns_of(info), options);
-  const auto aimed = [&](const model::DoseMetrics& doses) {
-    return print.threshold.value_or(score::aimed_dose(doses, aim));
+  Printing print;
+  bool is_rounded = false;  // for the first plan
+  const optimize::Expose expose = [&](const optimize::VolumeOutcome& seen) -> optimize::Exposed {
+    if (!is_rounded) {
+      print.plan = plan_of(seen.metrics, seen.peak_intensity, scene.printer, info, options);
+      print.full_scale =
+          options.full_scale.value_or(seen.peak_intensity) / (planned && print.plan ? print.plan->multiplier : 1);
+    }
+    const double showings = planned && print.plan ? print.plan->turns / optics::turns_of(info) : 0;
+    print.of_exposure = fixed_threshold(options);
+    if (!print.of_exposure && showings > 0)
+      print.of_exposure = aim * print.full_scale / full_grey(scene.printer, showings, options);
+    print.threshold = options.demands.grey ? verdict::PrintThreshold{aim}
+                                           : verdict::print_threshold(seen.metrics, print.of_exposure, aim);
+    return {print.threshold.dose, showings > 0 ? print.plan->seconds : compensated};
   };
-  if (options.bits) optimize::judge_shown(task, light, sink.kept(), aimed, outcome);
-  const auto seconds_of = [&](const optimize::VolumeOutcome& seen) {
-    if (!is_rounded) plan(seen);
-    return planned && print.plan ? print.plan->seconds : compensated;
-  };
+  print.seconds = expose(outcome).seconds;
+  sink.finish(print.full_scale, outcome.peak_intensity);
+  is_rounded = options.bits && planned && print.plan;
+  if (options.bits) outcome.surface.reset();
   const auto blur_px = [&](double seconds) { return session::blur_px(resin, seconds, scene, options); };
-  print.seconds = optimize::judge_exposed(task, light, sink.kept(), aimed, seconds_of, blur_px, outcome);
+  if (options.slices.empty())
+    print.seconds = optimize::judge_shown(task, light, sink.kept(), expose, blur_px, outcome).seconds;
   if (!options.blur || resin.diffusion_mm2_s == 0) return print;
   model::warn_of_diffusion(resin, print.seconds);
   if (std::abs(print.seconds - compensated) > 0.01 * print.seconds) {

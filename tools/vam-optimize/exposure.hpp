@@ -12,6 +12,7 @@
 #include "session/scene.hpp"
 #include "vam-optimize/options.hpp"
 #include "vam-optimize/sink.hpp"
+#include "verdict/verdict.hpp"
 
 namespace vam::optimize_tool {
 
@@ -24,14 +25,15 @@ namespace vam::optimize_tool {
 
 struct Printing {
   std::optional<score::ExposurePlan> plan;
-  double full_scale = 0;            // value at full intensity
-  std::optional<double> threshold;  // dose that sets the resin, where the plan decides it; none: the best one
-  double seconds = 0;               // during which the dose diffuses
+  double full_scale = 0;              // value at full intensity
+  std::optional<double> of_exposure;  // dose that sets the resin, where the exposure is stated or the dose has a scale
+  verdict::PrintThreshold threshold;  // the same, or without it
+  double seconds = 0;                 // during which the dose diffuses
 };
 
 /// Plans the exposure, finishes the stack by it, and makes the figures of `outcome` those of the frames as they are
-/// shown: in the grey levels of --bits, which are rounded for the first plan, and with the diffusion of that time.
-/// Warns where the light compensates for another diffusion.
+/// shown: in the grey levels of --bits, which are rounded for the first plan, and with the diffusion of that time;
+/// those of --slices stay. Warns where the light compensates for another diffusion.
 [[nodiscard]] Printing judge_printed(optimize::VolumeTask& task, const light::Operator& light, Sink& sink,
                                      const session::Scene& scene, const model::StackInfo& info, const Options& options,
                                      optimize::VolumeOutcome& outcome);

@@ -21,11 +21,9 @@
 #include "model/metadata.hpp"
 #include "model/rows.hpp"
 #include "optimize/run/limited_by.hpp"
-#include "session/dose_score.hpp"
 #include "session/exposure.hpp"
 #include "session/volumes.hpp"
 #include "vam-optimize/front.hpp"
-#include "verdict/verdict.hpp"
 
 namespace vam::optimize_tool {
 
@@ -180,10 +178,27 @@ void report_delivered(Json& report, const optimize::VolumeSource& source, const 
 
 }  // namespace
 
-void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
-             const std::optional<optimize::Trials>& trials, const session::Scene& scene, const io::SparseVolume& target,
-             const std::optional<score::ExposurePlan>& plan, std::optional<double> threshold,
-             const model::StackInfo& info, const Options& options) {
+verdict::Verdict verdict_of(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome,
+                            const Printing& printing, const session::Scene& scene, const io::SparseVolume& target,
+                            const model::StackInfo& info, const Options& options) {
+  if (options.demands.grey) return {.words = verdict::grey_words(outcome.metrics)};
+  const model::Printer& printer = scene.printer;
+  verdict::GivenPrint print = outcome.print(scene.grid, model::stretch_z(target.metadata),
+                                            model::light_width(printer, info.angle_step_deg, !options.in_vial()));
+  if (printing.plan) print.seconds = printing.plan->seconds;
+  if (printing.threshold.best && print.pieces) print.best = printing.threshold.dose;
+  print.threshold = printing.of_exposure;
+  if (print.threshold && !fixed_threshold(options)) {  // the dose of a print, in mJ/cm3
+    print.threshold = printer.resin.critical_dose_mj_cm3;
+    for (double* dose : {&print.whole.min_part, &print.whole.max_void})
+      *dose *= *print.threshold / *printing.of_exposure;
+  }
+  return verdict::judge(task.unresolved, print);
+}
+
+void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& outcome, const Printing& printing,
+             verdict::Verdict verdict, const std::optional<optimize::Trials>& trials, const session::Scene& scene,
+             const io::SparseVolume& target, const model::StackInfo& info, const Options& options) {
   const model::Printer& printer = scene.printer;
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
@@ -200,19 +215,15 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
   report_delivered(report, task.source, scene, options);
   const session::Exposure shown = session::exposure_of(options.output, info, printer, 0);
   if (shown.full_scale > 0) report["full_scale"] = shown.full_scale;
-  if (plan) append_json(report, *plan);
+  if (printing.plan) append_json(report, *printing.plan);
   if (options.demands.grey) {  // no part and void, whose doses these would be
     for (const char* key : {"latitude", "threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
       report.erase(key);
-    report["verdict"] = verdict::grey_words(outcome.metrics);
-    note("vam-optimize: " + io::input_name(options.input) + " " + verdict::grey_words(outcome.metrics) +
+    report["verdict"] = verdict.words;
+    note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words +
          "; vam-score --grey-target judges the dose");
   } else {
-    verdict::GivenPrint print = outcome.print(scene.grid, model::stretch_z(target.metadata),
-                                              model::light_width(printer, info.angle_step_deg, !options.in_vial()));
-    if (plan) print.seconds = plan->seconds;
-    print.threshold = threshold;
-    verdict::Verdict verdict = verdict::judge(session::unresolved(target), print);
+    report["print_threshold"] = printing.threshold.dose;
     if (options.tolerances) verdict.words += words_of_ends(*trials);
     append_json(report, verdict);
     const bool stated = options.in_vial() && info.piece.whole() && shown.planned;

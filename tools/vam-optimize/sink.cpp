@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vam-optimize/sink.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.hpp"
@@ -16,21 +17,25 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
 }
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
-    : keep_(options.printer_tolerances || options.tolerances || options.bits || printer.resin.diffusion_mm2_s > 0),
-      dither_(options.dither),
-      out_(options.output, info, options.stack) {
+    : dither_(options.dither), shape_{info.width, info.height}, out_(options.output, info, options.stack) {
   if (options.bits) levels_.emplace(grey_levels(printer, *options.bits));
 }
 
 void Sink::add(const Image& image) {
+  kept_.add(image);
   if (!levels_) out_.write(image);
-  if (keep_) kept_.push_back(image);
 }
 
 void Sink::finish(double full_scale, double peak) {
   if (!levels_) return;
-  optimize::quantise(kept_, *levels_, full_scale, dither_);
-  if (!(optimize::largest(kept_) > 0)) {
+  double most = 0;
+  for (int k = 0; k < kept_.count(); ++k) {
+    Image image = kept_.at(k, shape_);
+    optimize::quantise({&image, 1}, *levels_, full_scale, dither_);
+    most = std::max(most, optimize::largest({&image, 1}));
+    kept_.replace(k, image);
+  }
+  if (!(most > 0)) {
     throw Error{Fault::data, "--bits " + std::to_string(levels_->bits()) + ": the peak intensity of " +
                                  format_number(peak, 3) + " rounds to 0 at a full scale of " +
                                  format_number(full_scale, 3) +
@@ -41,7 +46,7 @@ void Sink::finish(double full_scale, double peak) {
     warn("the peak intensity of " + format_number(peak, 3) + " exceeds optimize.full_scale " +
          format_number(full_scale, 3) + " and is clipped");
   }
-  for (const Image& image : kept_) out_.write(image);
+  for (int k = 0; k < kept_.count(); ++k) out_.write(kept_.at(k, shape_));
 }
 
 }  // namespace vam::optimize_tool

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "base/image.hpp"
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"
+#include "optimize/run/shown.hpp"
 #include "resin/response.hpp"
 #include "vam-optimize/options.hpp"
 
@@ -16,8 +16,7 @@ namespace vam::optimize_tool {
 /// The projector's grey levels, through its response. Throws Error when the response cannot be read.
 [[nodiscard]] resin::GreyLevels grey_levels(const model::Printer& printer, int bits);
 
-/// Into the stack, quantised to the grey levels of the projector on request. What is judged again is kept: with
-/// --robust, --tolerances, --bits, and where the dose diffuses.
+/// Into the stack, quantised to the grey levels of the projector on request. What was written is kept, to be judged.
 class Sink {
  public:
   Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);
@@ -27,13 +26,12 @@ class Sink {
   void finish(double full_scale, double peak);
   void state(const model::Metadata& facts) { out_.state(facts); }
   void commit() { out_.commit(); }
-  /// All that was written, in order, if it was to be kept.
-  [[nodiscard]] const std::vector<Image>& kept() const { return kept_; }
+  [[nodiscard]] const optimize::Frames& kept() const { return kept_; }
 
  private:
-  bool keep_;
   bool dither_;
-  std::vector<Image> kept_;
+  light::Shape shape_;
+  optimize::Frames kept_;
   io::StackWriter out_;
   std::optional<resin::GreyLevels> levels_;
 };

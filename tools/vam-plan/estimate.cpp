@@ -56,18 +56,20 @@ Level level_of(const EstimateTask& task, int coarseness) {
   return level;
 }
 
+const double light_threshold = optimize::DoseWindow{}.threshold();
+
 std::optional<score::ExposurePlan> exposure_of(const optimize::VolumeOutcome& outcome, const model::Printer& printer) {
   const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
-  if (!per_radian || outcome.peak_intensity <= 0 || score::window_middle(outcome.metrics) <= 0) return std::nullopt;
-  return score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,
-                              optimize::DoseWindow{}.threshold());
+  if (!per_radian || outcome.peak_intensity <= 0 || verdict::window_middle(outcome.metrics) <= 0) return std::nullopt;
+  return score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1, light_threshold);
 }
 
 optimize::Preview preview_of(const Level& level, const model::Printer& printer) {
   optimize::PreviewTask task;
-  task.seconds = [&](const optimize::VolumeOutcome& outcome) {
+  task.expose = [&](const optimize::VolumeOutcome& outcome) {
     const auto exposure = exposure_of(outcome, printer);
-    return exposure ? exposure->seconds : model::seconds_of(printer.stage, printer.stage.turns);
+    return optimize::Exposed{verdict::print_threshold(outcome.metrics, std::nullopt, light_threshold).dose,
+                             exposure ? exposure->seconds : model::seconds_of(printer.stage, printer.stage.turns)};
   };
   task.printer = level.printer;
   task.part = model::covered_box(level.part.volume, model::coverage_rounding);

@@ -35,7 +35,7 @@ void declare(cli::App& app, Options& options) {
       "--require", "CONDITIONS", options.require,
       "Exit with status 1 unless all conditions hold, e.g. 'ver<=0.01,pw>=0'. The names are those of the table.");
   app.option("--critical-dose", "DOSE", options.how.threshold, cli::positive,
-             "Threshold of the print, in the unit of the dose.");
+             "Threshold of the print, in the unit of the dose, in place of what the dose states.");
   app.default_is("as given by resin.critical_dose_mj_cm3 and the exposure, if the dose is in mJ/cm3");
   app.option("--trim", "ALPHA", options.how.trim, {0, 0.999}, "Fraction of voxels trimmed, both tails together.");
   app.flag("--surface", options.how.surface,

@@ -104,7 +104,7 @@ namespace {
 
 /// Whether only resolve_thin_slices() made this voxel part.
 bool is_thin_part(const Problem& problem, std::size_t s, std::size_t i) {
-  return problem.labels[s][i] == Label::part && problem.is_thin(s, i) && asks_surface(problem.demands);
+  return problem.labels[s][i] == Label::part && problem.is_thin(s, i);
 }
 
 /// As the target has it, before a thin slice was scaled: by a factor and back, hence the margin.

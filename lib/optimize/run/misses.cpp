@@ -47,33 +47,26 @@ std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem
   return slices;
 }
 
-void for_each_dose(std::span<const Slab> dose, const Problem& problem, int first, int last,
-                   const std::function<void(int slice, int count, const float* doses)>& visit) {
-  constexpr std::size_t few_voxels = std::size_t{1} << 19U;
+void count_pieces(std::span<const Slab> dose, const Problem& problem, int first, int last, const VolumeSource& source,
+                  int from, verdict::PrintPieceCounter& counter) {
+  constexpr std::size_t few_voxels = std::size_t{1} << 19U;  // light that fills the memory leaves room for few
   const std::size_t size = product(dose[0].width, dose[0].height);
   const int at_once = static_cast<int>(std::clamp<std::size_t>(few_voxels / size, 1, lanes));
+  std::vector<float> doses, target;
   for (int k = first, count = 0; k < last; k += count) {
     const std::size_t s = static_cast<std::size_t>(k) / lanes;
     count = std::min({at_once, last - k, lanes - k % lanes});
-    std::vector<float> doses(product(count, size));
+    doses.resize(product(count, size));
+    target.resize(doses.size());
     for (std::size_t i = 0; i < size; ++i) {
       for (int n = 0; n < count; ++n) {
         const std::size_t at = i * lanes + static_cast<std::size_t>(k % lanes + n);
         doses[product(n, size) + i] = problem.labels[s][at] == Label::outside ? 0 : dose[s].values[at];
       }
     }
-    visit(k, count, doses.data());
+    source.target(from + k, count, target.data());
+    counter.add(doses.data(), target.data(), count);
   }
-}
-
-void count_pieces(std::span<const Slab> dose, const Problem& problem, int first, int last, const VolumeSource& source,
-                  int from, verdict::PrintPieceCounter& counter) {
-  std::vector<float> target;
-  for_each_dose(dose, problem, first, last, [&](int slice, int count, const float* doses) {
-    target.resize(product(count, product(dose[0].width, dose[0].height)));
-    source.target(from + slice, count, target.data());
-    counter.add(doses, target.data(), count);
-  });
 }
 
 }  // namespace vam::optimize

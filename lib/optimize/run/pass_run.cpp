@@ -57,6 +57,14 @@ void show(const RunState& run, const Pass& pass, int iteration, const model::Dos
                         {{"iteration", static_cast<double>(iteration)}, {"VER", figures.ver}, {"PW", figures.pw}});
 }
 
+/// To the scale of what is written, which slices that share dose with other passes have, and what is missing of a dose.
+void to_scale(const RunState& run, const PassPrinters& printers, double most, Iterate& state) {
+  const Problem& problem = printers.setup.problem;
+  if (run.jobs.division.halo > 0 || !problem.delivered.empty()) return;
+  bring_to_threshold(problem, printers.setup.light.sharp(),
+                     run.jobs.division.whole ? ExposureGroup::pass : ExposureGroup::slice, most, printers.all(), state);
+}
+
 /// The pass has its share of the time that is left.
 Limits limits_of(const RunState& run, const Pass& pass) {
   Limits limits = run.task.limits;
@@ -107,25 +115,15 @@ bool iterate(RunState& run, const Pass& pass, const PassPrinters& printers, Pass
 void finish(RunState& run, const Pass& pass, const PassPrinters& printers, PassState& work) {
   const VolumeTask& task = run.task;
   const Problem& problem = printers.setup.problem;
-  const bool whole = run.jobs.division.whole;
   const double most = work.search.max_intensity;
   VolumeOutcome& outcome = run.outcome;
   outcome.least_ratio = std::max(outcome.least_ratio, work.method->provable_ratio());
   outcome.max_intensity = std::max(outcome.max_intensity, most);  // the brightest pass sets the duration
   Iterate& state = work.state;
   if (task.certify > 0) outcome.certificate = certify(problem, printers.setup.light.blurred(), state.g, task.certify);
-  // Slices that share dose with other passes are to scale already, as is what is missing of a dose.
-  if (run.jobs.division.halo == 0 && problem.delivered.empty()) {
-    bring_to_threshold(problem, printers.setup.light.sharp(), whole ? ExposureGroup::pass : ExposureGroup::slice, most,
-                       printers.all(), state);
-  }
-  if (whole) outcome.surface = work.method->surface_miss(state.dose);
+  to_scale(run, printers, most, state);
+  if (run.jobs.division.whole) outcome.surface = work.method->surface_miss(state.dose);
   run.totals.add(state.dose, problem, pass, run.jobs, task.part);
-  if (run.light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(state.dose, problem);  // one pass
-  if (!whole || !task.counts_pieces()) return;
-  verdict::PrintPieceCounter pieces(state.dose[0].width, state.dose[0].height, problem.demands.window.threshold());
-  count_pieces(state.dose, problem, 0, problem.slices, task.source, 0, pieces);
-  outcome.pieces = pieces.found();
 }
 
 void hand_out(const RunState& run, const Pass& pass, const light::Operator& light, PassState work,

@@ -48,7 +48,6 @@ Preview preview(const PreviewTask& wanted) {
   task.limits.until = model::parse_conditions(automatic_until, SliceFigures::names());
   task.limits.least_rate = automatic_rate;
   task.limits.patience = 0;
-  task.count_pieces = true;
   task.limit.of_even = usual_of_even;
   task.raising = usual_raising;
   const auto blur_of = [&](const model::Resin& resin, double seconds) {
@@ -69,17 +68,15 @@ Preview preview(const PreviewTask& wanted) {
   const auto setup_of = [&](const model::Printer& printer) { return setup_for(printer, wanted.print_angles); };
   const light::VialSetup setup = setup_of(wanted.printer);
   task.around = [&](std::span<const Slab> inserts) { return light::make_operator(setup, inserts); };
-  std::vector<Image> frames;
-  task.write = [&](int, const Image& image) { frames.push_back(image); };
+  Frames frames;
+  task.write = [&](int, const Image& image) { frames.add(image); };
   const auto light = light::make_operator(setup);
   Preview made{lit.grid, optimise(task, *light), {}, {}, {}};
-  const double threshold = task.demands.window.threshold();
-  const auto aimed = [&](const model::DoseMetrics&) { return threshold; };
-  const double seconds = judge_exposed(task, *light, frames, aimed, wanted.seconds, blur_px, made.outcome);
+  const auto [threshold, seconds] = judge_shown(task, *light, frames, wanted.expose, blur_px, made.outcome);
   made.beside = prints_at(task, *light, frames,
                           {{(1 - verdict::dose_margin) * threshold, (1 + verdict::dose_margin) * threshold}});
   Trial trial{.printer = {wanted.printer, wanted.tolerances, setup_of,
-                          [&](const model::Resin& resin) { return blur_of(resin, seconds); }},
+                          [&, time_s = seconds](const model::Resin& resin) { return blur_of(resin, time_s); }},
               .grid = lit.grid,
               .threshold = threshold,
               .ends = true};

@@ -23,7 +23,7 @@ struct PreviewTask {
   int print_angles = 360;  // of the print, while one of whose frames is shown the stage turns by stage.motion
   int iterations = 12;     // and more, up to 60 in seconds, while it does not print with the margin of --method auto
   model::Tolerances tolerances{};
-  PrintSeconds seconds;  // during which the dose diffuses
+  Expose expose;
 };
 
 struct Preview {

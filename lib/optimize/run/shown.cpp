@@ -2,6 +2,7 @@
 #include "optimize/run/shown.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -14,11 +15,51 @@
 
 namespace vam::optimize {
 
-std::vector<VolumeOutcome> prints_at(const VolumeTask& task, const light::Operator& light,
-                                     std::span<const Image> frames, std::span<const double> doses) {
+Frames::Frames(const std::vector<Image>& images) {
+  for (const Image& image : images) add(image);
+}
+
+void Frames::add(const Image& image) {
+  if (count_ % lanes == 0) blocks_.emplace_back(image.size() * lanes);
+  replace(count_++, image);
+}
+
+void Frames::replace(int k, const Image& image) {
+  const auto at = static_cast<std::ptrdiff_t>(k % lanes * image.size());
+  std::copy(image.values.begin(), image.values.end(), blocks_[k / lanes].begin() + at);
+}
+
+Image Frames::at(int k, light::Shape shape) const {
+  Image image(shape.width, shape.height);
+  const auto size = static_cast<std::ptrdiff_t>(image.size());
+  if (k < count_) std::copy_n(blocks_[k / lanes].begin() + k % lanes * size, size, image.values.begin());
+  return image;
+}
+
+namespace {
+
+void look(const Frames& frames, light::Shape shape, int slices, FramesPrint& print) {
+  model::LightEfficiency seen;
+  for (int k = 0; k < slices; ++k) {
+    const std::vector<float> values = frames.at(k, shape).values;
+    seen.add(values);
+    if (k < count_of(print.demands)) print.demands[k].peak = *std::max_element(values.begin(), values.end());
+  }
+  print.efficiency = seen.value();
+  print.peak_intensity = seen.max;
+}
+
+}  // namespace
+
+std::vector<VolumeOutcome> prints_at(VolumeTask task, const light::Operator& light, const Frames& frames,
+                                     std::span<const double> doses) {
+  if (!task.demands.grey) {  // a voxel is judged by the part, whatever was demanded of it
+    task.demands.surface = false;
+    task.source.weight = nullptr;
+    task.source.band_px = 0;
+  }
   const SliceReader reader(task.source, light.object());
   const Jobs jobs = every_slice(task.source.slices, division_of(task, light));
-  const Frames shown_frames(frames, light.image());
   const light::Shape object = light.object();
   struct Print {
     RunTotals totals;
@@ -31,10 +72,10 @@ std::vector<VolumeOutcome> prints_at(const VolumeTask& task, const light::Operat
   }
   for (const Pass& pass : jobs.passes) {
     ShownPass shown = shown_pass(
-        task, light, reader, pass, [](int k) { return k; }, [&](int k) { return shown_frames[k]; });
+        task, light, reader, pass, [](int k) { return k; }, [&](int k) { return frames.at(k, light.image()); });
     for (std::size_t i = 0; i < doses.size(); ++i) {
       auto& [totals, pieces, outcome] = prints[i];
-      shown.problem.demands.window = {doses[i], doses[i]};
+      if (!task.demands.grey) shown.problem.demands.window = {doses[i], doses[i]};
       totals.add(shown.dose, shown.problem, pass, jobs, task.part);
       if (light.couples_slices() && !task.demands.grey) outcome.wrong = wrong_voxels(shown.dose, shown.problem);
       if (pieces) {
@@ -52,42 +93,22 @@ std::vector<VolumeOutcome> prints_at(const VolumeTask& task, const light::Operat
   return outcomes;
 }
 
-void judge_shown(const VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
-                 const AimedDose& aimed, VolumeOutcome& outcome) {
-  const Frames shown(frames, light.image());
-  const double threshold = task.demands.window.threshold();
-  VolumeOutcome judged = prints_at(task, light, frames, {{threshold}}).front();
-  const double dose = task.demands.grey ? threshold : aimed(judged.metrics);
-  if (dose != threshold) judged = prints_at(task, light, frames, {{dose}}).front();
-  outcome.metrics = judged.metrics;
-  outcome.all_cut = judged.all_cut;
-  outcome.with_cut = judged.with_cut;
-  outcome.outside = judged.outside;
-  outcome.wrong = std::move(judged.wrong);
-  outcome.pieces = judged.pieces;
-  outcome.demands = std::move(judged.demands);
-  outcome.surface.reset();
-  model::LightEfficiency seen;
-  for (int k = 0; k < task.source.slices; ++k) {
-    const std::vector<float>& values = shown[k].values;
-    seen.add(values);
-    if (k < count_of(outcome.demands)) outcome.demands[k].peak = *std::max_element(values.begin(), values.end());
-  }
-  outcome.efficiency = seen.value();
-  outcome.peak_intensity = seen.max;
-}
-
-double judge_exposed(VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
-                     const AimedDose& aimed, const PrintSeconds& seconds, const std::function<double(double)>& blur_px,
-                     VolumeOutcome& outcome) {
+Exposed judge_shown(VolumeTask& task, const light::Operator& light, const Frames& frames, const Expose& expose,
+                    const std::function<double(double)>& blur_px, VolumeOutcome& outcome) {
   constexpr int most = 8;  // more turns blur more, which may take more turns
-  double taken = seconds(outcome);
-  for (int times = 0; times < most && blur_px(taken) != task.blur_px; ++times) {
-    task.blur_px = blur_px(taken);
-    judge_shown(task, light, frames, aimed, outcome);
-    taken = seconds(outcome);
+  constexpr double rounding = 1e-6;
+  Exposed exposed = expose(outcome);
+  for (int times = 0; times < most; ++times) {
+    const auto [threshold, seconds] = exposed;
+    if (blur_px(seconds) != task.blur_px) outcome.surface.reset();
+    task.blur_px = blur_px(seconds);
+    static_cast<FramesPrint&>(outcome) = prints_at(task, light, frames, {{threshold}}).front();
+    look(frames, light.image(), task.source.slices, outcome);
+    exposed = expose(outcome);
+    const bool same_dose = std::abs(exposed.threshold - threshold) <= rounding * threshold;
+    if (same_dose && blur_px(exposed.seconds) == task.blur_px) break;
   }
-  return taken;
+  return exposed;
 }
 
 }  // namespace vam::optimize

@@ -6,32 +6,44 @@
 #include <span>
 #include <vector>
 
+#include "base/compute/aligned_memory.hpp"
 #include "base/image.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
 
-/// The dose at which the exposure that is planned for these doses sets the resin.
-using AimedDose = std::function<double(const model::DoseMetrics& doses)>;
+/// One image a slice, from 0 on, columns x angles, fluence; dark beyond the last. What memory has no room for lies in
+/// scratch files.
+class Frames {
+ public:
+  Frames() = default;
+  Frames(const std::vector<Image>& images);  // NOLINT(google-explicit-constructor): they are the same
+  void add(const Image& image);
+  void replace(int k, const Image& image);
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] Image at(int k, light::Shape shape) const;
 
-/// Seconds that the print of a light with these figures takes.
-using PrintSeconds = std::function<double(const VolumeOutcome& outcome)>;
+ private:
+  using Block = std::vector<float, CacheAligned<float>>;
+  std::vector<Block> blocks_;  // of as many images as a slab has
+  int count_ = 0;
+};
 
-/// The prints of resins that set at these doses, of frames as in judge_shown(): figures, pieces, and wrong voxels slice
-/// by slice.
-[[nodiscard]] std::vector<VolumeOutcome> prints_at(const VolumeTask& task, const light::Operator& light,
-                                                   std::span<const Image> frames, std::span<const double> doses);
+/// How a light with these figures is exposed: at which dose of it the resin sets, and how long that takes.
+struct Exposed {
+  double threshold = 0, seconds = 0;
+};
+using Expose = std::function<Exposed(const VolumeOutcome& outcome)>;
 
-/// Makes the figures, demands and intensities of `outcome` those of `frames`: one image a slice, columns x angles,
-/// fluence; slices without one are dark. What gels outside the part's box is counted at the dose aimed at. The
-/// surface's deviation is not known then. Memory: as a pass of optimise().
-void judge_shown(const VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
-                 const AimedDose& aimed, VolumeOutcome& outcome);
+/// The prints of resins that set at these doses: figures, pieces, and wrong voxels slice by slice. As to vam-score
+/// every voxel counts by its coverage, unless the target is grey.
+[[nodiscard]] std::vector<VolumeOutcome> prints_at(VolumeTask task, const light::Operator& light, const Frames& frames,
+                                                   std::span<const double> doses);
 
-/// While the print takes another time than the dose has diffused for: makes the blur of `task` that of that time, and
-/// judges `frames` again. Returns that time.
-double judge_exposed(VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
-                     const AimedDose& aimed, const PrintSeconds& seconds, const std::function<double(double)>& blur_px,
-                     VolumeOutcome& outcome);
+/// Makes the figures, demands and intensities of `outcome` those of `frames`, as they are exposed: pieces, wrong voxels
+/// and what gels outside the part's box are counted where the resin sets, and the blur of `task` becomes that of the
+/// time it takes. Memory: as a pass of optimise().
+Exposed judge_shown(VolumeTask& task, const light::Operator& light, const Frames& frames, const Expose& expose,
+                    const std::function<double(double seconds)>& blur_px, VolumeOutcome& outcome);
 
 }  // namespace vam::optimize

@@ -3,100 +3,18 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
-#include <limits>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text/text.hpp"
 #include "optimize/run/private/jobs.hpp"
-#include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/pass_run.hpp"
 #include "optimize/run/private/shown_pass.hpp"
-#include "verdict/print_pieces.hpp"
 
 namespace vam::optimize {
 
 namespace {
-
-// The pieces of a print whose slices are optimised apart: their doses are computed once more, in ascending order, as
-// their projections are handed out. Memory: the projections of a pass, and its doses.
-class LightPieces {
- public:
-  /// All are referred to. Not for a grey target, nor for a part of the slices.
-  LightPieces(const VolumeTask& task, const light::Operator& light, const SliceReader& reader);
-  /// The projections of the next slice, which that job computed.
-  void add(int job, const Image& image);
-  /// After the last slice.
-  [[nodiscard]] verdict::PrintPieces found();
-
- private:
-  /// Slices that follow each other and have one dose.
-  struct Alike {
-    Image image;
-    int job, slice, count;
-  };
-
-  void count(const Pass& pass);
-
-  const VolumeTask& task_;
-  const light::Operator& light_;
-  const SliceReader& reader_;
-  Division division_;
-  std::deque<Alike> held_;  // from number first_ on
-  int first_ = 0;
-  int next_ = 0;               // the number of the first that is not counted
-  int slices_ = 0;             // so far
-  std::vector<float> target_;  // slice
-  verdict::PrintPieceCounter pieces_;
-};
-
-LightPieces::LightPieces(const VolumeTask& task, const light::Operator& light, const SliceReader& reader)
-    : task_(task),
-      light_(light),
-      reader_(reader),
-      division_(division_of(task, light)),
-      target_(product(light.object().width, light.object().height)),
-      pieces_(light.object().width, light.object().height, task.demands.window.threshold()) {}
-
-void LightPieces::add(int job, const Image& image) {
-  if (division_.halo == 0 && !held_.empty() && held_.back().job == job) {
-    ++held_.back().count;
-  } else {
-    // The pass is complete, and no more slices are like its last one.
-    const int known = first_ + count_of(held_);
-    const Pass pass = division_.from(next_, std::numeric_limits<int>::max());
-    if (pass.high <= known) count(pass);
-    held_.push_back({image, job, slices_, 1});
-  }
-  ++slices_;
-}
-
-void LightPieces::count(const Pass& pass) {
-  const auto of = [&](int number) -> const Alike& { return held_[number - first_]; };
-  const ShownPass shown = shown_pass(
-      task_, light_, reader_, pass, [&](int number) { return of(number).slice; },
-      [&](int number) { return of(number).image; });
-  for_each_dose(shown.dose, shown.problem, pass.first - pass.low, pass.last - pass.low,
-                [&](int first, int count, const float* doses) {
-                  for (int k = 0; k < count; ++k) {
-                    const Alike& alike = of(pass.low + first + k);
-                    task_.source.target(alike.slice, 1, target_.data());
-                    for (int n = 0; n < alike.count; ++n)
-                      pieces_.add(doses + product(k, target_.size()), target_.data(), 1);
-                  }
-                });
-  next_ = pass.last;
-  const int low = division_.from(next_, std::numeric_limits<int>::max()).low;
-  for (; first_ < low; ++first_) held_.pop_front();
-}
-
-verdict::PrintPieces LightPieces::found() {
-  const int all = first_ + count_of(held_);
-  while (next_ < all) count(division_.from(next_, all));
-  return pieces_.found();
-}
 
 /// The limit of the intensity that passes begin with, and the even dose that it is a multiple of.
 void limit_intensity(RunState& run) {
@@ -203,12 +121,7 @@ VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
   const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
   const Jobs jobs = jobs_of(task, light, digests);
   const SliceReader reader(task.source, light.object());
-  std::optional<LightPieces> pieces;  // of slices that are optimised apart
-  if (task.counts_pieces() && !jobs.division.whole) pieces.emplace(task, light, reader);
-  OutputQueue outputs(jobs, [&](int k, const Image& image) {
-    if (pieces) pieces->add(jobs.schedule.job_of_slice[k], image);
-    task.write(k, image);
-  });
+  OutputQueue outputs(jobs, task.write);
   const auto began = std::chrono::steady_clock::now();
   RunState run{task, light, jobs};
   PassState work;
@@ -225,7 +138,6 @@ VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
     finish(run, pass, printers, work);
     hand_out(run, pass, setup.light.sharp(), std::exchange(work, {}), outputs);
   }
-  if (pieces) run.outcome.pieces = pieces->found();
   run.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return complete(run, outputs);
 }

@@ -37,14 +37,14 @@ struct VolumeTask {
   /// those of a run without this. Fault::usage where the volume has too few, or all are one pass.
   std::optional<model::ImageRange> slices;
   Circle circle;
-  model::VoxelBox part;  // its box
+  model::VoxelBox part;                  // its box
+  verdict::SubVoxelFeatures unresolved;  // of the target, whose surface tells its pieces
   Demands demands;
   Limits limits;
   IntensityLimit limit;
   Raising raising;     // of the limit, while the goal is not met
   double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
   bool watch = false;  // fill the trace
-  bool count_pieces = false;                         // of part and print; not of a grey target, nor of some slices
   std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
   std::function<std::unique_ptr<light::Operator>(std::span<const Slab>)>
       around;  // the operator of a pass with these inserts
@@ -56,8 +56,6 @@ struct VolumeTask {
   int certify = 0;  // iterations that prove how good any light could be, after the work; 0: no proof
   Show front;       // fills the outcome's front while the limit is raised; empty: none
   CheckpointState checkpoint;
-
-  [[nodiscard]] bool counts_pieces() const { return count_pieces && !demands.grey && !slices; }
 };
 
 /// What a slice asks of the exposure that all slices share.
@@ -67,30 +65,17 @@ struct SliceDemand {
   double peak = 0;       // largest intensity
 };
 
-struct VolumeOutcome {
-  int jobs = 0;                              // distinct slices computed
-  int iterations = 0;                        // most of any pass
-  StopReason stop = StopReason::iterations;  // of the pass with most iterations; interrupted: there is no result
-  double growth = no_growth_known;           // Outcome::growth of that pass
-  double seconds = 0;                        // that the optimisation took
-  std::vector<model::DoseMetrics> trace;     // after 0, 1, ... iterations (SliceFigures::mean), when watched
-  model::DoseMetrics metrics;                // of the result, at the common threshold
-  bool all_cut = false;                      // no voxel is wholly inside the part, and these are as with_cut
-  model::DoseMetrics with_cut;               // with the voxels that the surface cuts: part from half coverage on
-  std::optional<model::StrayCure> outside;   // of the part's box, at that threshold; none of a grey target
-  std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
-  std::optional<verdict::PrintPieces> pieces;  // when asked for; none of a grey target, nor of a part of the slices
+/// What finished projections print.
+struct FramesPrint {
+  model::DoseMetrics metrics;                  // at the common threshold
+  bool all_cut = false;                        // no voxel is wholly inside the part, and these are as with_cut
+  model::DoseMetrics with_cut;                 // with the voxels that the surface cuts: part from half coverage on
+  std::optional<model::StrayCure> outside;     // of the part's box, at that threshold; none of a grey target
+  std::vector<std::int64_t> wrong;             // of each slice where they share light, as prints_at() finds them,
+  std::optional<verdict::PrintPieces> pieces;  // and these, but of a grey target
   std::vector<SliceDemand> demands;            // by each slice; empty of a grey target
-  std::optional<SurfaceMiss> surface;          // where slices share light
-  double least_ratio = 0;                      // Method::provable_ratio(), the largest of all passes
   double efficiency = 0;
-  double max_intensity = 0;                // the limit, as raised; 0: none
-  EvenDose even;                           // where the limit asked for it, else 0
-  double even_intensity = 0;               // 0: not asked for
-  double peak_intensity = 0;               // of the result
-  std::optional<Certificate> certificate;  // when asked for
-  std::vector<FrontPoint> front;           // by rising limit, when asked for
-  std::int64_t dark_part_voxels = 0;       // of the part, behind the insert from everywhere
+  double peak_intensity = 0;
 
   /// As it is judged, its pieces on a grid of these voxels.
   [[nodiscard]] verdict::GivenPrint print(const model::Grid& grid, double stretch_z,
@@ -99,6 +84,23 @@ struct VolumeOutcome {
     if (all_cut) made.whole.part = 0;
     return made;
   }
+};
+
+struct VolumeOutcome : FramesPrint {
+  int jobs = 0;                              // distinct slices computed
+  int iterations = 0;                        // most of any pass
+  StopReason stop = StopReason::iterations;  // of the pass with most iterations; interrupted: there is no result
+  double growth = no_growth_known;           // Outcome::growth of that pass
+  double seconds = 0;                        // that the optimisation took
+  std::vector<model::DoseMetrics> trace;     // after 0, 1, ... iterations (SliceFigures::mean), when watched
+  std::optional<SurfaceMiss> surface;        // where slices share light
+  double least_ratio = 0;                    // Method::provable_ratio(), the largest of all passes
+  double max_intensity = 0;                  // the limit, as raised; 0: none
+  EvenDose even;                             // where the limit asked for it, else 0
+  double even_intensity = 0;                 // 0: not asked for
+  std::optional<Certificate> certificate;    // when asked for
+  std::vector<FrontPoint> front;             // by rising limit, when asked for
+  std::int64_t dark_part_voxels = 0;         // of the part, behind the insert from everywhere
 };
 
 /// Whether all slices are one pass: where light couples them, where a figure is of the whole part, and where the blur

@@ -22,7 +22,7 @@ constexpr std::uint64_t seed = 13;
 /// The voxels to be judged and the inserts in the light's way.
 class Bench {
  public:
-  Bench(const Trial& trial, const VolumeTask& task, std::span<const Image> frames)
+  Bench(const Trial& trial, const VolumeTask& task, const Frames& frames)
       : trial_(trial), frames_(frames), setup_(trial.printer.setup(trial.printer.printer)), input_(read(trial, task)) {
     if (!input_.inserts.empty()) exclude(input_.problem, input_.inserts);
   }
@@ -30,8 +30,8 @@ class Bench {
   [[nodiscard]] Printed print(const model::PrinterDeviation& by) const {
     const Scenario off = scenario_of(trial_.printer, by, input_.inserts);
     const PassLight light(*off.light, nullptr, off.blur_px, trial_.grid.nz);
-    const Frames frames(frames_, off.light->image());
-    return judged(dose_of(all(), light, [&](int k) { return dimmed(frames[k], k, off.rim); }), off.intensity);
+    const auto seen = [&](int k) { return dimmed(frames_.at(k, off.light->image()), k, off.rim); };
+    return judged(dose_of(all(), light, seen), off.intensity);
   }
 
   [[nodiscard]] Printed print(std::size_t tolerance, double multiple) const {
@@ -80,7 +80,7 @@ class Bench {
   }
 
   const Trial& trial_;
-  std::span<const Image> frames_;
+  const Frames& frames_;
   light::VialSetup setup_;  // of the printer as set
   PassInput input_;
 };
@@ -151,11 +151,11 @@ double Single::least_margin() const { return std::min(minus.margin(), plus.margi
 
 double Printed::margin() const { return std::min(figures.min_part - 1, 1 - figures.max_void); }
 
-Printed print_as_set(const Trial& trial, const VolumeTask& task, std::span<const Image> frames) {
+Printed print_as_set(const Trial& trial, const VolumeTask& task, const Frames& frames) {
   return Bench(trial, task, frames).print({});
 }
 
-Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Image> frames) {
+Trials run_trials(const Trial& trial, const VolumeTask& task, const Frames& frames) {
   const Bench bench(trial, task, frames);
   Progress progress("judging", trial.printers);
   Trials trials;

@@ -3,16 +3,15 @@
 // the print: the dose of each printer is computed by its own forward model.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
-#include "base/image.hpp"
 #include "base/text/json_fwd.hpp"
 #include "model/dose/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/tolerances.hpp"
 #include "optimize/methods/scenarios.hpp"
+#include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
@@ -54,12 +53,12 @@ struct Trials {
 inline constexpr double allowed_wrong = 1e-3;
 
 /// The print of the printer as set.
-[[nodiscard]] Printed print_as_set(const Trial& trial, const VolumeTask& task, std::span<const Image> frames);
+[[nodiscard]] Printed print_as_set(const Trial& trial, const VolumeTask& task, const Frames& frames);
 
 /// Ends within the tolerances are found to 2 %, and where there is none the first beyond, up to farthest_end; an
 /// eccentric vial is left out where the part is near its wall. Memory: all doses and frames once. Throws Fault::data as
 /// light::Simulation does.
-[[nodiscard]] Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Image> frames);
+[[nodiscard]] Trials run_trials(const Trial& trial, const VolumeTask& task, const Frames& frames);
 
 /// "; sinking of 0.08 mm (expected: 0.1 mm) ends it first, then ..."; empty where the printer as set does not print.
 [[nodiscard]] std::string words_of_ends(const Trials& trials);

@@ -97,14 +97,13 @@ TEST_CASE("pieces and torn voxels are those of the volume, whatever the passes, 
     CAPTURE(blur_px);
     VolumeTask task;
     task.blur_px = blur_px;
-    task.count_pieces = true;
     task.limits.iterations = 12;
     task.make = [](double most) { return make_method("apg", {.max_intensity = most}); };
     const auto result = run(slices, task);
     vam::verdict::PrintPieceCounter counter(size, size, task.demands.window.threshold());
     for (std::size_t k = 0; k < slices.size(); ++k) counter.add(dose_of(result.images[k]).data(), slices[k].data(), 1);
-    REQUIRE(result.outcome.pieces);
-    const vam::verdict::PrintPieces& found = *result.outcome.pieces;
+    REQUIRE(result.print.pieces);
+    const vam::verdict::PrintPieces& found = *result.print.pieces;
     CHECK(found.part == 10);
     CHECK(found.part_at_half == 10);
     CHECK(found.print == 10);

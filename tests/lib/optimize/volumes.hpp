@@ -9,6 +9,7 @@
 
 #include "lib/optimize/parts.hpp"
 #include "optimize/methods/metrics.hpp"
+#include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace volumes {
@@ -22,6 +23,7 @@ inline constexpr int angles = 90;
 struct Written {
   std::vector<vam::Image> images;
   VolumeOutcome outcome;
+  VolumeOutcome print;  // of these images, all slices, at the threshold
 };
 
 inline Written run(const std::vector<std::vector<float>>& slices, VolumeTask task = {}) {
@@ -39,6 +41,7 @@ inline Written run(const std::vector<std::vector<float>>& slices, VolumeTask tas
     result.images.push_back(image);
   };
   result.outcome = optimise(task, light);
+  if (!task.slices) result.print = prints_at(task, light, result.images, {{task.demands.window.threshold()}}).front();
   return result;
 }
 

@@ -3,9 +3,11 @@
 #include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
 #include "testing.hpp"
+#include "verdict/verdict.hpp"
 
 using namespace vam;
 using namespace vam::score;
+using namespace vam::verdict;
 using namespace vam::light;
 
 namespace {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,13 +22,8 @@ struct StraySlices {
 /// How many voxels of each slice in use are on the wrong side of the threshold.
 [[nodiscard]] std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem);
 
-/// visit(slice, count, doses) for slices [first, last), some at a time: row-major, 0 where no voxel is judged, outside
-/// the circle and where inserts are. Light that fills the memory leaves room for few.
-void for_each_dose(std::span<const Slab> dose, const Problem& problem, int first, int last,
-                   const std::function<void(int slice, int count, const float* doses)>& visit);
-
-/// Pieces of these slices of part and print at the threshold, slice 0 being number `from` of the source. Not for a grey
-/// target.
+/// Pieces of slices [first, last) of part and print, slice 0 being number `from` of the source. No voxel prints where
+/// none is judged, outside the circle and where inserts are. Not for a grey target.
 void count_pieces(std::span<const Slab> dose, const Problem& problem, int first, int last, const VolumeSource& source,
                   int from, verdict::PrintPieceCounter& counter);
 

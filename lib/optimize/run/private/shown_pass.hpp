@@ -6,22 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "base/index.hpp"
 #include "optimize/run/private/pass_setup.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
-
-/// An image for each slice, from 0 on; dark ones beyond the last.
-class Frames {
- public:
-  Frames(std::span<const Image> images, light::Shape shape) : images_(images), dark_(shape.width, shape.height) {}
-  [[nodiscard]] const Image& operator[](int k) const { return k < count_of(images_) ? images_[k] : dark_; }
-
- private:
-  std::span<const Image> images_;
-  Image dark_;
-};
 
 struct ShownPass {
   Problem problem;         // without what inserts fill and hide
