@@ -109,7 +109,8 @@ void run(const cli::App& app, Options& options) {
   const verdict::Verdict verdict = verdict_of(task, outcome, printing, scene, in.target.front(), info, options);
   std::optional<optimize::Trials> trials;
   if (options.printer_tolerances || options.tolerances) {
-    trials = run_trials(make_trial(scene, printing.seconds, printing.threshold.dose, options), task, sink.kept());
+    trials = run_trials(make_trial(scene, printing.seconds, printing.threshold.dose, !verdict.fails(), options), task,
+                        sink.kept());
   }
   if (planned && printing.plan) {
     session::state_exposure(info.extra, printing.plan->turns, printing.full_scale);

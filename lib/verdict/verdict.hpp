@@ -77,6 +77,8 @@ struct Verdict {
   /// the answer: "not judged", "will not print", "will not print as designed", "may print" or "will print"; or with why
   /// it is left open.
   std::string words = {};
+
+  [[nodiscard]] bool fails() const { return answer == Answer::no || answer == Answer::not_as_designed; }
 };
 
 /// of_part: what its voxels do not resolve. It must hang together at the threshold and within dose_margin of it; where

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS ci COST 60
 # One judge: what vam-optimize says of its light, vam-score says of the dose that vam-dose makes of it, in the same words
-# and figures, whatever the part, the beam and the exposure.
+# and figures, whatever the part, the beam and the exposure; what fails already has no end.
 # shellcheck disable=SC2086
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
@@ -45,4 +45,7 @@ done
 for how in '--bits 1' '--bits 8 --set optimize.full_scale=0.01' '--set projector.telecentric=true'; do
   judged round --method dose-norm $how
 done
+python3 "$VAM_SOURCE/tests/corpus/make.py" part sheet 0.2 sheet.off && vam-slice sheet.off --voxel 0.2 -o sheet.vdb 2>.log/sheet
+vam-optimize sheet.vdb --angles 36 --iterations 0 --tolerances -o light.exr --report light.json 2>said
+ok "no deviation ends what fails already" sh -c 'grep -q "^ *.verdict.: .will not print.*; no deviation ends it, as it does not print with the printer as set" light.json && ! grep -q ends_at light.json'
 done_testing

@@ -224,7 +224,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
          "; vam-score --grey-target judges the dose");
   } else {
     report["print_threshold"] = printing.threshold.dose;
-    if (options.tolerances) verdict.words += words_of_ends(*trials);
+    if (options.tolerances) verdict.words += words_of_ends(*trials, !verdict.fails());
     append_json(report, verdict);
     const bool stated = options.in_vial() && info.piece.whole() && shown.planned;
     note("vam-optimize: " + io::input_name(options.input) + " " + verdict.words + what_more_buys(outcome) +

@@ -113,7 +113,8 @@ optimize::VolumeTask make_task(const session::Scene& scene, const session::JobVo
   return task;
 }
 
-optimize::Trial make_trial(const session::Scene& scene, double seconds, double threshold, const Options& options) {
+optimize::Trial make_trial(const session::Scene& scene, double seconds, double threshold, bool prints,
+                           const Options& options) {
   optimize::Trial trial;
   trial.printer = session::tolerant(
       scene, options, options.printer_tolerances ? *options.printer_tolerances : io::expected_tolerances(scene.printer),
@@ -121,7 +122,7 @@ optimize::Trial make_trial(const session::Scene& scene, double seconds, double t
   trial.grid = scene.grid;
   trial.threshold = options.printer_tolerances ? options.demands.window.threshold() : threshold;
   trial.printers = options.printer_tolerances ? options.yield_printers : 0;
-  trial.ends = options.tolerances;
+  trial.ends = options.tolerances && prints;
   return trial;
 }
 

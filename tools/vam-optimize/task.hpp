@@ -35,8 +35,8 @@ void require_independent(const optimize::VolumeTask& task, const light::Operator
                                              const Options& options);
 
 /// The printers to judge the frames with, of --robust and --tolerances, whose doses diffuse for so long. `threshold`:
-/// that of the exposure as planned. Scene and options must outlive it.
-[[nodiscard]] optimize::Trial make_trial(const session::Scene& scene, double seconds, double threshold,
+/// that of the print; prints: by its verdict, whose ends are found. Scene and options must outlive it.
+[[nodiscard]] optimize::Trial make_trial(const session::Scene& scene, double seconds, double threshold, bool prints,
                                          const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -163,6 +163,7 @@ void judge(Estimate& made, const Level& level, const EstimateTask& task) {
   made.angles = optimize::PreviewTask{}.angles;
   made.iterations = preview.outcome.iterations;
   made.verdict = verdict_of(level, task, preview, preview.outcome);
+  made.fails = made.verdict.fails();
   Told told = prints(level, made.verdict, task);
   const bool dose_decides = std::any_of(preview.beside.begin(), preview.beside.end(), [&](const auto& other) {
     return prints(level, verdict_of(level, task, preview, other), task).prints != told.prints;

@@ -36,6 +36,7 @@ struct Estimate {
   double voxel_mm = 0;
   int angles = 0, iterations = 0;       // 0: no voxel is wholly inside the part
   verdict::Verdict verdict;             // left open: "unknown at 0.26 mm; --voxel 0.1 tells: ..."
+  bool fails = false;                   // the print of the estimate, whether or not that is left open
   std::vector<std::string> too_coarse;  // then: what voxels larger than those of the print do not resolve
   std::optional<WrongHeights> wrong;
   optimize::Trials trials;                        // of what is expected of the printer

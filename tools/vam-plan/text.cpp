@@ -79,8 +79,7 @@ std::string estimate_rows(const Estimate& estimate) {
   for (const auto& single : estimate.trials.singles)
     text += row("  " + deviation_name(single.tolerance, estimate.trials.tolerances[single.tolerance]),
                 "process window " + signed_number(worst_window(single)));
-  if (const std::string ends = words_of_ends(estimate.trials); !ends.empty())
-    text += row("  what ends it", ends.substr(2));
+  text += row("  what ends it", words_of_ends(estimate.trials, !estimate.fails).substr(2));
   if (!estimate.by_angles.empty()) text += row("angles", angles_words(estimate));
   return text + row("duration", duration_words(estimate));
 }
@@ -100,7 +99,7 @@ void append_json(Json& json, const Estimate& estimate) {
   for (const auto& single : estimate.trials.singles) {
     const std::string name(model::tolerance_table[single.tolerance].name);
     json["pw_deviating"][name] = worst_window(single);
-    if (single.ends_at != 0) json["ends_at"][name] = single.ends_at;
+    if (single.ends_at != 0 && !estimate.fails) json["ends_at"][name] = single.ends_at;
   }
   for (const auto& [angles, pw] : estimate.by_angles) json["pw_by_angles"][std::to_string(angles)] = pw;
   if (!estimate.by_angles.empty()) json["angles_needed"] = angles_needed(estimate);

@@ -172,8 +172,9 @@ Trials run_trials(const Trial& trial, const VolumeTask& task, const Frames& fram
   return trials;
 }
 
-std::string words_of_ends(const Trials& trials) {
-  if (!(trials.nominal.margin() > 0)) return "";
+std::string words_of_ends(const Trials& trials, bool prints) {
+  if (!prints || !(trials.nominal.margin() > 0))
+    return "; no deviation ends it, as it does not print with the printer as set";
   std::string text;
   for (const Single& one : trials.singles) {
     const model::Tolerance& of = model::tolerance_table[one.tolerance];

@@ -23,7 +23,7 @@ struct Trial {
   model::Grid grid;
   double threshold = 0.8;  // dose at which the resin sets
   int printers = 0;        // of the yield
-  bool ends = false;       // find the deviations that end the print
+  bool ends = false;       // find the deviations that end the print, which the printer as set prints
 };
 
 /// The print of one printer.
@@ -60,8 +60,9 @@ inline constexpr double allowed_wrong = 1e-3;
 /// light::Simulation does.
 [[nodiscard]] Trials run_trials(const Trial& trial, const VolumeTask& task, const Frames& frames);
 
-/// "; sinking of 0.08 mm (expected: 0.1 mm) ends it first, then ..."; empty where the printer as set does not print.
-[[nodiscard]] std::string words_of_ends(const Trials& trials);
+/// "; sinking of 0.08 mm (expected: 0.1 mm) ends it first, then ..."; or that there is no end, as the printer as set
+/// does not print it: by the verdict, or by voxels alone.
+[[nodiscard]] std::string words_of_ends(const Trials& trials, bool prints);
 /// For --report.
 [[nodiscard]] Json report(const Trials& trials);
 
