@@ -59,7 +59,8 @@ struct PrintPieces {
   [[nodiscard]] int print_least() const { return print - print_fewer; }
   [[nodiscard]] int print_most() const { return print + print_more; }
   [[nodiscard]] bool may_be_in_other_pieces() const { return print_least() < fewest() || print_most() > most(); }
-  [[nodiscard]] bool is_certain() const { return knows_pieces() && !may_have_holes() && !may_be_in_other_pieces(); }
+  [[nodiscard]] bool holds_margin() const { return !may_have_holes() && !may_be_in_other_pieces(); }
+  [[nodiscard]] bool is_certain() const { return knows_pieces() && holds_margin(); }
   [[nodiscard]] bool is_as_part() const {
     return !is_in_other_pieces() && !loses_walls() && !bridges_gaps() && !has_holes();
   }

@@ -110,14 +110,16 @@ void declare_stopping(cli::App& app, Options& options) {
              "Number of iterations, which --until, --patience and --budget end before where they are given.")
       .excludes(at_once());
   app.default_is("at most " + default_iterations()).not_in_job().brief("Number of iterations.");
-  app.option("--until", "CONDITIONS", options.until,
-             "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
-                 join(optimize::SliceFigures::names(), ", ") + ".");
+  app.option(
+      "--until", "CONDITIONS", options.until,
+      "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1', and the print is the part: its pieces, walls, gaps and "
+      "holes, also with 2 % less and more dose. Figures of merit: " +
+          join(optimize::SliceFigures::names(), ", ") + ".");
   app.default_is(std::string(optimize::shortest_until) +
                  " with --shortest; with --method auto without --iterations the knee (--method); else no condition")
       .excludes(at_once())
       .not_in_job()
-      .brief("Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'.");
+      .brief("Stop when all conditions hold, e.g. 'ver=0,pw>=0.1', and the print is the part.");
   app.option(
       "--patience", "N", options.limits.patience, {0, 1000000},
       "Stop when the figure of merit has not improved by 1e-4 in this number of iterations. The figure is IoU + "

@@ -107,18 +107,20 @@ std::string what_more_buys(const optimize::VolumeOutcome& outcome) {
          format_number(2 * outcome.seconds, 2) + " s";
 }
 
-void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
+void warn_of(const optimize::VolumeOutcome& outcome, const verdict::Verdict& verdict, const Options& options) {
   session::warn_of_shadowed_voxels(options.input, outcome.dark_part_voxels);
   const model::DoseMetrics& m = outcome.metrics;
   const bool has_goal = !options.until.empty() || options.max_intensity || options.turns;
-  if (!has_goal || outcome.stop == optimize::StopReason::goal || options.demands.grey || outcome.all_cut || m.ver == 0)
-    return;
+  if (!has_goal || !verdict.fails()) return;
   const bool by_time = outcome.stop == optimize::StopReason::time;
   const bool limited = outcome.max_intensity > 0 && outcome.peak_intensity > 0.98 * outcome.max_intensity;
-  warn(io::input_name(options.input) + ": does not print after " + std::to_string(outcome.iterations) +
+  warn(io::input_name(options.input) + ": does not print " +
+       (verdict.answer == verdict::Answer::no ? "" : "as designed ") + "after " + std::to_string(outcome.iterations) +
        (outcome.iterations == 1 ? " iteration" : " iterations") + (by_time ? " within --budget" : "") +
        ": voxel error rate " + format_number(m.ver, 2) + ", process window " + format_number(m.pw, 2) +
-       (by_time ? "; a larger --budget" : "; more --iterations") +
+       (outcome.stop == optimize::StopReason::goal ? "; smaller voxels"
+        : by_time                                  ? "; a larger --budget"
+                                                   : "; more --iterations") +
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
 }
 
@@ -200,7 +202,7 @@ void publish(const optimize::VolumeTask& task, const optimize::VolumeOutcome& ou
              verdict::Verdict verdict, const std::optional<optimize::Trials>& trials, const session::Scene& scene,
              const io::SparseVolume& target, const model::StackInfo& info, const Options& options) {
   const model::Printer& printer = scene.printer;
-  warn_of(outcome, options);
+  warn_of(outcome, verdict, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
   if (!options.tradeoff.empty()) write_front(options.tradeoff, outcome.front, printer, info, options);
   if (outcome.certificate) write_proof(*outcome.certificate, scene, target, info, options.certify);

@@ -65,6 +65,27 @@ void to_scale(const RunState& run, const PassPrinters& printers, double most, It
                      run.jobs.division.whole ? ExposureGroup::pass : ExposureGroup::slice, most, printers.all(), state);
 }
 
+/// Whether the slices of the pass, one on the other, print as the part, as the verdict finds it, and also with
+/// dose_margin less and more dose. What the voxels are too coarse for is no obstacle.
+bool prints(const RunState& run, const Pass& pass, const PassPrinters& printers, double most, Iterate state) {
+  const Problem& problem = printers.setup.problem;
+  to_scale(run, printers, most, state);
+  model::DoseStatistics all;
+  const auto slices = whole_statistics(state.dose, problem);
+  for (int job = pass.first; job < pass.last; ++job) all.merge(slices[job - pass.low]);
+  const model::DoseMetrics found = all.metrics();
+  if (found.part == 0 || !(found.pw > 0)) return found.part == 0;
+  const double threshold = verdict::aimed_dose(found, problem.demands.window.threshold());
+  verdict::PrintPieceCounter counter(state.dose[0].width, state.dose[0].height, threshold);
+  for (int k = 0; k < run.task.source.slices; ++k) {
+    const int job = run.jobs.schedule.job_of_slice[k];
+    if (job < pass.first || job >= pass.last) continue;
+    count_pieces(state.dose, problem, job - pass.low, job - pass.low + 1, run.task.source, k - job + pass.low, counter);
+  }
+  const auto pieces = verdict::judge(run.task.unresolved, {.whole = found, .pieces = counter.found()}).print.pieces;
+  return pieces->is_as_part() && pieces->holds_margin();
+}
+
 /// The pass has its share of the time that is left.
 Limits limits_of(const RunState& run, const Pass& pass) {
   Limits limits = run.task.limits;
@@ -103,8 +124,11 @@ bool iterate(RunState& run, const Pass& pass, const PassPrinters& printers, Pass
     };
   }
   Search& search = work.search;
-  const Outcome outcome = run_shortest(*work.method, problem, light, limits_of(run, pass), task.raising, work.state,
-                                       search, watch, task.checkpoint.pause, at_limit);
+  Limits limits = limits_of(run, pass);
+  if (!task.demands.grey)
+    limits.prints = [&](const Iterate& state) { return prints(run, pass, printers, search.max_intensity, state); };
+  const Outcome outcome = run_shortest(*work.method, problem, light, limits, task.raising, work.state, search, watch,
+                                       task.checkpoint.pause, at_limit);
   if (outcome.stop == StopReason::interrupted) return false;
   if (return_to_best(problem, light, search.run, work.state)) search.max_intensity = search.best_max_intensity;
   search.run.best_light = {};

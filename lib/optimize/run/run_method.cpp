@@ -86,10 +86,11 @@ std::optional<StopReason> look(const Method& method, const Problem& problem, con
     const model::DoseMetrics mean = mean_of(slices);
     note(run, mean.latitude);
     const bool met = reached(limits.until, mean);
-    const double merit_now = mean_merit(method, state, slices) + (met ? goal_merit : 0.0);
-    const bool lost = lost_patience(run, limits, merit_now, keeps ? &state.g : nullptr);
     const bool counts = run.iteration >= limits.at_least && (limits.least_rate <= 0 || growth(run) < limits.least_rate);
-    if (counts && met) return StopReason::goal;
+    const bool goal = met && counts && (!limits.prints || limits.prints(state));
+    const double merit_now = mean_merit(method, state, slices) + (met ? goal_merit : 0) + (goal ? goal_merit : 0);
+    const bool lost = lost_patience(run, limits, merit_now, keeps ? &state.g : nullptr);
+    if (goal) return StopReason::goal;
     if (!last && lost && run.iteration >= limits.at_least) return StopReason::no_progress;
   }
   if (!last && !in_time(limits.deadline, run)) return StopReason::time;

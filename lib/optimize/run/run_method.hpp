@@ -25,8 +25,9 @@ struct Deadline {
 
 struct Limits {
   int iterations = 0;
-  std::vector<model::Condition> until;    // stop when all hold; names as in SliceFigures::names()
-  int at_least = 0;                       // iterations before they count, or patience ends
+  std::vector<model::Condition> until;              // stop when all hold; names as in SliceFigures::names()
+  std::function<bool(const Iterate&)> prints = {};  // and the print is the part; empty: not asked
+  int at_least = 0;                                 // iterations before they count, or patience ends
   double least_rate = 0;                  // and growth of the latitude per growth of the cost, in logarithms, above
                                           // which the run goes on; 0: none
   int patience = 10;                      // stop when nothing improved in so many iterations; 0 = never
@@ -58,7 +59,7 @@ using Pause = std::function<bool()>;
 
 /// State of a run after `iteration` complete steps: the best merit so far, its iteration and its light. Merit is the
 /// mean of IoU + latitude, less what the RMS distance of a surface that the method optimises is beyond 0.1 voxels; an
-/// iterate that meets the conditions is before any that does not.
+/// iterate that meets the conditions is before any that does not, and before all one with which the run ends.
 struct IterationState {
   int iteration = -1;  // not begun
   double best = std::numeric_limits<double>::lowest();
