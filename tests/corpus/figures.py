@@ -44,22 +44,36 @@ def signed_sum(numbers):
     return sum(sum(map(operator.mul, SIGNS, numbers[at:at + len(SIGNS)])) for at in range(0, len(numbers), len(SIGNS)))
 
 
+def lit_of(block, run=256):
+    """Its values and their signs without runs of zeros, of which stacks mostly are, and whether there was none of these."""
+    dark, lit, signs, count = bytes(run * block.itemsize), [], [], len(block)
+    for at in range(0, count, run):
+        part = block[at:at + run]
+        if part.tobytes() != dark:
+            first = at % len(SIGNS)
+            lit += part
+            signs += SIGNS[first:first + run] + SIGNS[:max(0, first + run - len(SIGNS))]
+    return lit, signs, len(lit) == count
+
+
 def values_of(numbers):
     """Figures of floats; their places are to 1e-7 of the largest, those of means to 1e-8."""
     count = len(numbers)
-    broken = count - sum(map(math.isfinite, numbers))
-    if broken or count == 0:
-        return {"is": {"values": count, "not_finite": broken}}
-    low, high = min(numbers), max(numbers)
+    size = max(64, -(-count // 64))
+    blocks = [lit_of(numbers[start:start + size]) for start in range(0, count, size)]
+    signed = [sum(map(operator.mul, signs, lit)) for lit, signs, _ in blocks]
+    if not blocks or not all(map(math.isfinite, signed)):
+        return {"is": {"values": count, "not_finite": count - sum(map(math.isfinite, numbers))}}
+    ends = [f(lit) for lit, _, _ in blocks for f in (min, max) if lit] + [0.0] * (not all(full for _, _, full in blocks))
+    low, high = min(ends), max(ends)
     largest = max(abs(low), abs(high))
     places = 7 - math.floor(math.log10(largest)) if largest > 0 else 7
-    size = max(64, -(-count // 64))
-    blocks = [numbers[start:start + size] for start in range(0, count, size)]
-    means = [math.fsum(numbers) / count, *(math.fsum(block) / len(block) for block in blocks)]
+    sums = [math.fsum(lit) for lit, _, _ in blocks]
+    means = [math.fsum(sums) / count, *(total / len(numbers[n * size:(n + 1) * size]) for n, total in enumerate(sums))]
 
     def tidy(numbers, more=0):
         return [round(v, places + more) + 0.0 for v in numbers]
-    return {"block": size, "values": tidy((low, high)) + tidy(means, 1) + tidy(map(signed_sum, blocks))}
+    return {"block": size, "values": tidy((low, high)) + tidy(means, 1) + tidy(signed)}
 
 
 def flat(value, path=""):
