@@ -112,17 +112,17 @@ stage_up() {  # stage_up OPTIONS...: a simulated stage behind ./stage, its truth
 stage_down() { kill $stage; wait $stage 2>/dev/null; }
 stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'moving|angle_deg.*speed'; }
 
-answered() { [ -s camera ] || ! kill -0 $camera 2>/dev/null; }
-camera_up() {  # camera_up OPTIONS...: vam-sim camera at its address; $camera
+camera_up() {  # camera_up OPTIONS...: vam-sim camera at its address; $camera; its status where it ends instead
   # GigE Vision's port is the machine's: tests take turns, and another program may have it for a while.
   exec 9>"${XDG_RUNTIME_DIR:-/tmp}/vam-gige-test.lock"; flock -w 120 9
   turns=0
   while :; do
     : >camera
     vam-sim camera --die-with-parent "$@" >camera 2>camera.err 9>&- & camera=$!
-    await answered
-    if [ -s camera ] || [ $turns -ge 60 ]; then camera_since=$(date +%s); return; fi
-    kill -0 $camera 2>/dev/null || { wait $camera; [ $? -ne 64 ] || { sed 's/^/# /' camera.err; return; }; }
+    until [ -s camera ] || ! kill -0 $camera 2>/dev/null; do sleep 0.02; done
+    if [ -s camera ]; then camera_since=$(date +%s); return; fi
+    wait $camera; status=$?
+    if [ $status -ne 75 ] || [ $turns -ge 60 ]; then sed 's/^/# /' camera.err; return $status; fi
     turns=$((turns + 1)); sleep 2
   done
 }

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -18,7 +17,7 @@ namespace {
 constexpr double kept_s = 5;  // of the logs, for a camera that looks back
 constexpr double finest_turn_deg = 0.5;
 constexpr int most_parts = 8;
-constexpr double cured_turn_deg = 1;
+constexpr double cured_turn_deg = 1, cured_s = 1;  // at most in one piece
 constexpr std::chrono::milliseconds most_at_once{300};
 constexpr double late_s = 0.2;  // that logs may come after what they tell
 
@@ -36,7 +35,11 @@ SimWorld::SimWorld(SimSources sources, double start_s, SimPrint* print)
       print_(print),
       images_(std::make_shared<const Images>(std::move(sources_.images))),
       angles_{sources_.angles},
-      shown_{sources_.shown} {}
+      shown_{sources_.shown} {
+  if (print_ == nullptr) return;
+  read_logs();
+  cure(start_s - late_s, std::chrono::hours(1));
+}
 
 void SimWorld::Log::each_new(const std::function<void(const Json&)>& take) {
   struct stat named = {};
@@ -94,22 +97,21 @@ void SimWorld::forget() {
 }
 
 // Light of the logs, image by image, the stage turning by a degree at most meanwhile; what is in them by then only.
-// Limited in time, as a client waits for its frame: the rest follows with the next frames.
-void SimWorld::cure(double until_s) {
-  if (print_ == nullptr) return;
+// Limited in time once a client waits for its frame: the rest follows with the next frames.
+void SimWorld::cure(double until_s, std::chrono::milliseconds most) {
   if (!cured_s_) cured_s_ = flips_.empty() ? start_s_ : std::min(start_s_, flips_.front().t_s);
   std::vector<double> cuts{*cured_s_};
   for (const Shown& flip : flips_) {
     if (flip.t_s > *cured_s_ && flip.t_s < until_s) cuts.push_back(flip.t_s);
   }
   cuts.push_back(until_s);
-  const auto stop = std::chrono::steady_clock::now() + most_at_once;
+  const auto stop = std::chrono::steady_clock::now() + most;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double seconds = cuts[i + 1] - cuts[i];
     if (!(seconds > 0)) continue;
     const bool dark = moment(0.5 * (cuts[i] + cuts[i + 1])).image == nullptr;
     const double turn_deg = std::abs(angle_deg(cuts[i + 1]) - angle_deg(cuts[i]));
-    const int parts = dark ? 1 : std::max(1, ceil_int(turn_deg / cured_turn_deg));
+    const int parts = std::max(ceil_int(seconds / cured_s), dark ? 0 : ceil_int(turn_deg / cured_turn_deg));
     for (int n = 0; n < parts; ++n) {
       const SimMoment now = moment(cuts[i] + (n + 0.5) * seconds / parts);
       print_->pass(now.image, now.angle_deg, seconds / parts);
@@ -147,19 +149,10 @@ SimMoment SimWorld::moment(double t_s) const {
   return moment;
 }
 
-void SimWorld::follow(double until_s) {
-  read_logs();
-  cure(until_s - late_s);
-  forget();
-}
-
-SimMoment SimWorld::at(double t_s) {
-  follow(t_s);
-  return moment(t_s);
-}
-
 std::vector<SimMoment> SimWorld::during(double from_s, double to_s) {
-  follow(from_s);
+  read_logs();
+  if (print_ != nullptr) cure(from_s - late_s, most_at_once);
+  forget();
   const double turn_deg = std::abs(angle_deg(to_s) - angle_deg(from_s));
   const int parts = std::clamp(ceil_int(turn_deg / finest_turn_deg), 1, most_parts);
   std::vector<double> cuts;

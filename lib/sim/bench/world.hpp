@@ -2,6 +2,7 @@
 // What happens on the simulated bench, out of the logs that the other simulators and tools write meanwhile.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -30,15 +31,13 @@ struct SimSources {
 /// Times are on CLOCK_MONOTONIC, as in the logs.
 class SimWorld {
  public:
-  /// print: that the light cures, from the first flip on.
+  /// print: that the light cures, from the first flip on; that of the logs so far has cured it at once.
   SimWorld(SimSources sources, double start_s, SimPrint* print = nullptr);
-  /// The moment t_s; times must not fall by more than a second from call to call. Throws Fault::data where the
-  /// projector shows frames of which there are no images.
-  SimMoment at(double t_s);
   /// What an exposure sees: cut where the image changes, and so finely that the stage turns by half a degree at most
-  /// in a part (but into no more than eight). Throws as `at`.
+  /// in a part (but into no more than eight). Times must not fall by more than a second from call to call. Throws
+  /// Fault::data where the projector shows frames of which there are no images.
   std::vector<SimMoment> during(double from_s, double to_s);
-  /// A moment by what `at` or `during` has read of the logs; the light cures nothing meanwhile.
+  /// A moment by what `during` has read of the logs; the light cures nothing meanwhile.
   [[nodiscard]] SimMoment moment(double t_s) const;
 
  private:
@@ -60,10 +59,9 @@ class SimWorld {
     std::uint64_t file = 0;  // its number
     void each_new(const std::function<void(const Json& line)>& take);
   };
-  void follow(double until_s);
   void read_logs();
   void show(const Json& event);
-  void cure(double until_s);
+  void cure(double until_s, std::chrono::milliseconds most);
   void forget();
   [[nodiscard]] double angle_deg(double t_s) const;
 

@@ -131,14 +131,18 @@ struct SimGvCamera::State {
 
   void set(unsigned place, unsigned value) const { arv_fake_camera_write_register(registers(), place, value); }
 
+  void begin(double now_s) {
+    if (settings.bench.resin) print.emplace(settings.bench);
+    world.emplace(settings.sources, now_s, print ? &*print : nullptr);
+  }
+
   // In the server's thread, right before the frame's packets leave.
   void fill(ArvBuffer* buffer, double exposure_us, ArvPixelFormat format) {
     const double now_s = device::real_clock().now_s();
     const long number = next++;
     if (number == settings.unplug) std::_Exit(0);  // no goodbye: the cable is pulled
     if (number + 1 == settings.shrink) set(ARV_FAKE_CAMERA_REGISTER_HEIGHT, get(ARV_FAKE_CAMERA_REGISTER_HEIGHT) / 2);
-    if (settings.bench.resin && !print) print.emplace(settings.bench);
-    if (!world) world.emplace(settings.sources, now_s, print ? &*print : nullptr);
+    if (!world) begin(now_s);
     const int bits = format == ARV_PIXEL_FORMAT_MONO_16 ? 16 : 8;
     const std::pair wanted(std::max(1U, get(ARV_FAKE_CAMERA_REGISTER_BINNING_HORIZONTAL)), bits);
     if (!scene || scene_of != wanted) {
@@ -231,6 +235,8 @@ SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& a
   require_free(address);
   state_->settings = settings;
   state_->log = std::move(log);
+  // What light was shown before cures before a client waits for its frame; else all begins with the first frame.
+  if (settings.bench.resin && !settings.sources.shown.empty()) state_->begin(device::real_clock().now_s());
   g_random_set_seed(static_cast<guint32>(settings.bench.seed));
   const DescriptionFile description(settings);
   state_->server = arv_gv_fake_camera_new_full(address.c_str(), serial.c_str(), description.path());

@@ -25,6 +25,8 @@ SimBench small_bench() {
   return bench;
 }
 
+SimMoment at(auto&& world, double t_s) { return world.during(t_s, t_s + 1e-6).front(); }
+
 // Brightness-weighted mean column of the middle row, from the axis; NaN when it is black.
 double middle_px(const GreyImage& levels) {
   double sum = 0;
@@ -134,8 +136,8 @@ TEST_CASE("The simulated bench follows stage and flip logs as they grow: true an
   SimSources sources{.angles = angles, .shown = shown};
   sources.images.resize(2, GreyImage(2, 2, 8));
   SimWorld world(sources, 100);
-  CHECK(world.at(100).angle_deg == 0);
-  CHECK(world.at(100).image == nullptr);
+  CHECK(at(world, 100).angle_deg == 0);
+  CHECK(at(world, 100).image == nullptr);
   std::ofstream table(angles);
   std::ofstream flips(shown);
   table << R"({"t_monotonic_s":100.0,"event":"angle","angle_deg":10,"speed_deg_s":20})"
@@ -146,18 +148,18 @@ TEST_CASE("The simulated bench follows stage and flip logs as they grow: true an
         << R"({"t_monotonic_s":101.5,"event":"flip","frame":-1})"
         << "\n"
         << std::flush;
-  CHECK(world.at(100.05).angle_deg == doctest::Approx(11));
+  CHECK(at(world, 100.05).angle_deg == doctest::Approx(11));
   table << R"(ed_deg_s":20})"
         << "\n"
         << R"({"t_monotonic_s":100.2,"event":"standing","angle_deg":14})"
         << "\n"
         << std::flush;
-  CHECK(world.at(100.15).angle_deg == doctest::Approx(13));
-  CHECK(world.at(105).angle_deg == doctest::Approx(14));
-  CHECK(world.at(101).lit_s == doctest::Approx(1));
-  CHECK(world.at(101).image != nullptr);
-  CHECK(world.at(102).lit_s == doctest::Approx(1.5));
-  CHECK(world.at(102).image == nullptr);
+  CHECK(at(world, 100.15).angle_deg == doctest::Approx(13));
+  CHECK(at(world, 105).angle_deg == doctest::Approx(14));
+  CHECK(at(world, 101).lit_s == doctest::Approx(1));
+  CHECK(at(world, 101).image != nullptr);
+  CHECK(at(world, 102).lit_s == doctest::Approx(1.5));
+  CHECK(at(world, 102).image == nullptr);
   // An exposure across the black flip at 101.5, while the stage stands.
   const auto exposure = world.during(101.4, 101.7);
   REQUIRE(exposure.size() == 2);
@@ -183,17 +185,17 @@ TEST_CASE("The simulated bench shows the test pattern that the projector's log n
         << R"({"t_monotonic_s":100.0,"event":"flip","frame":0})"
         << "\n"
         << std::flush;
-  REQUIRE(world.at(100.5).image != nullptr);
-  CHECK(world.at(100.5).image->width == 7);
+  REQUIRE(at(world, 100.5).image != nullptr);
+  CHECK(at(world, 100.5).image->width == 7);
   flips << R"({"t_monotonic_s":101.0,"event":"pattern","name":"row","width_px":9})"
         << "\n"
         << std::flush;
-  CHECK(world.at(101.2).image->width == 7);  // until a flip shows it
+  CHECK(at(world, 101.2).image->width == 7);  // until a flip shows it
   flips << R"({"t_monotonic_s":101.4,"event":"flip","frame":0})"
         << "\n"
         << std::flush;
-  CHECK(world.at(101.5).image->width == 9);
-  CHECK(world.at(101.2).image->width == 7);
+  CHECK(at(world, 101.5).image->width == 9);
+  CHECK(at(world, 101.2).image->width == 7);
   std::filesystem::remove(shown);
 }
 
@@ -206,10 +208,10 @@ TEST_CASE("The simulated bench refuses frames of which it has no images, and fol
                        << R"({"t_monotonic_s":101.1,"event":"flip","frame":0})"
                        << "\n";
   SimSources sources{.shown = shown};
-  CHECK(SimWorld(sources, 100).at(102).lit_s == doctest::Approx(2));
+  CHECK(at(SimWorld(sources, 100), 102).lit_s == doctest::Approx(2));
   sources.images.resize(1, GreyImage(2, 2, 8));
   SimWorld world(sources, 100);
-  CHECK_THROWS_WITH_AS(world.at(102),
+  CHECK_THROWS_WITH_AS(at(world, 102),
                        (shown + ": shows other frames since turn 2, which the simulated camera does not follow; print "
                                 "without --frames-from")
                            .c_str(),
@@ -227,15 +229,15 @@ TEST_CASE("The simulated bench follows a log by its name: the old file to its en
   };
   std::ofstream flips(shown);
   flips << flip(100, 0) << std::flush;
-  CHECK(world.at(100.5).image != nullptr);
+  CHECK(at(world, 100.5).image != nullptr);
   flips << flip(101, -1) << R"({"t_monotonic_s":101.2,"ev)" << std::flush;  // as a program leaves it that is killed
   std::filesystem::remove(shown);
-  CHECK(world.at(101.5).image == nullptr);  // by the old file, as there is no other
+  CHECK(at(world, 101.5).image == nullptr);  // by the old file, as there is no other
   std::ofstream again(shown);
   again << flip(102, 1) << std::flush;
-  CHECK(world.at(101.9).image == nullptr);
-  CHECK(world.at(102.5).image != nullptr);
-  CHECK(world.at(102.5).lit_s == doctest::Approx(1.5));
+  CHECK(at(world, 101.9).image == nullptr);
+  CHECK(at(world, 102.5).image != nullptr);
+  CHECK(at(world, 102.5).lit_s == doctest::Approx(1.5));
   std::filesystem::remove(shown);
 }
 
