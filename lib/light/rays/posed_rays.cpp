@@ -20,7 +20,7 @@ namespace {
 
 constexpr int fitted_directions = 360;
 constexpr double rows_per_reach = 24;
-
+constexpr float float_turn_rad = 2 * std::numbers::pi_v<float>;
 using NodeValues = std::array<float, DisplacedVial::floats>;
 
 /// The ray of the table as it is, where to begin.
@@ -28,10 +28,29 @@ FoundRay begin_at(const RayTable& table, double r_mm, double turn) {
   const int row = std::min(table.inner.rows - 1, round_int(r_mm / table.inner.pitch_mm));
   const int direction = round_int(turn * table.directions) % table.directions;
   const TableNode& node = table.points(table.inner, row, 0)[direction];
-  FoundRay ray;
-  ray.x_p_mm = static_cast<double>(node.x_p[0]);
-  ray.row = static_cast<double>(node.row[0]);
-  return ray;
+  return {.x_p_mm = static_cast<double>(node.x_p[0]), .row = static_cast<double>(node.row[0])};
+}
+
+/// Between four points of the table.
+NodeValues between(const TableNode* low, const TableNode* high, float across, float along) {
+  const auto a = std::bit_cast<NodeValues>(low[0]);
+  const auto b = std::bit_cast<NodeValues>(low[1]);
+  const auto c = std::bit_cast<NodeValues>(high[0]);
+  const auto d = std::bit_cast<NodeValues>(high[1]);
+  NodeValues values;
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    const float first = a[v] + along * (b[v] - a[v]);
+    const float second = c[v] + along * (d[v] - c[v]);
+    values[v] = first + across * (second - first);
+  }
+  return values;
+}
+
+void require_small(double largest_mm, double resin_mm) {
+  const double most = model::most_displacement_mm(resin_mm);
+  if (largest_mm <= most) return;
+  throw Error{Fault::data, "poses: the vial is displaced by " + format_number(largest_mm, 4) + " mm, at most " +
+                               format_number(most, 4) + " mm supported; align the vial, or check the unit"};
 }
 
 }  // namespace
@@ -118,39 +137,17 @@ void DisplacedVial::add(float r_mm, float turn, const Powers& powers, std::array
   }
 }
 
-namespace {
-
-constexpr float float_turn_rad = 2 * std::numbers::pi_v<float>;
-using NodeValues = std::array<float, DisplacedVial::floats>;
-
-/// Between four points of the table.
-NodeValues between(const TableNode* low, const TableNode* high, float across, float along) {
-  const auto a = std::bit_cast<NodeValues>(low[0]);
-  const auto b = std::bit_cast<NodeValues>(low[1]);
-  const auto c = std::bit_cast<NodeValues>(high[0]);
-  const auto d = std::bit_cast<NodeValues>(high[1]);
-  NodeValues values;
-  for (std::size_t v = 0; v < values.size(); ++v) {
-    const float first = a[v] + along * (b[v] - a[v]);
-    const float second = c[v] + along * (d[v] - c[v]);
-    values[v] = first + across * (second - first);
-  }
-  return values;
+std::shared_ptr<const DisplacedVial> RayTable::displaced(double largest_mm) const {
+  const std::scoped_lock lock(guard_);
+  auto& made = displaced_[largest_mm];
+  if (!made) made = std::make_shared<const DisplacedVial>(scope_, *this, largest_mm);
+  return made;
 }
 
-void require_small(double largest_mm, double resin_mm) {
-  const double most = model::most_displacement_mm(resin_mm);
-  if (largest_mm <= most) return;
-  throw Error{Fault::data, "poses: the vial is displaced by " + format_number(largest_mm, 4) + " mm, at most " +
-                               format_number(most, 4) + " mm supported; align the vial, or check the unit"};
-}
-
-}  // namespace
-
-PosedRays::PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const RayTable& table) : sense_(rays.sense) {
+PosedRays::PosedRays(const VialSetup& setup, int sense, const RayTable& table) : sense_(sense) {
   const double largest_mm = model::farthest_mm(setup.poses, model::Moves::vial);
   require_small(largest_mm, table.edge_mm);
-  if (largest_mm > 0) shift_ = DisplacedVial(rays, table, largest_mm);
+  if (largest_mm > 0) shift_ = table.displaced(largest_mm);
   for (std::size_t k = 0; k < setup.poses.size(); ++k) {
     const model::Pose& pose = setup.poses[k];
     const double theta = setup.part_angle_rad(static_cast<int>(k));
@@ -158,14 +155,13 @@ PosedRays::PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const 
     frame.cosine = std::cos(theta);
     frame.sine = std::sin(theta);
     frame.lift_mm = pose.dz_mm;
-    const bool moved = pose.dx_mm != 0 || pose.dy_mm != 0;
-    if (!moved) continue;
+    if (pose.dx_mm == 0 && pose.dy_mm == 0) continue;
     if (pose.moves == model::Moves::part) {
       frame.x_mm = pose.dx_mm;
       frame.y_mm = pose.dy_mm;
     } else {
       frame.shifted = true;
-      frame.powers = shift_.powers({pose.dx_mm, pose.dy_mm});
+      frame.powers = shift_->powers({pose.dx_mm, pose.dy_mm});
     }
   }
 }
@@ -192,7 +188,7 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
   };
   if (r <= static_cast<float>(table.inner_edge_mm) || (here.shifted && r <= static_cast<float>(table.reach_mm))) {
     NodeValues values = node_of(table.inner, 0);
-    if (here.shifted) shift_.add(r, turn, here.powers, values);
+    if (here.shifted) shift_->add(r, turn, here.powers, values);
     to[0] = node_at(std::bit_cast<TableNode>(values), scale, spread, x, y);
     return 1;
   }

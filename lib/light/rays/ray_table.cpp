@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "base/compute/parallel.hpp"
 #include "base/constants.hpp"

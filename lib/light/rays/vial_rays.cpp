@@ -58,7 +58,7 @@ RayTable::Scope VialRays::table_scope() const {
 VialRays::VialRays(const VialSetup& setup)
     : setup_(completed(setup)), table_(RayTable::of(table_scope())), widths_(setup_) {
   tomo::require_translucent(setup_.absorption_per_mm, optics::resin_radius_mm(setup_.view));
-  if (posed()) posed_ = PosedRays(setup_, table_scope(), *table_);
+  if (posed()) posed_ = PosedRays(setup_, sense(), *table_);
   note_columns();
   note_rows();
   RayNodes level;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "light/rays/private/ray_table.hpp"
@@ -19,10 +20,8 @@ class DisplacedVial {
   using Powers = std::array<float, 5>;
   static constexpr int floats = 14;  // of a TableNode
 
-  DisplacedVial() = default;
   DisplacedVial(const RayTable::Scope& scope, const RayTable& table, double largest_mm);
 
-  [[nodiscard]] bool empty() const { return points_.empty(); }
   [[nodiscard]] Powers powers(const optics::Displacement& vial) const;
   /// Adds what it changes at radius r and `turn`, the direction in turns as the table counts it, 0 to 1.
   void add(float r_mm, float turn, const Powers& powers, std::array<float, floats>& node) const;
@@ -43,7 +42,7 @@ class PosedRays {
  public:
   PosedRays() = default;
   /// Throws Fault::data when the vial is displaced by more than the polynomials hold for.
-  PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const RayTable& table);
+  PosedRays(const VialSetup& setup, int sense, const RayTable& table);
 
   [[nodiscard]] double lift_mm(int frame) const { return frames_[frame].lift_mm; }
 
@@ -61,7 +60,7 @@ class PosedRays {
   };
   int sense_ = 1;
   std::vector<FramePose> frames_;
-  DisplacedVial shift_;
+  std::shared_ptr<const DisplacedVial> shift_;
 };
 
 }  // namespace vam::light

@@ -6,7 +6,9 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "base/compute/slab.hpp"
@@ -65,6 +67,7 @@ inline RayNode node_at(const TableNode& node, const HeightScale& scale, const Li
 }
 
 struct ChiefRayDose;
+class DisplacedVial;
 
 using RayNodes = std::vector<RayNode, CacheAligned<RayNode>>;
 
@@ -122,6 +125,8 @@ class RayTable {
     return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
   [[nodiscard]] bool climbs() const { return climbs_; }
+  /// What changes where the vial is displaced by up to so much: made when it is first asked for.
+  [[nodiscard]] std::shared_ptr<const DisplacedVial> displaced(double largest_mm) const;
   /// Standard deviation of the spread along z of the light that passes a point of the plan view, in mm of the image
   /// plane.
   [[nodiscard]] double spread_along_mm(double x_mm, double y_mm, const LightSpread& spread) const;
@@ -149,6 +154,8 @@ class RayTable {
   bool climbs_ = false;
   std::vector<float> cosines_, sines_;  // of the directions
   std::vector<TableNode> nodes_;        // [zone, row, sheet][direction]
+  mutable std::mutex guard_;
+  mutable std::map<double, std::shared_ptr<const DisplacedVial>> displaced_;
 };
 
 }  // namespace vam::light
