@@ -42,15 +42,13 @@ quiet() {  # quiet NAME COMMAND...: it succeeds with nothing on stderr
 
 fails() {  # fails STATUS REGEX COMMAND...: that exit status, one line on stderr that matches, nothing new in the folder
   want=$1; regex=$2; shift 2
-  ls -A >.log/before
+  names=$(echo * .*)
   "$@" >.log/out 2>.log/err; status=$?
-  ls -A >.log/after
-  lines=$(wc -l <.log/err)
   problem=
   [ "$status" -eq "$want" ] || problem="status $status instead of $want"
-  [ "$lines" -eq 1 ] || problem="$problem; $lines lines on stderr instead of 1"
+  { read -r _ && ! read -r another && [ -z "$another" ]; } <.log/err || problem="$problem; $(wc -l <.log/err) lines on stderr instead of 1"
   grep -Eq -- "$regex" .log/err || problem="$problem; stderr does not match '$regex'"
-  cmp -s .log/before .log/after || problem="$problem; left behind: $(comm -13 .log/before .log/after | tr '\n' ' ')"
+  [ "$names" = "$(echo * .*)" ] || problem="$problem; $(ls -A | tr '\n' ' ')instead of $names"
   if [ -z "$problem" ]; then report 0 "$want: $*"; else
     report 1 "$want: $*"; echo "# $problem"; sed 's/^/# /' .log/err | head -n 10
   fi
