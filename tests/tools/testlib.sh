@@ -75,7 +75,13 @@ holds() {  # holds NAME EXPRESSION: arithmetic truth, by awk: holds "volume" "$v
 unchain() { sed -i 's/,"chain":"[0-9a-f]*"}$/}/' "$@"; }  # unchain LOG...: as of a program that states no chain
 
 json() {  # json FILE KEY: the number, text or truth at that dotted key
-  python3 -IS -c 'import json,sys
+  awk -v key="$2" '/^ +[^]} ]/ {  # the files of tools have a value a line; what is none of one is left to Python
+      match($0, /^ +/); d = RLENGTH / 2; value = substr($0, RLENGTH + 1); name = at[d]++; at[d + 1] = 0
+      if (match(value, /^"[^"]*": /)) { name = substr(value, 2, RLENGTH - 4); value = substr(value, RLENGTH + 1) }
+      path[d] = d > 1 ? path[d - 1] "." name : name
+      if (path[d] == key) exit }
+    END { sub(/,$/, "", value); if (path[d] != key || value !~ /^("[^"\\]*"|[-+.0-9e]+|true|false)$/) exit 1
+      gsub(/"/, "", value); print value }' "$1" 2>/dev/null || python3 -IS -c 'import json,sys
 value=json.load(open(sys.argv[1]))
 for key in sys.argv[2].split("."): value=value[int(key)] if isinstance(value,list) else value[key]
 print(str(value).lower() if isinstance(value,bool) else value)' "$1" "$2"
