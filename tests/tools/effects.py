@@ -9,6 +9,7 @@ changes what the tool writes (values, figures, facts; histories, seals, times an
 one kind at least, and without: but for settings of the printer. Prints a line of TAP for each option.
 """
 import argparse
+import functools
 import glob
 import os
 import re
@@ -53,6 +54,7 @@ def rows_of(cell):
     return [(words[0], words, shlex.split(context), "")]
 
 
+@functools.cache
 def help_of(tool):
     return subprocess.run(shlex.split(tool) + ["--help=all"], stdout=subprocess.PIPE, check=True).stdout.decode()
 

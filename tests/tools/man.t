@@ -13,7 +13,7 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   complaints=$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')
   is "$tool: mandoc -Tlint is silent" "$complaints" ""
   ok "$tool: --help" "$tool" --help
-  "$tool" --help >"$tool.help"
+  mv .log/out "$tool.help"
   lines=$(wc -l <"$tool.help")
   ! grep -q -- '--help=all$' "$tool.help" || holds "$tool: what is usual is told in short" "$lines <= 56"
   ok "$tool: --version" "$tool" --version
