@@ -3,7 +3,6 @@
 # trials: 100
 # Page flips [devices guarantee 1]: black within 100 ms of any end, by the log of a simulated graphics card. VAM_TRIALS a
 # cause (2; 100 under the label "long").
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 tiny_print part.exr
 python3 "$VAM_SOURCE/tests/device/drm_trials.py" ends "${VAM_TRIALS:-2}" "$VAM_BUILD/lib/vam-test/drm_card.so" >table

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # scripts/lab: every command of vam-lab(7), in order, on the simulated bench; and what Control-C leaves.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 lab=$VAM_SOURCE/scripts/lab
 exec 9>"${XDG_RUNTIME_DIR:-/tmp}/vam-gige-test.lock"; flock -w 300 9  # its camera has GigE Vision's port, which is the machine's

@@ -3,7 +3,6 @@
 # A print with the records of its own instrument, judged by the simulators' logs: the stage's speed ripples by 3 % each 30
 # degrees and its replies are up to 20 ms late, the camera's time stamps are 40 ms late, the light comes 30 ms after its
 # flip. All delays must be measured, and every frame shown at its angle [devices guarantee 3].
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 shim=$(vam-sim stage --shim)

@@ -3,7 +3,6 @@
 # trials: 100
 # A print or a calibration of which a tool and its guardian are killed, or vam-print with one of them [devices §7]: image
 # and LEDs are off, the relay is open and the stage stands within 2 s, and a line says so. A fifth of VAM_TRIALS a cause (5; 100: "long").
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes

@@ -3,7 +3,6 @@
 # trials: 100
 # A print of a turn of which the script or a tool is killed at a random moment, and its resumption: together they show
 # every frame as long as a whole print does, to one vertical blank. A fifth of VAM_TRIALS kills (10; 100: "long").
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 trials=$((${VAM_TRIALS:-10} / 5))

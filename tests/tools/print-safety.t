@@ -3,7 +3,6 @@
 # trials: 100
 # A print of which the script or a tool is killed: dark, the relay open, and still within 100 ms, beside six busy loops within 250 ms
 # [devices guarantee 1]. A fifth of VAM_TRIALS a cause (5; 100: "long"), as a print takes seconds to begin.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr

@@ -5,7 +5,6 @@
 # killed or stopped in it: nothing of it runs on, the light is off, and the rest can be resumed or is refused in one line.
 # "long" (VAM_TRIALS=100): every cause in every state, a twentieth of VAM_TRIALS each; else a kill of the print in every state,
 # and each of the other causes in one. print-safety.t says how soon it is dark and still.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 trials=$(((${VAM_TRIALS:-20} + 19) / 20))
 tiny_print frames.exr

@@ -2,7 +2,6 @@
 # ctest: LABELS clock RUN_SERIAL ON COST 150
 # trials: 100
 # vam-project alone [devices guarantee 1]: a black screen within 100 ms of any end. VAM_TRIALS a cause (2; 100: "long").
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 tiny_print part.exr
 python3 "$VAM_SOURCE/tests/device/project_trials.py" "${VAM_TRIALS:-2}" >table; status=$?

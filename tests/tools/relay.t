@@ -2,7 +2,6 @@
 # ctest: LABELS clock COST 200
 # trials: 100
 # The dead-man relay on the lamp [devices §7]: closed during a print only, and no light without it.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 shim=$(vam-sim stage --shim)
 hold=0.4

@@ -3,7 +3,6 @@
 # trials: 100
 # USB devices through libusb [devices guarantee 1]: the DLPC350 and DLPC900 light engines, by turns, are dark, and the
 # Tic stage receives the stop command, within 100 ms of any end of the tool. VAM_TRIALS a cause (2; 100 under the label "long").
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 tiny_print part.exr
 

@@ -2,7 +2,6 @@
 # ctest: LABELS long RESOURCE_LOCK camera COST 110
 # Calibration on misaligned simulators: stage, screen and a GigE Vision camera beside a glowing vial,
 # all taken live; the records are held against what the simulators were set to.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 mkdir keep

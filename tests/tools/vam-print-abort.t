@@ -2,7 +2,6 @@
 # ctest: LABELS clock COST 200
 # A print that is ended, from outside or by the end of one of its tools: dark and at standstill in time, with the right
 # status and a summary.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 . "$VAM_SOURCE/tests/tools/printlib.sh"
 

@@ -2,7 +2,6 @@
 # ctest: LABELS clock COST 200
 # What vam-print checks before any motion or light, and reports after an incomplete print: on a simulated stage and camera,
 # without a screen.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # A print whose stage replies wrongly, by every kind of fault in turn: it ends dark and at standstill, with the right status.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 . "$VAM_SOURCE/tests/tools/printlib.sh"
 

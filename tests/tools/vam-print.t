@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: LABELS clock RESOURCE_LOCK camera COST 250
 # A whole print on simulators: mesh, frames, stage on a pseudo-terminal, screen, camera; judged by the simulators' logs.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # vam-project on a screen: pixels exact, frames by the stage angle, black in every case.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # ctest: RESOURCE_LOCK devices COST 100
 # The line on a terminal and the page that refreshes itself, in a real browser if there is one.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr

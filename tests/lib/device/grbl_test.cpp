@@ -19,6 +19,17 @@ struct GrblLab : StageLab {
   void open(bool home_here = false) { stage = make_grbl_stage(port(), clock, 0, nullptr, home_here); }
 };
 
+// A reset in motion.
+void alarm(GrblLab& lab) {
+  lab.stage->set_speed(10);
+  lab.stage->start_move(100);
+  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
+  const auto other = lab.port();
+  other->write("\x18");
+  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
+  (void)other->read(0.1);  // its greeting
+}
+
 }  // namespace
 
 TEST_CASE("GRBL: refuses motion before homing") {
@@ -85,13 +96,7 @@ TEST_CASE("GRBL: a board without switches takes its present position as zero, fo
 TEST_CASE("GRBL: home=here unlocks a board without switches, and is refused by one that has them") {
   GrblLab lab(SimGcsSettings{.no_switches = true});
   lab.open(true);
-  lab.stage->set_speed(10);
-  lab.stage->start_move(100);
-  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
-  const auto other = lab.port();
-  other->write("\x18");  // in motion: alarm
-  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
-  (void)other->read(0.1);
+  alarm(lab);
   lab.open(true);
   home(*lab.stage, lab.clock, 60);
   CHECK(lab.commands("$X") == 1);
@@ -104,13 +109,7 @@ TEST_CASE("GRBL: home=here unlocks a board without switches, and is refused by o
 TEST_CASE("GRBL: a locked board is not unlocked by a motion") {
   GrblLab lab;
   lab.open();
-  lab.stage->set_speed(10);
-  lab.stage->start_move(100);
-  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
-  const auto other = lab.port();
-  other->write("\x18");  // in motion: alarm
-  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
-  (void)other->read(0.1);  // its greeting
+  alarm(lab);
   lab.open();
   CHECK(has(error_of([&] { move(*lab.stage, lab.clock, 10, true, 30, 60); }, Fault::protocol), "vam-stage home"));
   CHECK_FALSE(lab.truly_moves());

@@ -8,11 +8,7 @@
 
 using namespace vam;
 using namespace vam::io;
-using samples::array_refusal;
-using samples::big;
-using samples::little;
-using samples::read_array;
-using samples::ReadArray;
+using namespace samples;
 
 namespace {
 

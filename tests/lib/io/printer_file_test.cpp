@@ -14,10 +14,7 @@
 
 using vam::Error;
 using vam::Fault;
-using vam::io::load_printer;
-using vam::io::parse_printer;
-using vam::io::printer_settings;
-using vam::io::printer_toml;
+using namespace vam::io;
 
 namespace {
 

@@ -5,11 +5,7 @@
 #include "testing.hpp"
 
 using vam::Fault;
-using vam::io::differences;
-using vam::io::load_printer;
-using vam::io::parse_settings;
-using vam::io::printer_settings;
-using vam::io::printer_toml;
+using namespace vam::io;
 
 namespace {
 

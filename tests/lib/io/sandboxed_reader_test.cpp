@@ -18,9 +18,7 @@
 
 using vam::Error;
 using vam::Fault;
-using vam::io::read_apart;
-using vam::io::Receiver;
-using vam::io::Sender;
+using namespace vam::io;
 
 namespace {
 
