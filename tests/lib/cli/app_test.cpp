@@ -129,6 +129,16 @@ struct Stage {
   int run(const std::vector<std::string>& words) { return run_app(app, words); }
 };
 
+std::string man_of(Stage& stage) {
+  return written_to(stdout, [&] { CHECK(stage.run({"--man"}) == 0); });
+}
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
 }  // namespace
 
 TEST_CASE("an operand of a command may have the name of another command") {
@@ -202,20 +212,6 @@ TEST_CASE("a tool with operands of its own runs without a command") {
   CHECK(stage.chosen.empty());
   CHECK(stage.input == "part.vdb");
 }
-
-namespace {
-
-std::string man_of(Stage& stage) {
-  return written_to(stdout, [&] { CHECK(stage.run({"--man"}) == 0); });
-}
-
-int count_of(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
-}  // namespace
 
 TEST_CASE("the manual prints options of several commands once, and the plain form where there is one") {
   Stage commands;

@@ -25,38 +25,6 @@ struct LightLab {
   std::unique_ptr<LightEngine> light;
 };
 
-}  // namespace
-
-TEST_CASE("light engine starts dark, turns on on command, ends dark") {
-  for (const bool dlpc900 : {false, true}) {
-    CAPTURE(dlpc900);
-    LightLab lab({.dlpc900 = dlpc900, .slow_reads = 3});
-    CHECK(lab.light->identify()["firmware"] == "4.0.1");
-    lab.light->prepare();
-    CHECK(lab.shining() == 0);
-    lab.light->on();
-    CHECK(lab.shining() == 4);
-    CHECK(lab.leds.back()["linear"] == true);
-    lab.light->dark();
-    CHECK(lab.shining() == 0);
-    lab.light->on();
-    lab.light->standby();
-    CHECK(lab.shining() == 0);
-    CHECK(lab.sleep.size() == 1);
-  }
-}
-
-TEST_CASE("A DLPC900 without an image at its input is given 15 s; its light stays off") {
-  LightLab lab({.dlpc900 = true, .no_signal = true});
-  const double start_s = lab.clock.now_s();
-  const std::string message = error_of([&] { lab.light->prepare(); }, Fault::busy);
-  CHECK(has(message, "finds no video signal at its input within 15 s"));
-  CHECK(lab.clock.now_s() - start_s == doctest::Approx(15).epsilon(0.01));
-  CHECK(lab.shining() == 0);
-}
-
-namespace {
-
 // A simulated engine that keeps what it was sent, as hex without the padding of the 64 bytes.
 class Heard final : public UsbLink {
  public:
@@ -89,6 +57,34 @@ std::vector<std::string> heard_by(const SimDlpSettings& sim) {
 }
 
 }  // namespace
+
+TEST_CASE("light engine starts dark, turns on on command, ends dark") {
+  for (const bool dlpc900 : {false, true}) {
+    CAPTURE(dlpc900);
+    LightLab lab({.dlpc900 = dlpc900, .slow_reads = 3});
+    CHECK(lab.light->identify()["firmware"] == "4.0.1");
+    lab.light->prepare();
+    CHECK(lab.shining() == 0);
+    lab.light->on();
+    CHECK(lab.shining() == 4);
+    CHECK(lab.leds.back()["linear"] == true);
+    lab.light->dark();
+    CHECK(lab.shining() == 0);
+    lab.light->on();
+    lab.light->standby();
+    CHECK(lab.shining() == 0);
+    CHECK(lab.sleep.size() == 1);
+  }
+}
+
+TEST_CASE("A DLPC900 without an image at its input is given 15 s; its light stays off") {
+  LightLab lab({.dlpc900 = true, .no_signal = true});
+  const double start_s = lab.clock.now_s();
+  const std::string message = error_of([&] { lab.light->prepare(); }, Fault::busy);
+  CHECK(has(message, "finds no video signal at its input within 15 s"));
+  CHECK(lab.clock.now_s() - start_s == doctest::Approx(15).epsilon(0.01));
+  CHECK(lab.shining() == 0);
+}
 
 // By hand from TI DLPU010 and DLPU018: flags (40 write, C0 read), sequence, length of what follows, CMD3, CMD2, data.
 TEST_CASE(

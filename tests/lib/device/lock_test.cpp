@@ -53,6 +53,26 @@ pid_t holder(const std::string& name) {
   return child;
 }
 
+// As a user without rights sees it.
+std::string obstacle_for_nobody(const std::string& node) {
+  std::array<int, 2> line{};
+  REQUIRE(pipe(line.data()) == 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    constexpr unsigned nobody = 65534;
+    const bool left = setgroups(0, nullptr) == 0 && setgid(nobody) == 0 && setuid(nobody) == 0;
+    const std::string text = left ? device::node_obstacle(node) : "still root";
+    (void)!write(line[1], text.data(), text.size());
+    _exit(0);
+  }
+  close(line[1]);
+  std::array<char, 200> text{};
+  const ssize_t size = read(line[0], text.data(), text.size());
+  close(line[0]);
+  waitpid(child, nullptr, 0);
+  return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
+}
+
 }  // namespace
 
 TEST_CASE("The second user learns who the first one is; kill -9 frees the device") {
@@ -97,30 +117,6 @@ TEST_CASE("A missing folder cannot hold locks") {
   setenv("VAM_LOCK_DIR", "/nonexistent", 1);
   CHECK(fault_of([] { DeviceLock("usb-1"); }) == Fault::no_output);
 }
-
-namespace {
-
-// As a user without rights sees it.
-std::string obstacle_for_nobody(const std::string& node) {
-  std::array<int, 2> line{};
-  REQUIRE(pipe(line.data()) == 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    constexpr unsigned nobody = 65534;
-    const bool left = setgroups(0, nullptr) == 0 && setgid(nobody) == 0 && setuid(nobody) == 0;
-    const std::string text = left ? device::node_obstacle(node) : "still root";
-    (void)!write(line[1], text.data(), text.size());
-    _exit(0);
-  }
-  close(line[1]);
-  std::array<char, 200> text{};
-  const ssize_t size = read(line[0], text.data(), text.size());
-  close(line[0]);
-  waitpid(child, nullptr, 0);
-  return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
-}
-
-}  // namespace
 
 TEST_CASE("A device node is free, in use by a process, or not there") {
   const LockFolder folder;

@@ -97,6 +97,29 @@ double p99_error_deg(const Run& run, AngleSource& angles, VirtualClock& clock, P
   return errors[errors.size() * 99 / 100];
 }
 
+// Wakes late occasionally, as a busy machine does, and records when; blanks are every 1/60 s.
+class LateDisplay final : public Display {
+ public:
+  explicit LateDisplay(VirtualClock& clock) : clock_(clock), origin_s_(clock.now_s()) {}
+  [[nodiscard]] DisplayMode mode() const override { return {16, 8, 60}; }
+  int add(const GreyImage&) override { return count_++; }
+  void exchange(ScreenFrames&) override {}
+  Flip present(int) override {
+    const long sequence = std::max(sequence_ + 1, std::lround((clock_.now_s() - origin_s_) * 60));
+    const double late_s = ++presented_ % 10 == 0 ? 0.007 : 0;
+    clock_.sleep_until(origin_s_ + static_cast<double>(sequence) / 60 + late_s);
+    sequence_ = sequence;
+    return {sequence, clock_.now_s()};
+  }
+
+ private:
+  VirtualClock& clock_;
+  double origin_s_;
+  long sequence_ = 0;
+  int count_ = 0;
+  int presented_ = 0;
+};
+
 }  // namespace
 
 // [devices guarantee 3]
@@ -126,33 +149,6 @@ TEST_CASE(
     }
   }
 }
-
-namespace {
-
-// Wakes late occasionally, as a busy machine does, and records when; blanks are every 1/60 s.
-class LateDisplay final : public Display {
- public:
-  explicit LateDisplay(VirtualClock& clock) : clock_(clock), origin_s_(clock.now_s()) {}
-  [[nodiscard]] DisplayMode mode() const override { return {16, 8, 60}; }
-  int add(const GreyImage&) override { return count_++; }
-  void exchange(ScreenFrames&) override {}
-  Flip present(int) override {
-    const long sequence = std::max(sequence_ + 1, std::lround((clock_.now_s() - origin_s_) * 60));
-    const double late_s = ++presented_ % 10 == 0 ? 0.007 : 0;
-    clock_.sleep_until(origin_s_ + static_cast<double>(sequence) / 60 + late_s);
-    sequence_ = sequence;
-    return {sequence, clock_.now_s()};
-  }
-
- private:
-  VirtualClock& clock_;
-  double origin_s_;
-  long sequence_ = 0;
-  int count_ = 0;
-  int presented_ = 0;
-};
-
-}  // namespace
 
 TEST_CASE("A late flip is logged as late, and those after it are still predicted for their own blanks") {
   VirtualClock clock(100);

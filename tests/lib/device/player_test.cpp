@@ -81,24 +81,6 @@ PlayTally play_missing(int miss, double allowed_lit, std::vector<int>& leds) {
   return play(*display, light.get(), angles, clock, plan, [](const FlipRecord&) {});
 }
 
-}  // namespace
-
-TEST_CASE("Missed vertical blanks: in the run-up no light at all, in the print black where there are too many") {
-  std::vector<int> leds;
-  CHECK(fault_of([&] { play_missing(50, 0.01, leds); }) == Fault::busy);
-  CHECK(std::count(leds.begin(), leds.end(), 0) == std::ssize(leds));
-  CHECK(fault_of([&] { play_missing(1200, 0.001, leds); }) == Fault::busy);
-  CHECK(leds.front() == 4);
-  CHECK(leds.back() == 0);
-}
-
-TEST_CASE("A vertical blank may be missed in the print that may not be missed in the run-up") {
-  std::vector<int> leds;
-  CHECK(play_missing(1200, PlayPlan{}.allowed_missed_lit, leds).missed == 1);
-}
-
-namespace {
-
 // A null: display that remembers what is on.
 class Watched final : public Display {
  public:
@@ -119,6 +101,20 @@ class Watched final : public Display {
 };
 
 }  // namespace
+
+TEST_CASE("Missed vertical blanks: in the run-up no light at all, in the print black where there are too many") {
+  std::vector<int> leds;
+  CHECK(fault_of([&] { play_missing(50, 0.01, leds); }) == Fault::busy);
+  CHECK(std::count(leds.begin(), leds.end(), 0) == std::ssize(leds));
+  CHECK(fault_of([&] { play_missing(1200, 0.001, leds); }) == Fault::busy);
+  CHECK(leds.front() == 4);
+  CHECK(leds.back() == 0);
+}
+
+TEST_CASE("A vertical blank may be missed in the print that may not be missed in the run-up") {
+  std::vector<int> leds;
+  CHECK(play_missing(1200, PlayPlan{}.allowed_missed_lit, leds).missed == 1);
+}
 
 TEST_CASE("Frames may be exchanged before the first frame of a turn, and nothing dark is between") {
   VirtualClock clock;

@@ -37,6 +37,31 @@ struct RelayLab : StageLab {
   Relay relay;
 };
 
+// An engine that takes long to go dark.
+struct SlowLamp final : Lamp {
+  explicit SlowLamp(RelayLab& of) : lab(of) {}
+  void on() override {}
+  void dark() override {
+    lab.clock.sleep_until(lab.clock.now_s() + 0.2);
+    relay_was = lab.state();
+  }
+  RelayLab& lab;
+  std::string relay_was;
+};
+
+// Says one line.
+class Line final : public Port {
+ public:
+  explicit Line(std::string line) : line_(std::move(line)) {}
+  void write(std::string_view) override {}
+  std::string read(double) override { return std::exchange(line_, ""); }
+  [[nodiscard]] const std::string& name() const override { return name_; }
+
+ private:
+  std::string line_;
+  std::string name_ = "port";
+};
+
 }  // namespace
 
 TEST_CASE("A relay is closed while it hears a heartbeat, and no longer") {
@@ -91,35 +116,6 @@ TEST_CASE("No light without an answer of the relay") {
   lab.show(2);
   CHECK(lab.state() == "closed");
 }
-
-namespace {
-
-// An engine that takes long to go dark.
-struct SlowLamp final : Lamp {
-  explicit SlowLamp(RelayLab& of) : lab(of) {}
-  void on() override {}
-  void dark() override {
-    lab.clock.sleep_until(lab.clock.now_s() + 0.2);
-    relay_was = lab.state();
-  }
-  RelayLab& lab;
-  std::string relay_was;
-};
-
-// Says one line.
-class Line final : public Port {
- public:
-  explicit Line(std::string line) : line_(std::move(line)) {}
-  void write(std::string_view) override {}
-  std::string read(double) override { return std::exchange(line_, ""); }
-  [[nodiscard]] const std::string& name() const override { return name_; }
-
- private:
-  std::string line_;
-  std::string name_ = "port";
-};
-
-}  // namespace
 
 TEST_CASE("When a print fails the relay opens before the light engine replies, at its end after it") {
   for (const bool fails : {false, true}) {

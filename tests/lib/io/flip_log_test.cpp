@@ -25,6 +25,11 @@ std::string flip(double t_s, int frame, double angle_deg) {
          std::to_string(frame) + R"(,"angle_deg":)" + std::to_string(angle_deg) + "}\n";
 }
 
+std::string sinogram(const char* event, const std::string& file, double full_scale) {
+  return R"({"event":")" + std::string(event) + R"(","full_scale":)" + std::to_string(full_scale) +
+         (file == "-" ? "" : R"(,"sinogram_sha256":")" + vam::io::sha256_of(file) + '"') + "}\n";
+}
+
 }  // namespace
 
 TEST_CASE("the exposure is that of the flips with a frame, each until the next flip") {
@@ -54,15 +59,6 @@ TEST_CASE("in a log of several runs an image ends with its run") {
   CHECK(shown[1].seconds == 1);
   CHECK(shown[2].seconds == 2);
 }
-
-namespace {
-
-std::string sinogram(const char* event, const std::string& file, double full_scale) {
-  return R"({"event":")" + std::string(event) + R"(","full_scale":)" + std::to_string(full_scale) +
-         (file == "-" ? "" : R"(,"sinogram_sha256":")" + vam::io::sha256_of(file) + '"') + "}\n";
-}
-
-}  // namespace
 
 TEST_CASE("flips count for the sinogram whose frames were on, also when it comes back and in the next run") {
   const scratch::Folder folder;

@@ -27,6 +27,58 @@ GreyImage all_levels(int bits) {
   return image;
 }
 
+// A PNG of 8 x 8 grey pixels whose image data are `packed`.
+std::string png_of(const std::string& packed) {
+  std::string png = encode_png(GreyImage(8, 8, 8)).substr(0, 33);  // signature and IHDR
+  for (const std::string& chunk : {"IDAT" + packed, std::string("IEND")}) {
+    const auto big_endian = [&](std::size_t value) {
+      for (int shift = 24; shift >= 0; shift -= 8) png += static_cast<char>(value >> shift & 0xff);
+    };
+    big_endian(chunk.size() - 4);
+    png += chunk;
+    big_endian(crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size())));
+  }
+  return png;
+}
+
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string packed(size, '\0');
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  return packed.substr(0, size);
+}
+
+// A TIFF of one strip, by the specification (TIFF 6.0 section 2): little-endian, no compression.
+struct TiffOf {
+  std::uint32_t width, height, bits, photometric, samples;
+  std::uint32_t format = 1;  // whole numbers
+  std::uint32_t planes = 1;  // the samples of a pixel side by side
+  std::uint32_t orientation = 1;
+  [[nodiscard]] std::string with(const std::string& pixels) const {
+    const auto put = [](std::uint32_t value, int bytes) {
+      std::string text;
+      for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i);
+      return text;
+    };
+    const auto size = static_cast<std::uint32_t>(pixels.size());
+    const std::array<std::array<std::uint32_t, 2>, 12> tags{{{256, width},
+                                                             {257, height},
+                                                             {258, bits},
+                                                             {259, 1},
+                                                             {262, photometric},
+                                                             {273, 8},
+                                                             {274, orientation},
+                                                             {277, samples},
+                                                             {278, height},
+                                                             {279, size},
+                                                             {284, planes},
+                                                             {339, format}}};
+    std::string bytes = std::string("II*\0", 4) + put(8 + size, 4) + pixels + put(tags.size(), 2);
+    for (const auto& [tag, value] : tags) bytes += put(tag, 2) + put(4, 2) + put(1, 4) + put(value, 4);
+    return bytes + put(0, 4);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("PNG of every depth comes back through OpenCV's decoder: level / full of the depth") {
@@ -89,31 +141,6 @@ TEST_CASE("truncated, damaged and foreign images are errors") {
   error_of([&] { (void)read_image(folder / "none.png"); }, vam::Fault::no_input);
 }
 
-namespace {
-
-// A PNG of 8 x 8 grey pixels whose image data are `packed`.
-std::string png_of(const std::string& packed) {
-  std::string png = encode_png(GreyImage(8, 8, 8)).substr(0, 33);  // signature and IHDR
-  for (const std::string& chunk : {"IDAT" + packed, std::string("IEND")}) {
-    const auto big_endian = [&](std::size_t value) {
-      for (int shift = 24; shift >= 0; shift -= 8) png += static_cast<char>(value >> shift & 0xff);
-    };
-    big_endian(chunk.size() - 4);
-    png += chunk;
-    big_endian(crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size())));
-  }
-  return png;
-}
-
-std::string deflated(const std::string& bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string packed(size, '\0');
-  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  return packed.substr(0, size);
-}
-
-}  // namespace
-
 TEST_CASE("what follows the last row of a PNG is refused, and not unpacked") {
   const scratch::Folder folder;
   constexpr std::size_t rows = 8 * 9;
@@ -130,41 +157,6 @@ TEST_CASE("what follows the last row of a PNG is refused, and not unpacked") {
   CHECK(has(line, "IDAT: Too much image data"));
   CHECK(cpu_s() - before < 0.15);  // unpacking it takes 0.4 s
 }
-
-namespace {
-
-// A TIFF of one strip, by the specification (TIFF 6.0 section 2): little-endian, no compression.
-struct TiffOf {
-  std::uint32_t width, height, bits, photometric, samples;
-  std::uint32_t format = 1;  // whole numbers
-  std::uint32_t planes = 1;  // the samples of a pixel side by side
-  std::uint32_t orientation = 1;
-  [[nodiscard]] std::string with(const std::string& pixels) const {
-    const auto put = [](std::uint32_t value, int bytes) {
-      std::string text;
-      for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i);
-      return text;
-    };
-    const auto size = static_cast<std::uint32_t>(pixels.size());
-    const std::array<std::array<std::uint32_t, 2>, 12> tags{{{256, width},
-                                                             {257, height},
-                                                             {258, bits},
-                                                             {259, 1},
-                                                             {262, photometric},
-                                                             {273, 8},
-                                                             {274, orientation},
-                                                             {277, samples},
-                                                             {278, height},
-                                                             {279, size},
-                                                             {284, planes},
-                                                             {339, format}}};
-    std::string bytes = std::string("II*\0", 4) + put(8 + size, 4) + pixels + put(tags.size(), 2);
-    for (const auto& [tag, value] : tags) bytes += put(tag, 2) + put(4, 2) + put(1, 4) + put(value, 4);
-    return bytes + put(0, 4);
-  }
-};
-
-}  // namespace
 
 TEST_CASE("TIFF of other programs: grey from either end, colours as luma, what is not read") {
   const scratch::Folder folder;

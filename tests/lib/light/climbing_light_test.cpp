@@ -109,6 +109,40 @@ double smooth(int column, int row, int angle) {
   return 1.2 + 0.6 * std::sin(0.14 * column + 0.21 * angle) + 0.5 * std::cos(0.3 * row + 0.1 * column);
 }
 
+/// Every frame elsewhere: two turns of ten angles, in which the vial or the part circles and rises.
+Bench posed(Bench b, model::Moves moves, double radius_mm, double lift_mm) {
+  constexpr int frames = 20;
+  b.setup.turn = {frames, 0, 2 * std::numbers::pi / 10};
+  b.slow.angles = frames;
+  b.slow.turns = 2;
+  for (int k = 0; k < frames; ++k) {
+    const double phi = 0.7 + 0.9 * k;
+    const model::Pose pose{36.0 * k, radius_mm * std::cos(phi), radius_mm * std::sin(phi),
+                           lift_mm * (2.0 * k / (frames - 1) - 1), moves};
+    b.setup.poses.push_back(pose);
+    b.slow.poses.push_back({pose.dx_mm, pose.dy_mm, pose.dz_mm, moves == model::Moves::vial});
+  }
+  return b;
+}
+
+/// Of ten slices and twenty rows.
+double adjoint_error(const VialOperator& light) {
+  std::vector<Slab> f{parts::noise(light.object(), 1)};
+  for (std::size_t i = 0; i < f[0].values.size(); ++i) f[0].values[i] *= i % lanes < 10 ? 1.0F : 0.0F;
+  const std::vector<Slab> g{parts::noise(light.sinogram(), 2), parts::noise(light.sinogram(), 3)};
+  std::vector<Slab> projected = slabs(2, light.sinogram().width, light.sinogram().height);
+  std::vector<Slab> dose = slabs(1, light.object().width, light.object().height);
+  light.forward(f, projected);
+  light.adjoint(g, dose);
+  double given = 0, size = 0, light_size = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    given += parts::dot(projected[s], g[s]);
+    size += parts::dot(projected[s], projected[s]);
+    light_size += parts::dot(g[s], g[s]);
+  }
+  return std::abs(given - parts::dot(f[0], dose[0])) / std::sqrt(size * light_size);
+}
+
 }  // namespace
 
 TEST_CASE("skew rays leave the dose deposited ray by ray") {
@@ -130,26 +164,6 @@ TEST_CASE("projections that jump from pixel to pixel are read over the pixel's o
   CHECK(std::abs(d.mean) < 2e-3);
 }
 
-namespace {
-
-/// Every frame elsewhere: two turns of ten angles, in which the vial or the part circles and rises.
-Bench posed(Bench b, model::Moves moves, double radius_mm, double lift_mm) {
-  constexpr int frames = 20;
-  b.setup.turn = {frames, 0, 2 * std::numbers::pi / 10};
-  b.slow.angles = frames;
-  b.slow.turns = 2;
-  for (int k = 0; k < frames; ++k) {
-    const double phi = 0.7 + 0.9 * k;
-    const model::Pose pose{36.0 * k, radius_mm * std::cos(phi), radius_mm * std::sin(phi),
-                           lift_mm * (2.0 * k / (frames - 1) - 1), moves};
-    b.setup.poses.push_back(pose);
-    b.slow.poses.push_back({pose.dx_mm, pose.dy_mm, pose.dz_mm, moves == model::Moves::vial});
-  }
-  return b;
-}
-
-}  // namespace
-
 TEST_CASE("in every pose of vial and part the dose is that deposited ray by ray") {
   const Bench still = bench(90, -1.8, 0.05, 1, 0);
   const Bench short_lens = bench(60, 6, 0.08, 1, 0);
@@ -161,28 +175,6 @@ TEST_CASE("in every pose of vial and part the dose is that deposited ray by ray"
     CHECK(std::abs(d.mean) < 2.5e-3);  // 2.0e-3 of them are there without poses, too
   }
 }
-
-namespace {
-
-/// Of ten slices and twenty rows.
-double adjoint_error(const VialOperator& light) {
-  std::vector<Slab> f{parts::noise(light.object(), 1)};
-  for (std::size_t i = 0; i < f[0].values.size(); ++i) f[0].values[i] *= i % lanes < 10 ? 1.0F : 0.0F;
-  const std::vector<Slab> g{parts::noise(light.sinogram(), 2), parts::noise(light.sinogram(), 3)};
-  std::vector<Slab> projected = slabs(2, light.sinogram().width, light.sinogram().height);
-  std::vector<Slab> dose = slabs(1, light.object().width, light.object().height);
-  light.forward(f, projected);
-  light.adjoint(g, dose);
-  double given = 0, size = 0, light_size = 0;
-  for (std::size_t s = 0; s < 2; ++s) {
-    given += parts::dot(projected[s], g[s]);
-    size += parts::dot(projected[s], projected[s]);
-    light_size += parts::dot(g[s], g[s]);
-  }
-  return std::abs(given - parts::dot(f[0], dose[0])) / std::sqrt(size * light_size);
-}
-
-}  // namespace
 
 // Rays of the operator have no width: a column's shadow begins and ends as a whole, in 20 x 20 voxels around an insert
 // of 6 x 2. That costs up to 0.017 RMS and 0.006 in the mean, at the shadow's edges.

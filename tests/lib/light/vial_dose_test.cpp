@@ -58,6 +58,20 @@ double corrected(const View& view, double x_p, double theta) {
   return ray.hits ? blob(ray.x_v_mm, theta + ray.delta_rad) * ray.jacobian / ray.transmittance : 0.0;
 }
 
+// Smooth light without symmetry.
+double smooth_light(double x_p, double theta) { return 1.2 + std::sin(0.35 * x_p + 2 * theta) + 0.1 * std::cos(theta); }
+
+vam::oracle::RayDose counted(const VialSetup& setup) {
+  vam::oracle::RayDose slow;
+  slow.bench.lens_distance = *setup.view.lens_mm;
+  for (const Shell& shell : setup.view.shells) slow.bench.cylinders.push_back({shell.radius_mm, shell.index});
+  slow.half_field = 0.5 * setup.projector.columns * setup.projector.pixel_mm;
+  slow.rays = 20000;
+  slow.absorption = setup.absorption_per_mm;
+  slow.angles = setup.turn.rows;
+  return slow;
+}
+
 }  // namespace
 
 TEST_CASE("a matched telecentric bench lights only the resin, and evenly") {
@@ -124,24 +138,6 @@ TEST_CASE("the exact correction gives the parallel dose, with order 2 in the pit
   CHECK(coarse < 0.03);             // voxel^2 / 24 * laplacian = 0.5^2 / 24 * 2 / 0.8^2 = 0.033
   CHECK(coarse / fine > 0.85 * 4);  // second order, less the margin of the next
 }
-
-namespace {
-
-// Smooth light without symmetry.
-double smooth_light(double x_p, double theta) { return 1.2 + std::sin(0.35 * x_p + 2 * theta) + 0.1 * std::cos(theta); }
-
-vam::oracle::RayDose counted(const VialSetup& setup) {
-  vam::oracle::RayDose slow;
-  slow.bench.lens_distance = *setup.view.lens_mm;
-  for (const Shell& shell : setup.view.shells) slow.bench.cylinders.push_back({shell.radius_mm, shell.index});
-  slow.half_field = 0.5 * setup.projector.columns * setup.projector.pixel_mm;
-  slow.rays = 20000;
-  slow.absorption = setup.absorption_per_mm;
-  slow.angles = setup.turn.rows;
-  return slow;
-}
-
-}  // namespace
 
 TEST_CASE("rays counted one by one leave the same dose within the reach") {
   for (const View& view : {vial, walled}) {

@@ -18,6 +18,25 @@ namespace {
 /// Smooth light without symmetry.
 double shine(double x_p, double theta) { return 1.2 + std::sin(0.35 * x_p + 2 * theta) + 0.1 * std::cos(theta); }
 
+/// A short lens below a tall vial: rays climb by as much as they ever will.
+VialSetup climbing(int size, int slices, int angles) {
+  VialSetup setup = vial_setup(size, angles);
+  setup.view.lens_mm = setup.view.rows_lens_mm = 80;
+  setup.grid.nz = slices;
+  setup.grid.origin_mm[2] = 3;  // the lens's axis is below
+  setup.z_scale = 0.96;
+  return setup;
+}
+
+/// Two turns in which things circle and rise.
+VialSetup posed(VialSetup setup, int frames, model::Moves moves) {
+  setup.turn = {frames, 0.2, 4 * std::numbers::pi / frames};
+  for (int k = 0; k < frames; ++k) {
+    setup.poses.push_back({360.0 * k / frames, 0.8 * std::cos(0.9 * k), 0.8 * std::sin(0.9 * k), 0.21 * k - 4, moves});
+  }
+  return setup;
+}
+
 }  // namespace
 
 TEST_CASE("in the vial A and A* are adjoint, with and without inserts, in either direction of rotation") {
@@ -106,20 +125,6 @@ TEST_CASE("a projector whose rays miss the vial is an error") {
   CHECK(fault_of([&] { VialOperator light(setup); }) == vam::Fault::data);
 }
 
-namespace {
-
-/// A short lens below a tall vial: rays climb by as much as they ever will.
-VialSetup climbing(int size, int slices, int angles) {
-  VialSetup setup = vial_setup(size, angles);
-  setup.view.lens_mm = setup.view.rows_lens_mm = 80;
-  setup.grid.nz = slices;
-  setup.grid.origin_mm[2] = 3;  // the lens's axis is below
-  setup.z_scale = 0.96;
-  return setup;
-}
-
-}  // namespace
-
 TEST_CASE("voxels a quarter of a turn apart share their rays: the dose is that of a grid whose voxels do not") {
   for (const bool climbs : {false, true}) {
     for (const int size : {40, 41}) {
@@ -206,19 +211,6 @@ TEST_CASE("with skew rays A and A* are adjoint, with slices that do not fill the
   }
   CHECK(parts::adjoint_error_of_volume(VialOperator(climbing(40, 32, 36), cross), 2) < 1e-5);
 }
-
-namespace {
-
-/// Two turns in which things circle and rise.
-VialSetup posed(VialSetup setup, int frames, model::Moves moves) {
-  setup.turn = {frames, 0.2, 4 * std::numbers::pi / frames};
-  for (int k = 0; k < frames; ++k) {
-    setup.poses.push_back({360.0 * k / frames, 0.8 * std::cos(0.9 * k), 0.8 * std::sin(0.9 * k), 0.21 * k - 4, moves});
-  }
-  return setup;
-}
-
-}  // namespace
 
 TEST_CASE("in every pose A and A* are adjoint, with more slices than rows and with more rows than slices") {
   for (const model::Moves moves : {model::Moves::vial, model::Moves::part}) {

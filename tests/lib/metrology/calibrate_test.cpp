@@ -37,6 +37,40 @@ ResponseScan ramp(double gamma, double leak, int readings, double noise, vam::or
   return scan;
 }
 
+// Two turns of a bead in frames whose time stamps are late; its column by its own angle, the reported one by the stamp.
+TurnScan late_turn(double speed_deg_s, int direction, double lag_s, double bead_deg, vam::oracle::Random& random,
+                   std::vector<double>& time_s) {
+  TurnScan turn{.rows = 60};
+  turn.middle.resize(1);
+  time_s.clear();
+  for (int i = 0; i < 72; ++i) {
+    const double taken_s = 10.0 * i / speed_deg_s;
+    const double own_deg = direction * speed_deg_s * taken_s;
+    turn.middle[0].push_back(102 + 40 * std::cos((own_deg - bead_deg) * std::numbers::pi / 180) + 0.05 * unit(random));
+    turn.angle_deg.push_back(speed_deg_s * (taken_s + lag_s));
+    time_s.push_back(100 + taken_s + lag_s);
+  }
+  return turn;
+}
+
+// A stage of 60 deg/s whose speed ripples by 3 % each 30 degrees, and is 0.3 % higher in the end than at the start.
+double rippled_deg(double t_s) {
+  const double line_deg = 60 * t_s * (1 + 0.003 * t_s / 12);
+  return line_deg + 0.14 * std::cos(12 * line_deg * std::numbers::pi / 180);
+}
+
+// Its answers, each up to 20 ms on its way there and up to 20 ms back.
+std::vector<StagePoint> late_points(vam::oracle::Random& random) {
+  std::vector<StagePoint> points;
+  for (double t_s = -0.1; t_s < 12.1;) {
+    const double there_s = 0.02 * part(random), back_s = 0.02 * part(random);
+    points.push_back(
+        {t_s + 0.5 * (there_s + back_s), rippled_deg(t_s + there_s), 60 * (there_s + back_s) / std::sqrt(12.0)});
+    t_s += std::max(0.01, there_s + back_s);
+  }
+  return points;
+}
+
 }  // namespace
 
 TEST_CASE("Response: 200 ramps, 95 % of all levels inside 2 sigma, never falling") {
@@ -229,26 +263,6 @@ TEST_CASE("wobble: axis and runout separated from four stage angles") {
   at({0, 120, 240})();
 }
 
-namespace {
-
-// Two turns of a bead in frames whose time stamps are late; its column by its own angle, the reported one by the stamp.
-TurnScan late_turn(double speed_deg_s, int direction, double lag_s, double bead_deg, vam::oracle::Random& random,
-                   std::vector<double>& time_s) {
-  TurnScan turn{.rows = 60};
-  turn.middle.resize(1);
-  time_s.clear();
-  for (int i = 0; i < 72; ++i) {
-    const double taken_s = 10.0 * i / speed_deg_s;
-    const double own_deg = direction * speed_deg_s * taken_s;
-    turn.middle[0].push_back(102 + 40 * std::cos((own_deg - bead_deg) * std::numbers::pi / 180) + 0.05 * unit(random));
-    turn.angle_deg.push_back(speed_deg_s * (taken_s + lag_s));
-    time_s.push_back(100 + taken_s + lag_s);
-  }
-  return turn;
-}
-
-}  // namespace
-
 TEST_CASE("Lag: the camera's delay, whatever it is, within 0.5 ms, 200 scans") {
   vam::oracle::Random random(29);
   test::Coverage lag("lag");
@@ -269,28 +283,6 @@ TEST_CASE("Lag: the camera's delay, whatever it is, within 0.5 ms, 200 scans") {
   CHECK(has(error_of([&] { (void)camera_lag_ms(axis, 60, axis, -60); }, Fault::data), "rotates at -60 deg/s"));
   CHECK(fault_of([&] { (void)turning_speed_deg_s({0, 0}, {1, 2}); }) == Fault::data);
 }
-
-namespace {
-
-// A stage of 60 deg/s whose speed ripples by 3 % each 30 degrees, and is 0.3 % higher in the end than at the start.
-double rippled_deg(double t_s) {
-  const double line_deg = 60 * t_s * (1 + 0.003 * t_s / 12);
-  return line_deg + 0.14 * std::cos(12 * line_deg * std::numbers::pi / 180);
-}
-
-// Its answers, each up to 20 ms on its way there and up to 20 ms back.
-std::vector<StagePoint> late_points(vam::oracle::Random& random) {
-  std::vector<StagePoint> points;
-  for (double t_s = -0.1; t_s < 12.1;) {
-    const double there_s = 0.02 * part(random), back_s = 0.02 * part(random);
-    points.push_back(
-        {t_s + 0.5 * (there_s + back_s), rippled_deg(t_s + there_s), 60 * (there_s + back_s) / std::sqrt(12.0)});
-    t_s += std::max(0.01, there_s + back_s);
-  }
-  return points;
-}
-
-}  // namespace
 
 TEST_CASE(
     "The course of a stage that answers up to 20 ms late: its angles within 0.5 ms of turning, by its own sigma") {

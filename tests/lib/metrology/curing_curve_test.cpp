@@ -62,6 +62,42 @@ Truth drawn(unsigned seed) {
   return truth;
 }
 
+constexpr int angles = 60;
+
+/// Six bands of six rows, each brighter than the one below, all around.
+GreyImage bands(const model::Projector& projector) {
+  GreyImage frame(projector.columns, projector.rows, 8);
+  for (int r = 4; r < 40; ++r) {
+    for (int c = 18; c < 46; ++c) frame(c, r) = static_cast<std::uint16_t>(100 + 25 * ((39 - r) / 6));
+  }
+  return frame;
+}
+
+/// The planner's dose of a turn of it, mJ/cm3, in its stretched frame.
+model::Volume planned_dose(const model::Printer& printer, const GreyImage& frame) {
+  model::StackInfo info;
+  info.space = model::Space::projector;
+  info.width = frame.width;
+  info.height = angles;
+  info.count = frame.height;
+  info.pixel_mm = info.row_mm = printer.projector.pixel_mm;
+  info.z_start_mm = -(frame.height - 1 - printer.projector.axis_row) * info.row_mm;
+  info.angle_step_deg = 360.0 / angles;
+  std::vector<Image> rows(frame.height, Image(frame.width, angles));
+  for (const auto [r, a, c] : indices(frame.height, angles, frame.width)) {
+    rows[frame.height - 1 - r](c, a) = static_cast<float>(frame(c, r)) / 255.0F;
+  }
+  const model::Grid grid = model::centred_grid(36, 36, 42, 0.2, -4.1);
+  std::vector<Image> slices(grid.nz);
+  light::Simulation(printer, {}, info, grid).dose(rows, slices);
+  model::Volume dose{grid, {}};
+  const auto per_radian = static_cast<float>(*resin::dose_per_radian_mj_cm3(printer));
+  for (const Image& slice : slices) {
+    for (const float value : slice.values) dose.values.push_back(per_radian * value);
+  }
+  return dose;
+}
+
 }  // namespace
 
 TEST_CASE("The working curve finds critical dose and delay of simulated resins within its sigmas") {
@@ -169,46 +205,6 @@ TEST_CASE("Readings of a working curve are of voxels without a step on either si
     CHECK(readings[step].sigma < 1e-6);
   }
 }
-
-namespace {
-
-constexpr int angles = 60;
-
-/// Six bands of six rows, each brighter than the one below, all around.
-GreyImage bands(const model::Projector& projector) {
-  GreyImage frame(projector.columns, projector.rows, 8);
-  for (int r = 4; r < 40; ++r) {
-    for (int c = 18; c < 46; ++c) frame(c, r) = static_cast<std::uint16_t>(100 + 25 * ((39 - r) / 6));
-  }
-  return frame;
-}
-
-/// The planner's dose of a turn of it, mJ/cm3, in its stretched frame.
-model::Volume planned_dose(const model::Printer& printer, const GreyImage& frame) {
-  model::StackInfo info;
-  info.space = model::Space::projector;
-  info.width = frame.width;
-  info.height = angles;
-  info.count = frame.height;
-  info.pixel_mm = info.row_mm = printer.projector.pixel_mm;
-  info.z_start_mm = -(frame.height - 1 - printer.projector.axis_row) * info.row_mm;
-  info.angle_step_deg = 360.0 / angles;
-  std::vector<Image> rows(frame.height, Image(frame.width, angles));
-  for (const auto [r, a, c] : indices(frame.height, angles, frame.width)) {
-    rows[frame.height - 1 - r](c, a) = static_cast<float>(frame(c, r)) / 255.0F;
-  }
-  const model::Grid grid = model::centred_grid(36, 36, 42, 0.2, -4.1);
-  std::vector<Image> slices(grid.nz);
-  light::Simulation(printer, {}, info, grid).dose(rows, slices);
-  model::Volume dose{grid, {}};
-  const auto per_radian = static_cast<float>(*resin::dose_per_radian_mj_cm3(printer));
-  for (const Image& slice : slices) {
-    for (const float value : slice.values) dose.values.push_back(per_radian * value);
-  }
-  return dose;
-}
-
-}  // namespace
 
 TEST_CASE("A working curve by planned doses and reconstructed views has the critical dose of the simulated vial") {
   sim::SimBench bench;

@@ -53,6 +53,45 @@ int needed_extra(const resin::CureLimits& limits) {
   return std::max(0, resin::burst_slices(limits) - (limits.exposure == ExposureMode::layered ? 1 : 0));
 }
 
+// The constraints as a linear program in y = phi - phi_min >= 0. Omega(n) = sum_{m >= n} gain q^(m-n) phi_m.
+vam::oracle::LinearProgram program_of(const Part& part, const resin::CureLimits& limits, double omega_max, int slices) {
+  const auto count = static_cast<std::size_t>(slices);
+  vam::oracle::LinearProgram lp;
+  lp.cost.assign(count, 0);
+  const auto add = [&](const std::vector<double>& row, double bound) {
+    lp.a.push_back(row);
+    lp.b.push_back(bound);
+  };
+  const auto solid = [&](int n) { return n >= 0 && n < static_cast<int>(part.size()) && part[n] != 0; };
+  for (std::size_t n = 0; n < count; ++n) {
+    std::vector<double> row(count, 0);
+    row[n] = 1;
+    add(row, limits.phi_max - limits.phi_min);
+  }
+  const bool continuous = limits.exposure == ExposureMode::continuous;
+  for (int n = 0; n <= slices; ++n) {
+    std::vector<double> up(count, 0);
+    double base = 0;
+    for (int m = n; m < slices; ++m) {
+      up[m] = limits.gain * std::pow(limits.q, m - n);
+      base += up[m] * limits.phi_min;
+    }
+    std::vector<double> down = up;
+    for (double& value : down) value = -value;
+    const bool here = solid(n);
+    const bool before = continuous && solid(n - 1);
+    if (!here && !before) {
+      add(up, 1 - base);
+      continue;
+    }
+    add(down, base - 1);  // Omega >= 1
+    const bool edge = (here && n > 0 && !solid(n - 1)) || (continuous ? !here : !solid(n + 1));
+    const double high = edge ? 1 : omega_max;
+    if (std::isfinite(high)) add(up, high - base);
+  }
+  return lp;
+}
+
 }  // namespace
 
 TEST_CASE("the paper's ladder, uncorrected: one fused feature with an undercured bottom edge") {
@@ -138,49 +177,6 @@ TEST_CASE("thousands of random columns: every constraint holds where gaps and li
   CHECK(feasible > 1000);  // both outcomes are exercised
   CHECK(infeasible > 1000);
 }
-
-namespace {
-
-// The constraints as a linear program in y = phi - phi_min >= 0. Omega(n) = sum_{m >= n} gain q^(m-n) phi_m.
-vam::oracle::LinearProgram program_of(const Part& part, const resin::CureLimits& limits, double omega_max, int slices) {
-  const auto count = static_cast<std::size_t>(slices);
-  vam::oracle::LinearProgram lp;
-  lp.cost.assign(count, 0);
-  const auto add = [&](const std::vector<double>& row, double bound) {
-    lp.a.push_back(row);
-    lp.b.push_back(bound);
-  };
-  const auto solid = [&](int n) { return n >= 0 && n < static_cast<int>(part.size()) && part[n] != 0; };
-  for (std::size_t n = 0; n < count; ++n) {
-    std::vector<double> row(count, 0);
-    row[n] = 1;
-    add(row, limits.phi_max - limits.phi_min);
-  }
-  const bool continuous = limits.exposure == ExposureMode::continuous;
-  for (int n = 0; n <= slices; ++n) {
-    std::vector<double> up(count, 0);
-    double base = 0;
-    for (int m = n; m < slices; ++m) {
-      up[m] = limits.gain * std::pow(limits.q, m - n);
-      base += up[m] * limits.phi_min;
-    }
-    std::vector<double> down = up;
-    for (double& value : down) value = -value;
-    const bool here = solid(n);
-    const bool before = continuous && solid(n - 1);
-    if (!here && !before) {
-      add(up, 1 - base);
-      continue;
-    }
-    add(down, base - 1);  // Omega >= 1
-    const bool edge = (here && n > 0 && !solid(n - 1)) || (continuous ? !here : !solid(n + 1));
-    const double high = edge ? 1 : omega_max;
-    if (std::isfinite(high)) add(up, high - base);
-  }
-  return lp;
-}
-
-}  // namespace
 
 TEST_CASE("no feasible column has less dose: a linear program finds the same optimum") {
   std::mt19937 random(5);

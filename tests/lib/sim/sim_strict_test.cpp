@@ -47,6 +47,28 @@ Terminal gcs(int address = 1) { return Terminal(make_sim_gcs, SimGcsSettings{.ad
 
 bool begins(const std::string& text, const std::string& with) { return text.rfind(with, 0) == 0; }
 
+// A report of TI's HID protocol: flags, sequence, length, CMD3, CMD2, data; and the answer.
+std::string ask_dlp(device::UsbLink& link, int flags, int command, const std::string& data) {
+  std::string report{static_cast<char>(flags),           '\5',
+                     static_cast<char>(data.size() + 2), '\0',
+                     static_cast<char>(command & 0xFF),  static_cast<char>(command >> 8)};
+  report += data;
+  report.resize(64, '\0');
+  link.write_report(report);
+  return link.read_report();
+}
+
+double red_percent(bool dlpc900, const std::string& polarity, char current) {
+  double percent = -1;
+  const auto link = make_sim_dlp({.dlpc900 = dlpc900}, [&](const Json& line) {
+    if (line["event"] == "leds") percent = line["current_percent"][0];
+  });
+  ask_dlp(*link, 0x40, 0x1A05, polarity);
+  ask_dlp(*link, 0x40, 0x0B01, std::string(3, current));
+  ask_dlp(*link, 0x40, 0x1A07, std::string(1, '\1'));
+  return percent;
+}
+
 }  // namespace
 
 TEST_CASE("GCS: only questions are answered, and ERR? clears") {
@@ -211,32 +233,6 @@ TEST_CASE("Tic: without a command for its time-out it stops") {
   clock.sleep_until(clock.now_s() + 4);
   CHECK(tic->control_in(0xA1, 0, 0x26, 4) == std::string(4, '\0'));
 }
-
-namespace {
-
-// A report of TI's HID protocol: flags, sequence, length, CMD3, CMD2, data; and the answer.
-std::string ask_dlp(device::UsbLink& link, int flags, int command, const std::string& data) {
-  std::string report{static_cast<char>(flags),           '\5',
-                     static_cast<char>(data.size() + 2), '\0',
-                     static_cast<char>(command & 0xFF),  static_cast<char>(command >> 8)};
-  report += data;
-  report.resize(64, '\0');
-  link.write_report(report);
-  return link.read_report();
-}
-
-double red_percent(bool dlpc900, const std::string& polarity, char current) {
-  double percent = -1;
-  const auto link = make_sim_dlp({.dlpc900 = dlpc900}, [&](const Json& line) {
-    if (line["event"] == "leds") percent = line["current_percent"][0];
-  });
-  ask_dlp(*link, 0x40, 0x1A05, polarity);
-  ask_dlp(*link, 0x40, 0x0B01, std::string(3, current));
-  ask_dlp(*link, 0x40, 0x1A07, std::string(1, '\1'));
-  return percent;
-}
-
-}  // namespace
 
 TEST_CASE(
     "DLPC350: FF is no current at normal polarity on a LightCrafter 4500, full on a DLPC900, and inverted turns both") {

@@ -73,6 +73,74 @@ solid::Similarity turn(const Vector3& axis, double degrees, const Vector3& shift
   return s;
 }
 
+// What is left of the solid below a plane through it, closed by the cut: 48 to 57 % of the volume, as it prints: at
+// voxels, rough by `rough_mm`.
+TriangleSoup part_of(const solid::Field& field, const model::Grid& grid, const Vector3& normal, double share,
+                     double rough_mm, std::uint64_t seed) {
+  model::Volume volume{grid, std::vector<float>(grid.size())};
+  solid::cover(field, grid, 0, grid.nz, volume.values.data());
+  std::vector<std::pair<double, std::size_t>> along;
+  double total = 0;
+  for (std::size_t i = 0; i < volume.values.size(); ++i) {
+    if (volume.values[i] == 0) continue;
+    const auto n = static_cast<int>(i);
+    const Vector3 p{grid.x_mm(n % grid.nx), grid.y_mm(n / grid.nx % grid.ny), grid.z_mm(n / grid.nx / grid.ny)};
+    along.emplace_back(dot(p, normal), i);
+    total += static_cast<double>(volume.values[i]);
+  }
+  std::sort(along.begin(), along.end());
+  double kept = 0;
+  for (const auto& [height, i] : along) {
+    if (kept > share * total) volume.values[i] = 0;
+    kept += static_cast<double>(volume.values[i]);
+  }
+  TriangleSoup mesh = solid::isosurface(volume, 0.5);
+  for (auto& p : mesh.points) {
+    for (double& v : p) v += 2 * rough_mm * (unit_interval(seed = scrambled(seed)) - 0.5);
+  }
+  return mesh;
+}
+
+struct Design {
+  solid::Field field;
+  model::Grid grid;
+  TriangleSoup mesh;
+};
+
+Design design_of(const char* shape, const std::array<int, 3>& voxels, double voxel_mm) {
+  Design design{solid::make_shape(shape),
+                model::centred_grid(voxels[0], voxels[1], voxels[2], voxel_mm, -0.5 * voxel_mm * (voxels[2] - 1)),
+                {}};
+  model::Volume volume{design.grid, std::vector<float>(design.grid.size())};
+  solid::cover(design.field, design.grid, 0, design.grid.nz, volume.values.data());
+  design.mesh = solid::isosurface(volume, 0.5);
+  return design;
+}
+
+// Worst distance of the print's points from where they belong, back by the inverse of their turn.
+double misplaced_mm(const TriangleSoup& right, const TriangleSoup& print, const solid::Similarity& found) {
+  double worst = 0;
+  for (std::size_t i = 0; i < print.points.size(); ++i)
+    worst = std::max(worst, length(found(print.points[i]) - right.points[i]));
+  return worst;
+}
+
+// A plate of 12 x 6 mm with two equal bores, up to this height, as voxels show it.
+TriangleSoup bored_plate(double top_mm) {
+  const model::Grid grid = model::centred_grid(64, 34, 14, 0.2, -1.3);
+  model::Volume volume{grid, std::vector<float>(grid.size())};
+  for (std::size_t i = 0; i < volume.values.size(); ++i) {
+    const auto n = static_cast<int>(i);
+    const double x = grid.x_mm(n % grid.nx);
+    const double y = grid.y_mm(n / grid.nx % grid.ny);
+    const double z = grid.z_mm(n / grid.nx / grid.ny);
+    const double inside_mm =
+        std::min({6 - std::abs(x), 3 - std::abs(y), z + 1, top_mm - z, std::hypot(std::abs(x) - 4, y) - 1});
+    volume.values[i] = static_cast<float>(std::clamp(0.5 + inside_mm / grid.voxel_mm, 0.0, 1.0));
+  }
+  return solid::isosurface(volume, 0.5);
+}
+
 }  // namespace
 
 TEST_CASE("winding number of a sphere, closed and with a hole") {
@@ -183,62 +251,6 @@ TEST_CASE("the influence of debris is bounded from 2.5 times the deviation on [H
   CHECK(std::abs(found.transform.shift_mm[1]) < 0.01 * t);
 }
 
-namespace {
-
-// What is left of the solid below a plane through it, closed by the cut: 48 to 57 % of the volume, as it prints: at
-// voxels, rough by `rough_mm`.
-TriangleSoup part_of(const solid::Field& field, const model::Grid& grid, const Vector3& normal, double share,
-                     double rough_mm, std::uint64_t seed) {
-  model::Volume volume{grid, std::vector<float>(grid.size())};
-  solid::cover(field, grid, 0, grid.nz, volume.values.data());
-  std::vector<std::pair<double, std::size_t>> along;
-  double total = 0;
-  for (std::size_t i = 0; i < volume.values.size(); ++i) {
-    if (volume.values[i] == 0) continue;
-    const auto n = static_cast<int>(i);
-    const Vector3 p{grid.x_mm(n % grid.nx), grid.y_mm(n / grid.nx % grid.ny), grid.z_mm(n / grid.nx / grid.ny)};
-    along.emplace_back(dot(p, normal), i);
-    total += static_cast<double>(volume.values[i]);
-  }
-  std::sort(along.begin(), along.end());
-  double kept = 0;
-  for (const auto& [height, i] : along) {
-    if (kept > share * total) volume.values[i] = 0;
-    kept += static_cast<double>(volume.values[i]);
-  }
-  TriangleSoup mesh = solid::isosurface(volume, 0.5);
-  for (auto& p : mesh.points) {
-    for (double& v : p) v += 2 * rough_mm * (unit_interval(seed = scrambled(seed)) - 0.5);
-  }
-  return mesh;
-}
-
-struct Design {
-  solid::Field field;
-  model::Grid grid;
-  TriangleSoup mesh;
-};
-
-Design design_of(const char* shape, const std::array<int, 3>& voxels, double voxel_mm) {
-  Design design{solid::make_shape(shape),
-                model::centred_grid(voxels[0], voxels[1], voxels[2], voxel_mm, -0.5 * voxel_mm * (voxels[2] - 1)),
-                {}};
-  model::Volume volume{design.grid, std::vector<float>(design.grid.size())};
-  solid::cover(design.field, design.grid, 0, design.grid.nz, volume.values.data());
-  design.mesh = solid::isosurface(volume, 0.5);
-  return design;
-}
-
-// Worst distance of the print's points from where they belong, back by the inverse of their turn.
-double misplaced_mm(const TriangleSoup& right, const TriangleSoup& print, const solid::Similarity& found) {
-  double worst = 0;
-  for (std::size_t i = 0; i < print.points.size(); ++i)
-    worst = std::max(worst, length(found(print.points[i]) - right.points[i]));
-  return worst;
-}
-
-}  // namespace
-
 TEST_CASE("48 to 57 % of a print lie where they belong, every time") {
   const Design boat = design_of("boat:length=10", {60, 60, 60}, 0.2);
   const solid::Surface surface(boat.mesh);
@@ -280,26 +292,6 @@ TEST_CASE("half a bar lies anywhere along it: ambiguous; half a cube in any corn
   const auto corner = solid::align(moved(slab, turn({1, 2, 3}, 77, {5, 5, 5})), cube, solid::Surface(cube), options);
   CHECK(!corner.rival);
 }
-
-namespace {
-
-// A plate of 12 x 6 mm with two equal bores, up to this height, as voxels show it.
-TriangleSoup bored_plate(double top_mm) {
-  const model::Grid grid = model::centred_grid(64, 34, 14, 0.2, -1.3);
-  model::Volume volume{grid, std::vector<float>(grid.size())};
-  for (std::size_t i = 0; i < volume.values.size(); ++i) {
-    const auto n = static_cast<int>(i);
-    const double x = grid.x_mm(n % grid.nx);
-    const double y = grid.y_mm(n / grid.nx % grid.ny);
-    const double z = grid.z_mm(n / grid.nx / grid.ny);
-    const double inside_mm =
-        std::min({6 - std::abs(x), 3 - std::abs(y), z + 1, top_mm - z, std::hypot(std::abs(x) - 4, y) - 1});
-    volume.values[i] = static_cast<float>(std::clamp(0.5 + inside_mm / grid.voxel_mm, 0.0, 1.0));
-  }
-  return solid::isosurface(volume, 0.5);
-}
-
-}  // namespace
 
 TEST_CASE("half a plate that fits either way up is refused however it was turned") {
   TriangleSoup plate = bored_plate(1);

@@ -32,48 +32,6 @@ bool closed(const model::TriangleSoup& mesh) {
   });
 }
 
-}  // namespace
-
-TEST_CASE("a ball: closed, outward, its volume, its vertices on the sphere") {
-  const double radius = 4;
-  const auto mesh = solid::isosurface(ball(radius, 0.25, 48), 10);
-  CHECK(closed(mesh));
-  CHECK(oracle::signed_volume(mesh) ==
-        doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius).epsilon(0.005));
-  for (const auto& p : mesh.points)
-    CHECK(std::abs(std::hypot(p[0] - 0.3, p[1] + 0.2, p[2] - 0.1) - radius) <
-          0.1 * 0.25);  // dual vertices lie inside their cell; a tenth of a voxel at this curvature
-}
-
-TEST_CASE("a surface closes at the grid's border") {
-  const auto mesh = solid::isosurface(ball(8, 0.25, 48), 10);  // reaches beyond the 12 mm cube in the corners only
-  CHECK(closed(mesh));
-  CHECK(oracle::signed_volume(mesh) > 0);
-}
-
-TEST_CASE("nothing above the level is an empty mesh; invalid levels are refused") {
-  const auto volume = ball(4, 0.5, 24);
-  CHECK(solid::isosurface(volume, 1000).triangles.empty());
-  CHECK_THROWS_AS((void)solid::isosurface(volume, std::nan("")), Error);
-  auto broken = volume;
-  broken.values[100] = std::nanf("");
-  CHECK_THROWS_WITH_AS((void)solid::isosurface(broken, 10), doctest::Contains("not finite"), Error);
-}
-
-TEST_CASE("printed points are the voxels at or above the level, with their dose") {
-  const auto volume = ball(4, 0.5, 24);
-  const auto read = [&](int k, int count, float* out) {
-    std::copy_n(volume.slice(k), volume.grid.slice_size() * static_cast<std::size_t>(count), out);
-  };
-  const auto print = solid::printed_points(volume.grid, read, 10);
-  const auto want = std::count_if(volume.values.begin(), volume.values.end(), [](float v) { return v >= 10; });
-  CHECK(static_cast<long>(print.points.points.size()) == want);
-  CHECK(print.values.quality.size() == print.points.points.size());
-  CHECK(print.points.triangles.empty());
-}
-
-namespace {
-
 /// Of the trilinear field, by 6 x 6 x 6 points a cell.
 double volume_above(const model::Volume& volume, double level) {
   constexpr int points = 6;
@@ -115,6 +73,44 @@ model::Volume rods(double radius) {
 }
 
 }  // namespace
+
+TEST_CASE("a ball: closed, outward, its volume, its vertices on the sphere") {
+  const double radius = 4;
+  const auto mesh = solid::isosurface(ball(radius, 0.25, 48), 10);
+  CHECK(closed(mesh));
+  CHECK(oracle::signed_volume(mesh) ==
+        doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius).epsilon(0.005));
+  for (const auto& p : mesh.points)
+    CHECK(std::abs(std::hypot(p[0] - 0.3, p[1] + 0.2, p[2] - 0.1) - radius) <
+          0.1 * 0.25);  // dual vertices lie inside their cell; a tenth of a voxel at this curvature
+}
+
+TEST_CASE("a surface closes at the grid's border") {
+  const auto mesh = solid::isosurface(ball(8, 0.25, 48), 10);  // reaches beyond the 12 mm cube in the corners only
+  CHECK(closed(mesh));
+  CHECK(oracle::signed_volume(mesh) > 0);
+}
+
+TEST_CASE("nothing above the level is an empty mesh; invalid levels are refused") {
+  const auto volume = ball(4, 0.5, 24);
+  CHECK(solid::isosurface(volume, 1000).triangles.empty());
+  CHECK_THROWS_AS((void)solid::isosurface(volume, std::nan("")), Error);
+  auto broken = volume;
+  broken.values[100] = std::nanf("");
+  CHECK_THROWS_WITH_AS((void)solid::isosurface(broken, 10), doctest::Contains("not finite"), Error);
+}
+
+TEST_CASE("printed points are the voxels at or above the level, with their dose") {
+  const auto volume = ball(4, 0.5, 24);
+  const auto read = [&](int k, int count, float* out) {
+    std::copy_n(volume.slice(k), volume.grid.slice_size() * static_cast<std::size_t>(count), out);
+  };
+  const auto print = solid::printed_points(volume.grid, read, 10);
+  const auto want = std::count_if(volume.values.begin(), volume.values.end(), [](float v) { return v >= 10; });
+  CHECK(static_cast<long>(print.points.points.size()) == want);
+  CHECK(print.values.quality.size() == print.points.points.size());
+  CHECK(print.points.triangles.empty());
+}
 
 TEST_CASE("of rods of two voxels the fine surface has the volume of the trilinear field, the coarse one less") {
   for (const double radius : {0.8, 1.0, 1.3}) {

@@ -43,39 +43,6 @@ double ring(double x, double y, double z, double radius, double thick) {
   return thick - std::hypot(std::hypot(x, y) - radius, z);
 }
 
-}  // namespace
-
-TEST_CASE("a ball and a shell have no tunnel, a ring one, a plate its holes, whatever cavities are in it") {
-  const auto of = [](const std::function<double(double, double, double)>& value) {
-    const Field solid = field(30, 26, 24, [&](double x, double y, double z) { return 10 + value(x, y, z); });
-    const std::int64_t found = counted(solid, 10, 24);
-    for (const int a_pass : {1, 5}) CHECK(counted(solid, 10, a_pass) == found);
-    return found;
-  };
-  CHECK(of([](double, double, double) { return -1; }) == 0);
-  CHECK(of([](double, double, double) { return 1; }) == 0);
-  CHECK(of([](double x, double y, double z) { return 7.2 - std::hypot(x, y, z); }) == 0);
-  CHECK(of([](double x, double y, double z) { return ring(x, y, z, 7.1, 2.3); }) == 1);
-  CHECK(of([](double x, double y, double z) { return 2 - std::abs(8.3 - std::hypot(x, y, z)); }) == 0);
-  CHECK(of([](double x, double y, double z) {
-          return std::max(ring(x - 6, y, z, 5, 1.7), ring(x + 6, y, z, 5, 1.7));
-        }) == 2);
-  CHECK(of([](double x, double y, double z) {
-          return std::max(ring(x - 7.5, y, z, 4, 1.5), ring(x + 7.5, y, z, 4, 1.5));
-        }) == 2);  // apart
-  const auto plate = [](double x, double y, double z) {
-    const double from_hole = std::hypot(std::remainder(x, 8), std::remainder(y, 9)) - 1.8;
-    return std::min({4 - std::abs(z), from_hole, 14 - std::abs(x), 12 - std::abs(y)});
-  };
-  CHECK(of(plate) == 9);
-  CHECK(of([&](double x, double y, double z) {
-          const double from_bubble = std::hypot(std::remainder(x - 4, 8), std::remainder(y - 4.5, 9), z) - 1.2;
-          return std::min(plate(x, y, z), from_bubble);
-        }) == 9);
-}
-
-namespace {
-
 /// Points of a volume, so many a voxel, with a margin, and whether each reaches the level.
 struct Points {
   std::array<int, 3> size{};
@@ -167,6 +134,35 @@ std::optional<std::int64_t> known_tunnels(const Field& of, double level, int a_v
 }
 
 }  // namespace
+
+TEST_CASE("a ball and a shell have no tunnel, a ring one, a plate its holes, whatever cavities are in it") {
+  const auto of = [](const std::function<double(double, double, double)>& value) {
+    const Field solid = field(30, 26, 24, [&](double x, double y, double z) { return 10 + value(x, y, z); });
+    const std::int64_t found = counted(solid, 10, 24);
+    for (const int a_pass : {1, 5}) CHECK(counted(solid, 10, a_pass) == found);
+    return found;
+  };
+  CHECK(of([](double, double, double) { return -1; }) == 0);
+  CHECK(of([](double, double, double) { return 1; }) == 0);
+  CHECK(of([](double x, double y, double z) { return 7.2 - std::hypot(x, y, z); }) == 0);
+  CHECK(of([](double x, double y, double z) { return ring(x, y, z, 7.1, 2.3); }) == 1);
+  CHECK(of([](double x, double y, double z) { return 2 - std::abs(8.3 - std::hypot(x, y, z)); }) == 0);
+  CHECK(of([](double x, double y, double z) {
+          return std::max(ring(x - 6, y, z, 5, 1.7), ring(x + 6, y, z, 5, 1.7));
+        }) == 2);
+  CHECK(of([](double x, double y, double z) {
+          return std::max(ring(x - 7.5, y, z, 4, 1.5), ring(x + 7.5, y, z, 4, 1.5));
+        }) == 2);  // apart
+  const auto plate = [](double x, double y, double z) {
+    const double from_hole = std::hypot(std::remainder(x, 8), std::remainder(y, 9)) - 1.8;
+    return std::min({4 - std::abs(z), from_hole, 14 - std::abs(x), 12 - std::abs(y)});
+  };
+  CHECK(of(plate) == 9);
+  CHECK(of([&](double x, double y, double z) {
+          const double from_bubble = std::hypot(std::remainder(x - 4, 8), std::remainder(y - 4.5, 9), z) - 1.2;
+          return std::min(plate(x, y, z), from_bubble);
+        }) == 9);
+}
 
 TEST_CASE("fields of any values have the tunnels of the whole volume, for every height of a pass") {
   std::mt19937 draw(8);  // NOLINT(cert-msc51-cpp): the same fields every time
