@@ -152,39 +152,39 @@ interrupted() {  # interrupted STATE ARGUMENTS...: stopped by a signal once it h
   state=$1; shift
   for seconds in 0.5 1 2 5 20 60; do
     timeout --preserve-status -s INT $seconds vam-optimize "$@" --iterations 100000 --patience 0 --checkpoint $state -v \
-      part.vdb -o never.exr 2>.log/interrupted
+      small.vdb -o never.exr 2>.log/interrupted
     status=$?
     [ ! -e $state ] || return 0
   done
 }
 endless() { timeout 60 vam-optimize --iterations 100000 --patience 0 "$@"; }  # but for the error that is expected
-interrupted run.state
+interrupted run.state --angles 24
 is "interrupted, it ends by the signal" "$status" 130
 grep -q '^vam-optimize: interrupted; run.state has its state, from which the same command resumes$' .log/interrupted; report $? 'and says how it goes on'
 is "interrupted, it leaves its state and no result" "$(ls run.state never.exr 2>/dev/null)" run.state
-for other in '--angles 90' '--dose-high 0.9' '--weights part.vdb' '--set optimize.dither=true --bits 8'; do  # any option counts
-  fails 65 'of another job' vam-optimize $other --checkpoint run.state part.vdb -o out.exr
+for other in '--angles 36' '--angles 24 --dose-high 0.9' '--angles 24 --weights small.vdb' '--angles 24 --set optimize.dither=true --bits 8'; do  # any option counts
+  fails 65 'of another job' vam-optimize $other --checkpoint run.state small.vdb -o out.exr
 done
-fails 65 'of another job' endless --until 'ver<=0' --checkpoint run.state part.vdb -o out.exr
+fails 65 'of another job' endless --angles 24 --until 'ver<=0' --checkpoint run.state small.vdb -o out.exr
 # Files count by what they hold.
-cp whole.exr start.exr
+vam-optimize --iterations 2 --angles 30 small.vdb -o start.exr
 interrupted init.state --angles 30 --init start.exr
-vam-optimize --method fbp --angles 30 part.vdb -o start.exr
-fails 65 'init.state.*of another job' endless --angles 30 --init start.exr --checkpoint init.state part.vdb -o out.exr
+vam-optimize --method fbp --angles 30 small.vdb -o start.exr
+fails 65 'init.state.*of another job' endless --angles 30 --init start.exr --checkpoint init.state small.vdb -o out.exr
 python3 - <<'EOF'
 bytes = bytearray(open("run.state", "rb").read())
 bytes[-400:-396] = b"\x00\x00\xc0\x7f"
 open("nan.state", "wb").write(bytes)
 open("cut.state", "wb").write(bytes[:3000])
 EOF
-fails 65 'nan.state: .*NaN' endless --checkpoint nan.state part.vdb -o out.exr
-fails 65 'cut.state' endless --checkpoint cut.state part.vdb -o out.exr
+fails 65 'nan.state: .*NaN' endless --angles 24 --checkpoint nan.state small.vdb -o out.exr
+fails 65 'cut.state' endless --angles 24 --checkpoint cut.state small.vdb -o out.exr
 { cat run.state; echo more; } >long.state
-fails 65 'long.state: damaged .something follows its end' endless --checkpoint long.state part.vdb -o out.exr
+fails 65 'long.state: damaged .something follows its end' endless --angles 24 --checkpoint long.state small.vdb -o out.exr
 mkfifo fifo.state
-fails 65 'fifo.state: is not a regular file' endless --checkpoint fifo.state part.vdb -o out.exr
+fails 65 'fifo.state: is not a regular file' endless --angles 24 --checkpoint fifo.state small.vdb -o out.exr
 ln -s gone gone.state
-fails 66 'gone.state: links to a file that is gone' endless --checkpoint gone.state part.vdb -o out.exr
+fails 66 'gone.state: links to a file that is gone' endless --angles 24 --checkpoint gone.state small.vdb -o out.exr
 unseen=0
 for trial in $(seq 12); do
   python3 - "$trial" <<'EOF'
@@ -196,7 +196,7 @@ if random.random() < 0.3: del data[at:]
 else: data[at] ^= 1 << random.randrange(8)
 open("flipped.state", "wb").write(data)
 EOF
-  timeout 10 vam-optimize --iterations 100000 --patience 0 --checkpoint flipped.state part.vdb -o out.exr 2>.log/err; status=$?
+  timeout 10 vam-optimize --angles 24 --iterations 100000 --patience 0 --checkpoint flipped.state small.vdb -o out.exr 2>.log/err; status=$?
   [ "$status $(wc -l <.log/err)" = '65 1' ] || { unseen=$((unseen + 1)); echo "# trial $trial: status $status"; }
 done
 is 'a cut or a flipped bit anywhere in a state is an error' $unseen 0
@@ -211,14 +211,14 @@ is "a brighter peak takes more time" "$(sed 1d front.csv | cut -d, -f2 | sort -g
   "$(sed 1d front.csv | cut -d, -f2 | cksum)"
 is "no peak is above its limit" "$(sed 1d front.csv | awk -F, '$8 > 1.0001 * $1' | wc -l)" 0
 holds "more intensity has a wider window" "$(sed -n '$p' front.csv | cut -d, -f4) > $(sed -n 2p front.csv | cut -d, -f4)"
-quiet "of a resin that is not known" vam-optimize --angles 60 --tradeoff plain.csv coarse.vdb -o front.exr
-is "there are no seconds" "$(sed 1d plain.csv | cut -d, -f2,3 | sort -u)" ,
 vam-slice --shape cylinder:diameter=4,height=2 --voxel 0.8 -o tiny.vdb
+quiet "of a resin that is not known" vam-optimize --angles 12 --tradeoff plain.csv tiny.vdb -o front.exr
+is "there are no seconds" "$(sed 1d plain.csv | cut -d, -f2,3 | sort -u)" ,
 quiet "a front as an image, with tolerances" vam-optimize --angles 12 --robust lamp=3% --set optimize.yield_printers=0 $resin \
   --tradeoff front.png tiny.vdb -o front.exr
 is "it is an image" "$(head -c 8 front.png | od -An -c | tr -d ' ')" '211PNG\r\n032\n'
 fails 64 'front.txt' vam-optimize --tradeoff front.txt coarse.vdb -o out.exr
-vam-optimize --angles 12 --tradeoff nowhere/out.csv coarse.vdb -o kept.exr 2>.log/nowhere
+vam-optimize --angles 12 --tradeoff nowhere/out.csv tiny.vdb -o kept.exr 2>.log/nowhere
 is "a front that cannot be written leaves the projections" \
   "$? $(grep -c nowhere/out.csv .log/nowhere) $([ -s kept.exr ] && echo kept)" "73 1 kept"
 
