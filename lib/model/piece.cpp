@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cstdint>
 
+#include "base/error.hpp"
+
 namespace vam::model {
 
 namespace {
@@ -37,6 +39,18 @@ std::optional<ImageChoice> parse_choice(std::string_view text) {
   const auto of = parse_index(text.substr(slash + 1));
   if (!share || !of || *share < 1 || *share > *of) return std::nullopt;
   return ImageChoice{{}, *share, *of};
+}
+
+ImageChoice slices_named(const std::string& text) {
+  if (const auto choice = parse_choice(text)) return *choice;
+  throw Error{Fault::usage, "--slices: '" + text +
+                                "' is neither a range FROM:TO with FROM < TO, such as 0:64, nor a share I/N, such as "
+                                "1/4"};
+}
+
+ImageRange slices_among(const std::string& text, int count, const std::string& name, int unit) {
+  if (const auto range = slices_named(text).among(count, unit)) return *range;
+  throw Error{Fault::data, name + ": has " + std::to_string(count) + " slices, too few for --slices " + text};
 }
 
 std::optional<ImageRange> ImageChoice::among(int count, int unit) const {

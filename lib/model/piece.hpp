@@ -31,6 +31,10 @@ struct ImageChoice {
 };
 /// Nothing for what is neither.
 [[nodiscard]] std::optional<ImageChoice> parse_choice(std::string_view text);
+/// Of --slices. Throws Fault::usage for what is neither.
+ImageChoice slices_named(const std::string& text);
+/// Of a stack of so many images called `name`. Throws Fault::data, too, where it has too few.
+[[nodiscard]] ImageRange slices_among(const std::string& text, int count, const std::string& name, int unit = 1);
 
 /// The images that a stack holds of one with `of` images; of = 0: the stack is whole.
 struct Piece {

@@ -7,7 +7,6 @@
 #include "cli/common.hpp"
 #include "io/exr/stack_pieces.hpp"
 #include "io/stream/stream.hpp"
-#include "session/slices.hpp"
 #include "vam-convert/conversions.hpp"
 
 namespace vam::convert_tool {
@@ -30,14 +29,14 @@ model::ImageRange chosen(const PieceOptions& options, const io::StackPieces& in,
     throw Error{Fault::data,
                 held + " of " + std::to_string(in.info().count) + "; name the other pieces, too, or cut some of these"};
   }
-  const model::ImageRange range = session::slices_among(options.slices, in.info().count, name);
+  const model::ImageRange range = model::slices_among(options.slices, in.info().count, name);
   if (range.from >= there.from && range.to <= there.to) return range;
   throw Error{Fault::data, held + " of " + std::to_string(in.info().count) + ", not all of --slices " + options.slices};
 }
 
 void copy_pieces(const PieceOptions& options) {
   const std::string name = io::input_name(options.inputs.front());
-  if (!options.slices.empty()) (void)session::slices_named(options.slices);  // before files are opened
+  if (!options.slices.empty()) (void)model::slices_named(options.slices);  // before files are opened
   io::StackPieces in(options.inputs);
   const model::ImageRange range = chosen(options, in, name);
   io::StackWriter out(options.output, io::cut(in.info(), range, name), options.stack);

@@ -18,7 +18,6 @@
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"
-#include "session/slices.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
@@ -120,7 +119,7 @@ void resolve(const cli::App& app, const model::Printer& printer, Options& option
   resolve_auto(app, options);
   const optimize::MethodEntry& method = optimize::method_entry(options.method);
   optimize::check(options.demands);
-  if (!options.slices.empty()) (void)session::slices_named(options.slices);
+  if (!options.slices.empty()) (void)model::slices_named(options.slices);
   resolve_tolerances(app, options);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.demands.void_below = options.void_rule == "below";

@@ -11,7 +11,6 @@
 #include "io/settings/recorded_tolerances.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
-#include "session/slices.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/front.hpp"
 
@@ -48,7 +47,7 @@ model::StackInfo stack_info(const session::Scene& scene, const io::SparseVolume&
 
 std::optional<model::ImageRange> slices_of(const model::StackInfo& whole, const Options& options) {
   if (options.slices.empty()) return std::nullopt;
-  return session::slices_among(options.slices, whole.count, io::input_name(options.input), slices_per_pass);
+  return model::slices_among(options.slices, whole.count, io::input_name(options.input), slices_per_pass);
 }
 
 model::StackInfo written_info(const model::StackInfo& whole, const std::optional<model::ImageRange>& slices,

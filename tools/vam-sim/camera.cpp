@@ -2,6 +2,7 @@
 // vam-sim camera: a GigE Vision camera that views a simulated vial, on a network address of this machine.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,11 +12,13 @@
 #include "cli/app.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/port/lines.hpp"
+#include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
 #include "io/vdb/vdb.hpp"
 #include "optics/patterns.hpp"
+#include "optics/projector_frames.hpp"
+#include "session/exposure.hpp"
 #include "session/printer.hpp"
-#include "session/sinogram_frames.hpp"
 #include "sim/cameras/gv_camera.hpp"
 #include "sim/cameras/makers.hpp"
 #include "sim/controllers/controllers.hpp"
@@ -233,6 +236,32 @@ void cure(const cli::App& app, CameraOptions& o) {
   };
 }
 
+// What vam-project shows of a sinogram in one turn, so many frames; 0: one for each angle. full_scale: instead of that
+// of the exposure; 0: none. Of 8 bits, by a linear response.
+std::vector<GreyImage> sinogram_frames(const std::string& path, const model::Printer& printer, int frames,
+                                       double full_scale) {
+  io::StackReader reader(path);
+  optics::FrameComposer composer(path, reader.info(), optics::frame_place(printer.projector, 0, 0));
+  Image slice;
+  for (model::ImageInfo about; reader.next(slice, about);) composer.add(slice, about.z_mm);
+  composer.check();
+  if (!(full_scale > 0)) {
+    full_scale = session::exposure_of(path, reader.info(), printer, static_cast<double>(composer.peak())).full_scale;
+  }
+  std::vector<GreyImage> made;
+  const int count = frames > 0 ? frames : reader.info().height;
+  const double step_deg = 360.0 / count;
+  for (int n = 0; n < count; ++n) {
+    const Image light = composer.frame(n * step_deg, step_deg);
+    GreyImage& grey = made.emplace_back(light.width, light.height, 8);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      const double share = static_cast<double>(light.values[i]) / full_scale;
+      grey.values[i] = static_cast<std::uint16_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+    }
+  }
+  return made;
+}
+
 // A signal ends it at once: nothing needs a safe state, and waiting for the threads of Aravis may never end.
 void run(const cli::App& app, CameraOptions& o) {
   if (session::print_printer(o.printer)) return;
@@ -246,8 +275,7 @@ void run(const cli::App& app, CameraOptions& o) {
     return images(pattern_of(event), camera.bench.printer.projector);
   };
   camera.sources.renew = [&camera](const Json& event, int frames) {
-    return session::sinogram_frames(event.value("sinogram", ""), camera.bench.printer, frames,
-                                    event.value("full_scale", 0.0));
+    return sinogram_frames(event.value("sinogram", ""), camera.bench.printer, frames, event.value("full_scale", 0.0));
   };
   if (o.cure) cure(app, o);
   if (o.glow) camera.bench.glow = *o.glow;
