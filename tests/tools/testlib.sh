@@ -76,7 +76,7 @@ holds() {  # holds NAME EXPRESSION: arithmetic truth, by awk: holds "volume" "$v
 unchain() { sed -i 's/,"chain":"[0-9a-f]*"}$/}/' "$@"; }  # unchain LOG...: as of a program that states no chain
 
 json() {  # json FILE KEY: the number, text or truth at that dotted key
-  awk -v key="$2" '/^ +[^]} ]/ {  # the files of tools have a value a line; what is none of one is left to Python
+  [ -f "$1" ] && awk -v key="$2" '/^ +[^]} ]/ {  # the files of tools have a value a line; what is none, or comes once, is left to Python
       match($0, /^ +/); d = RLENGTH / 2; value = substr($0, RLENGTH + 1); name = at[d]++; at[d + 1] = 0
       if (match(value, /^"[^"]*": /)) { name = substr(value, 2, RLENGTH - 4); value = substr(value, RLENGTH + 1) }
       path[d] = d > 1 ? path[d - 1] "." name : name
