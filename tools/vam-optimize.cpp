@@ -80,7 +80,6 @@ void run(const cli::App& app, Options& options) {
   options.stack.late = planned;
   optimize::VolumeTask task = make_task(scene, in, options);
   task.slices = slices;
-  if (!options.demands.grey) task.unresolved = session::unresolved(in.target.front());
   const auto light = session::make_light(scene, options);
   optimize_tool::require_independent(task, *light);
   std::optional<optimize_tool::Initial> initial;
@@ -94,6 +93,7 @@ void run(const cli::App& app, Options& options) {
 
   const std::string subject = io::input_name(options.input);
   require_memory_for(scene, task, *light, optimize::method_entry(options.method), subject);
+  if (!options.demands.grey) task.unresolved = session::unresolved(in.target.front());
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
   if (initial) task.initial = std::ref(*initial);
   if (checkpoint) task.checkpoint = checkpoint->state();

@@ -288,7 +288,7 @@ sdf() { python3 -c 'import json, sys; print(json.load(open("asked-sdf.json"))["p
 holds "the print is as large as the design" "$(sdf mean_mm) >= -0.026 && $(sdf mean_mm) <= 0.026 && $(sdf rms_mm) <= 0.065"
 quiet "a band around the surface" vam-optimize --angles 45 --iterations 10 --set optimize.surface_margin_mm=0.15 --report band.json part.vdb -o band.exr
 quiet "surface voxels constrained, too" vam-optimize --angles 45 --iterations 10 --set optimize.surface=voxels --report surface.json part.vdb -o surface.exr
-holds "more constraints, a narrower window" "$(json band.json pw) > $(json surface.json pw)"
+holds "judged alike, more constraints make a wider window" "$(json band.json pw) < $(json surface.json pw)"
 printf 'dose,response\n0.2,0\n0.7,0.05\n0.9,0.95\n1.2,1\n' >cure.csv
 quiet "a measured response" vam-optimize --method bclp --resin-response cure.csv --angles 45 --iterations 20 --report cure.json part.vdb -o cure.exr
 holds "its window's middle is the threshold" "$(json cure.json threshold_dose) > 0.79 && $(json cure.json threshold_dose) < 0.81"
