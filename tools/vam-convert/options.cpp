@@ -63,8 +63,7 @@ void declare_projections(cli::App& app, Options& options) {
              "Speed at which the stage turns while a video plays, negative for the other way: its frames are shown for "
              "as long as it states. Sets stage.speed_deg_s.")
       .excludes({"--view-step"});
-  app.option("--axis-column", "PX", options.axis_column, on_image,
-             "Column of the projections on which the axis lies, at most half their width beside them.");
+  app.option("--axis-column", "PX", options.axis_column, on_image, "Column of the projections on which the axis lies.");
   app.default_is("that of --from; projector.axis_column in images as wide as the projector's, else the middle");
   app.option("--axis-row", "PX", options.axis_row, on_image,
              "Row of the images, or slice of the array, on which z = 0 lies.");
