@@ -80,7 +80,8 @@ void declare_constraints(cli::App& app, Options& options) {
   app.option("--weights", "FILE", options.weights,
              "Volume (VDB) with a grid 'weight', or with a single grid: relative cost of an error in each voxel. 0 "
              "leaves the voxel unconstrained.")
-      .reads();
+      .reads()
+      .excludes(at_once());
   app.default_is("the grid 'weight' of the target file, if present");
   app.flag("--grey-target", options.demands.grey,
            "The target specifies a dose (or response) for every voxel, to be met within --band.")
