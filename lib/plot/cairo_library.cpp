@@ -2,6 +2,7 @@
 #include "plot/private/cairo_library.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -31,13 +32,11 @@ void require_files() {
     one = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
     if (one < 0 && errno == EMFILE) problem = errno;
   }
-  for (const int one : spare) {
-    if (one >= 0) close(one);
-  }
+  for (const int one : spare) close(one);
   if (problem != 0) throw system_error(Fault::memory, "figure: needs 4 files open at a time", problem);
 }
 
-// Pango starts a thread, and GLib below it ends the process where this or memory is refused.
+// Pango starts threads, and GLib below it ends the process where these or memory are refused.
 void require_room() {
   constexpr std::size_t enough = std::size_t{64} << 20;  // for fonts, their list and a page
   void* room = mmap(nullptr, enough, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -45,6 +44,7 @@ void require_room() {
     throw Error{Fault::memory, "figure: needs 64 MiB more than the limit of addresses (ulimit -v) leaves; raise it"};
   }
   munmap(room, enough);
+  mallopt(M_ARENA_MAX, 1);  // each thread would reserve as much, and Fontconfig does not check for less
   try {
     std::thread([] {}).join();
   } catch (const std::system_error&) {
