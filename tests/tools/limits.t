@@ -44,7 +44,6 @@ else
   is 'and two do' "$status $(cat two.err)" '0 '
 fi
 if ! sanitized; then
-  odd=0
   within() {  # within KIB ENDS REGEX COMMAND: in so many KiB of addresses its end is one of ENDS, 'STATUS MATCHING-LINES|...';
     # 127, or 139 also for a version, if libraries do not fit, and 71 if they fit and cannot start
     timeout 60 sh -c "ulimit -v $1; exec $4" 2>bounded >found </dev/null; status=$?
@@ -52,8 +51,9 @@ if ! sanitized; then
     [ $status -eq 139 ] && { sh -c "ulimit -v $1; exec ${4%% *} --version" >/dev/null 2>&1; [ $? -eq 139 ]; } && return
     odd=$((odd + 1)); echo "# $1 KiB, $4: $status"; sed 's/^/# /' bounded
   }
+  odd=0; none_odd() { is "$1" $odd 0; odd=0; }  # none_odd NAME: of those since the last
   for mib in 8 $(seq 60 4 120); do within $((mib * 1024)) '71 1|0 0|127 1' . 'vam-slice --version'; done
-  is 'a start in 8 to 120 MiB of addresses is done or refused in one line' $odd 0
+  none_odd 'a start in 8 to 120 MiB of addresses is done or refused in one line'
   for kib in 64 96 255; do
     is "a stack of $kib KiB is refused" "$(sh -c "ulimit -s $kib; exec vam-slice --shape cylinder --voxel 0.5 -o x.vdb" 2>&1; echo $?)" \
       "vam-slice: needs a stack of 256 KiB, and the limit is $kib KiB; raise it (ulimit -s)
@@ -63,7 +63,7 @@ if ! sanitized; then
   # The libraries that draw end the process where memory or a thread is refused.
   raise='(raise|allow more|raise its limits?)'
   for mib in 160 200 220 230 240 260; do within $((mib * 1024)) '0 0|71 1' "^vam-view: .*$raise" 'vam-view part.vdb -o bounded.png'; done
-  is 'a figure in 160 to 260 MiB of addresses is drawn, or refused with the remedy' $odd 0
+  none_odd 'a figure in 160 to 260 MiB of addresses is drawn, or refused with the remedy'
   python3 -c '
 n = 40000
 print("OFF\n%d %d 0" % (4 * n, 4 * n))
@@ -73,7 +73,7 @@ for i in range(0, 4 * n, 4): print("3 %d %d %d\n3 %d %d %d\n3 %d %d %d\n3 %d %d 
   for mib in $(seq 110 10 180); do
     within $((mib * 1024)) '71 1|127 1' "^vam-sdf: .*($raise .ulimit|shared libraries)" 'vam-sdf many.off part.vdb --align none -o bounded.ply'
   done
-  is 'a deviation in 110 to 180 MiB of addresses is refused with the limit' $odd 0
+  none_odd 'a deviation in 110 to 180 MiB of addresses is refused with the limit'
   # Threads of the libraries throw where nobody catches, their initialisers where nothing can be thrown, and the reader
   # of volumes takes what it cannot have for damage.
   small_printer >small.toml
@@ -87,7 +87,7 @@ vam-check part.vdb light.exr
 vam-score part.vdb --grid target --target part.vdb
 vam-report part.vdb light.exr -o bounded.html
 EOF
-  is 'in 70000 to 100000 KiB of addresses a tool is done, or refused in one line' $odd 0
+  none_odd 'in 70000 to 100000 KiB of addresses a tool is done, or refused in one line'
   rm -f bounded* found small.toml light.exr many.off
 fi
 # Few open files: all of it or one line with the remedy, and figures are the same.
@@ -129,7 +129,7 @@ vam-capture --printer printer.toml --set camera.device=sim: --frames 2 -o few-ca
 vam-stage status --set stage.device=sim:
 EOF
   done
-  is 'with 4 to 16 open files a tool is done, or refused in one line' $odd 0
+  none_odd 'with 4 to 16 open files a tool is done, or refused in one line'
   for files in 4 5 6; do
     fails 71 'Too many open files; raise the limit' prlimit --nofile=$files vam-project -q few.exr --printer printer.toml -o few-none/
   done
