@@ -13,6 +13,7 @@
 #include "base/text/json.hpp"
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
+#include "device/os/log_keeper.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/run_folder.hpp"
@@ -168,14 +169,14 @@ void Claim::take(const Run& run) {
   };
   if (!written) give_up(mark);
   mark_ = mark;  // from here on every way out takes it back
-  bring_to_disk({run.file("events.jsonl"), run.folder});
+  device::bring_to_disk({run.file("events.jsonl"), run.folder});
   try {
     tell(folder, "resumed", {{"by", by}});
   } catch (const std::exception&) {
     mark_.clear();
     give_up(folder + "/events.jsonl");
   }
-  bring_to_disk({mark, folder + "/events.jsonl", folder});
+  device::bring_to_disk({mark, folder + "/events.jsonl", folder});
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {  // what one that was killed could not remove
     if (entry.is_fifo(ignored) || entry.path().filename() == ".reserve") fs::remove(entry.path(), ignored);

@@ -82,13 +82,4 @@ void Run::fail(const std::string& tool, int status) const {
   throw Ended{status};
 }
 
-void bring_to_disk(const std::vector<std::string>& files) {
-  for (const std::string& file : files) {
-    const int opened = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (opened < 0) continue;
-    (void)fdatasync(opened);
-    close(opened);
-  }
-}
-
 }  // namespace vam::print_tool

@@ -89,7 +89,4 @@ void log_dark(const Run& run);
 /// summary.json and SHA256SUMS, and what the tools said. Throws Error where the disk has no room.
 void write_summary(const Run& run, int status);
 
-/// Lets a folder's new names and these files reach the disk, as far as it can.
-void bring_to_disk(const std::vector<std::string>& files);
-
 }  // namespace vam::print_tool

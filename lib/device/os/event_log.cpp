@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <exception>
@@ -52,6 +53,20 @@ class Turn {
 };
 
 }  // namespace
+
+std::optional<std::string> read_on(int fd, LogEnd& end) {
+  std::string more;
+  std::array<char, 65536> room{};
+  for (ssize_t count = 1; count > 0; more.append(room.data(), static_cast<std::size_t>(count))) {
+    count = pread(fd, room.data(), room.size(), end.bytes + std::ssize(more));
+    if (count < 0) return std::nullopt;
+  }
+  const std::size_t whole = more.rfind('\n') + 1;  // npos + 1: none
+  if (whole == 0) return more;
+  const std::string lines = more.substr(0, whole - 1);
+  end = {end.bytes + static_cast<std::int64_t>(whole), chain_of(lines.substr(lines.rfind('\n') + 1))};
+  return more.substr(whole);
+}
 
 EventLog::EventLog(const std::string& path, FormatKind schema) : path_(path), schema_(schema) {
   if (path.empty()) return;
@@ -113,38 +128,32 @@ void EventLog::write(const std::vector<std::string>& objects) {
 
 void EventLog::append(const std::vector<std::string>& objects) {
   std::string text = std::exchange(torn_, false) ? "\n" : "";
-  std::string chain = chain_;  // which is that of the last line that was written
+  std::string chain = end_.chain;  // which is that of the last line that was written
   for (const std::string& object : objects) text += (chained_ ? chained(object, chain) : object) + "\n";
   for (std::size_t at = 0; at < text.size();) {  // a disk that is just full takes a part, and says why at the rest
     const ssize_t count = ::write(fd_, text.data() + at, text.size() - at);
     if (count < 0) throw Error{Fault::io, path_ + ": write failed (" + std::strerror(errno) + ")"};
     at += static_cast<std::size_t>(count);
   }
-  size_ += static_cast<std::int64_t>(text.size());
-  chain_ = chain;
+  end_ = {end_.bytes + std::ssize(text), chain};
 }
 
 // With what others have added, as a part of this process that ended, or one that was killed.
 void EventLog::catch_up() {
   struct stat about = {};
-  if (path_ == "-" || fstat(fd_, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size == size_) return;
+  if (path_ == "-" || fstat(fd_, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size == end_.bytes) return;
   constexpr off_t longest = 1 << 20;  // line that is read
-  const off_t from = std::max<off_t>(0, about.st_size - longest);
-  std::string tail(static_cast<std::size_t>(about.st_size - from), '\0');
+  if (end_.bytes < 0 || end_.bytes > about.st_size) end_ = {std::max<off_t>(0, about.st_size - longest)};
   const int reader = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-  const ssize_t count = reader < 0 ? -1 : pread(reader, tail.data(), tail.size(), from);
+  const auto rest = read_on(reader, end_);
   const int problem = errno;
   if (reader >= 0) close(reader);
-  if (count != std::ssize(tail)) throw system_error(Fault::io, path_ + ": cannot be read on", problem);
-  const std::size_t whole = tail.rfind('\n') + 1;  // npos + 1: none
-  const std::string lines = tail.substr(0, whole > 0 ? whole - 1 : 0);
-  chain_ = chain_of(lines.substr(lines.rfind('\n') + 1));
-  chained_ = about.st_size == 0 || !chain_.empty();
-  size_ = about.st_size;
-  torn_ = whole < tail.size() && chain_.empty();
-  if (whole == tail.size() || torn_) return;  // what is not such a log is only added to
-  size_ = from + static_cast<std::int64_t>(whole);
-  if (ftruncate(fd_, size_) != 0) throw system_error(Fault::io, path_ + ": cannot be written", errno);
+  if (!rest) throw system_error(Fault::io, path_ + ": cannot be read on", problem);
+  chained_ = about.st_size == 0 || !end_.chain.empty();
+  torn_ = !rest->empty() && !chained_;
+  if (torn_) end_.bytes += std::ssize(*rest);  // what is not such a log is only added to
+  if (rest->empty() || torn_) return;
+  if (ftruncate(fd_, end_.bytes) != 0) throw system_error(Fault::io, path_ + ": cannot be written", errno);
 }
 
 void EventLog::write_aside() {

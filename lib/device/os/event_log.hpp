@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,6 +15,16 @@
 #include "base/text/json_fwd.hpp"
 
 namespace vam::device {
+
+/// The whole lines of a log up to a byte, and the chain of the last of them.
+struct LogEnd {
+  std::int64_t bytes = 0;
+  std::string chain = {};
+};
+
+/// Moves `end` behind the whole lines that follow it in an open file. Returns what is there behind them; none where it
+/// cannot be read (errno).
+[[nodiscard]] std::optional<std::string> read_on(int fd, LogEnd& end);
 
 /// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file; the first line that each log adds
 /// has the schema, too. A file that is new, or of such lines, is chained (base/log/chain.hpp), whoever else writes to
@@ -56,9 +67,8 @@ class EventLog {
   int fd_ = -1;
   bool made_ = false, versioned_ = false;  // the schema is stated
   bool shared_ = false, chained_ = false;
-  bool torn_ = false;       // the file ends within a line, which is none of such a log
-  std::int64_t size_ = -1;  // of the file, as this has left it
-  std::string chain_;       // of its last line
+  bool torn_ = false;  // the file ends within a line, which is none of such a log
+  LogEnd end_{-1};     // of the file, as this has left it; -1: not seen yet
 
   std::mutex access_;
   std::condition_variable changed_;

@@ -5,16 +5,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <filesystem>
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/log/chain.hpp"
 #include "base/log/log.hpp"
 #include "base/system_error.hpp"
 #include "base/text/json.hpp"
@@ -35,14 +34,20 @@ int open_regular(const std::string& path) {
     return -1;
   }
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const int above = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (above < 0) return fd;
-  (void)fsync(above);
-  close(above);
+  bring_to_disk({folder.empty() ? "." : folder});
   return fd;
 }
 
 }  // namespace
+
+void bring_to_disk(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (opened < 0) continue;
+    (void)fsync(opened);
+    close(opened);
+  }
+}
 
 LogKeeper::LogKeeper(const std::vector<std::string>& paths, State state) : state_(std::move(state)) {
   for (const std::string& path : paths) {
@@ -86,33 +91,19 @@ void LogKeeper::keep() {
   for (Log& log : logs_) {
     if (log.fd < 0) log.fd = open_regular(log.path);
     if (log.fd < 0) continue;
-    log.grown |= read_on(log);
+    const std::int64_t before = log.end.bytes;
+    if (!read_on(log.fd, log.end)) throw system_error(Fault::io, log.path + ": cannot be read", errno);
+    log.grown |= log.end.bytes > before;
     if (!log.grown) continue;
     if (fdatasync(log.fd) != 0 && errno != EINVAL && errno != EROFS) {
       problem = log.path + ": cannot be brought to the disk (" + std::strerror(errno) + ")";
       continue;
     }
     log.grown = false;
-    stated[std::filesystem::path(log.path).filename().string()] = {{"bytes", log.bytes}, {"chain", log.chain}};
+    stated[std::filesystem::path(log.path).filename().string()] = {{"bytes", log.end.bytes}, {"chain", log.end.chain}};
   }
   if (state_ && !stated.empty()) state_(stated);
   if (!problem.empty()) throw Error{Fault::io, problem};
-}
-
-// Whether there are more whole lines.
-bool LogKeeper::read_on(Log& log) {
-  std::string more;
-  std::array<char, 65536> room{};
-  for (ssize_t count = 1; count > 0; more.append(room.data(), static_cast<std::size_t>(count))) {
-    count = pread(log.fd, room.data(), room.size(), log.bytes + std::ssize(more));
-    if (count < 0) throw system_error(Fault::io, log.path + ": cannot be read", errno);
-  }
-  const std::size_t end = more.rfind('\n');
-  if (end == std::string::npos) return false;
-  log.bytes += static_cast<std::int64_t>(end) + 1;
-  more.resize(end);
-  log.chain = chain_of(more.substr(more.rfind('\n') + 1));  // npos + 1: all
-  return true;
 }
 
 }  // namespace vam::device

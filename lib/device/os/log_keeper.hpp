@@ -3,7 +3,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -11,8 +10,12 @@
 #include <vector>
 
 #include "base/text/json_fwd.hpp"
+#include "device/os/event_log.hpp"
 
 namespace vam::device {
+
+/// Lets files and the names in folders reach the disk, as far as it can.
+void bring_to_disk(const std::vector<std::string>& paths);
 
 /// Brings logs onto the disk, once a second and at the end, from a thread of its own; then states of those that grew,
 /// by their names, {"bytes": of their whole lines, "chain": of the last one}. So a log that was cut later, or changed,
@@ -30,13 +33,11 @@ class LogKeeper {
   struct Log {
     std::string path;
     int fd = -1;
-    std::int64_t bytes = 0;  // of whole lines
-    std::string chain = {};  // of the last one
-    bool grown = false;      // since they were stated
+    LogEnd end = {};
+    bool grown = false;  // since it was stated
   };
   void run();
   void keep();
-  static bool read_on(Log& log);
 
   std::vector<Log> logs_;
   State state_;
