@@ -236,8 +236,7 @@ void Drive::end_renewal() {
   if (!renewal_) return;
   constexpr int patience_ms = 60000;  // for a step of it that is under way
   renewal_->order(SIGTERM);
-  if (!renewal_->ends_within(patience_ms)) renewal_->order(SIGKILL);
-  const int status = renewal_->status();
+  const int status = renewal_->status(patience_ms);
   renewal_.reset();
   run_.look();
   if (status != 0 && status != 128 + SIGTERM) {
@@ -258,9 +257,7 @@ std::string Drive::reason_as_before() const {
 // It ends by itself when it has read the end, which takes seconds on a busy machine.
 void Drive::end_watching() {
   constexpr int patience_ms = 10000;
-  if (!watcher_) return;
-  if (!watcher_->ends_within(patience_ms)) watcher_->order(SIGKILL);
-  (void)watcher_->status();
+  if (watcher_) (void)watcher_->status(patience_ms);
   watcher_.reset();
 }
 

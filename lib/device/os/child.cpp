@@ -137,7 +137,8 @@ bool Child::ends_within(int limit_ms) const {
   return poll(&ended, 1, limit_ms) > 0;
 }
 
-int Child::status() {
+int Child::status(int limit_ms) {
+  if (limit_ms >= 0 && !ends_within(limit_ms)) order(SIGKILL);
   int how = 0;
   pid_t ended = 0;
   while ((ended = waitpid(pid_, &how, 0)) < 0 && errno == EINTR) continue;
@@ -174,8 +175,7 @@ void end_all(std::vector<Child>& children, const std::function<void(Child&, int)
   const auto until = steady_clock::now() + patience;
   for (Child& child : children) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - steady_clock::now()).count();
-    if (!child.ends_within(std::max(0, static_cast<int>(left)))) child.order(SIGKILL);
-    ended(child, child.status());
+    ended(child, child.status(std::max(0, static_cast<int>(left))));
   }
   children.clear();
 }
@@ -189,9 +189,7 @@ std::string switch_off(const Talk& talk, const std::string& printer, const std::
     const Command command{"off",
                           {"vam-devices", "off", "--printer", printer, "--light", light.empty() ? "none" : light},
                           {{STDOUT_FILENO, printed, O_WRONLY | O_CREAT | O_TRUNC}}};
-    Child off(command, talk.path("off"), {.undisturbed = true});
-    if (!off.ends_within(limit_ms)) off.order(SIGKILL);
-    status = off.status();
+    status = Child(command, talk.path("off"), {.undisturbed = true}).status(limit_ms);
   } catch (const Error& error) {
     say(error.what());
   }

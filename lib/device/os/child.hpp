@@ -57,8 +57,8 @@ class Child {
   /// True when it has ended within that time, in ms; -1: for ever.
   [[nodiscard]] bool ends_within(int limit_ms) const;
   void order(int signal) const { ::kill(pid_, signal); }
-  /// Waits; the status as a shell has it: 128 and the signal.
-  int status();
+  /// Waits; the status as a shell has it: 128 and the signal. limit_ms: kills it then.
+  int status(int limit_ms = -1);
 
  private:
   std::string name_;
