@@ -59,7 +59,7 @@ void require_unchanged(const std::string& run) {
 // A resumption shows the rest only: without the run that it resumes the dose is too low.
 void warn_of_rest(const std::vector<std::string>& runs) {
   for (const std::string& run : runs) {
-    const std::string first = is_of_run(run) ? io::resumes_of(folder_of(run)) : "";
+    const std::string first = is_of_run(run) ? io::read_events(folder_of(run)).resumes : "";
     const auto is_first = [&](const std::string& one) { return io::resumes(folder_of(run), folder_of(one)); };
     if (first.empty() || std::any_of(runs.begin(), runs.end(), is_first)) continue;
     warn(run + ": resumes " + first + ", whose light is not counted; give it, too: --shown " + first);

@@ -57,8 +57,6 @@ void require_resumption(const std::string& run) {
   throw Error{Fault::data, path + ": is gone, but events.jsonl states that " + by + " resumed this print; restore it"};
 }
 
-std::string resumes_of(const std::string& run) { return read_events(run).resumes; }
-
 bool resumes(const std::string& run, const std::string& earlier) {
   const RunEvents links = read_events(run);
   if (links.resumes.empty() || is_same(run, earlier)) return false;

@@ -89,9 +89,6 @@ void require_resumption(const std::string& run);
 /// The print that resumed this one, by its resumed.json; empty: none.
 [[nodiscard]] std::string resumed_by(const std::string& run);
 
-/// The folder that a run resumes, as vam-print was given it; empty: none.
-[[nodiscard]] std::string resumes_of(const std::string& run);
-
 /// Does a run resume this one? By when that was armed and by the sinogram, so that both may have been moved.
 [[nodiscard]] bool resumes(const std::string& run, const std::string& earlier);
 

@@ -56,55 +56,46 @@ bool is_link(const std::string& path) {
   return fs::is_symlink(fs::symlink_status(path, ignored));
 }
 
-// What is wrong with a file; a lack of the system, as of open files, says nothing of it.
-std::string problem_of_file(const Error& error) {
-  if (error.fault != Fault::data && error.fault != Fault::no_input) throw error;
-  return error.what();
-}
-
-std::string gone(const std::string& folder, const std::string& name) {
+// What a check says is wrong with a file; a lack of the system, as of open files, says nothing of it.
+template <class Check>
+std::string problem_of(const Check& check) {
   try {
-    if (has_regular_file(path_in(folder, name))) return "";
-  } catch (const Error& error) {  // what stands in its place
-    return problem_of_file(error);
+    check();
+    return "";
+  } catch (const Error& error) {
+    if (error.fault != Fault::data && error.fault != Fault::no_input) throw;
+    return error.what();
   }
-  return path_in(folder, name) + ": is gone, but " + list_name + " lists it; restore it";
 }
 
-// What is wrong with a file of the list, as a line; empty: nothing.
-std::string sum_problem(const std::string& folder, const RunSums::value_type& file) {
-  const auto& [name, hash] = file;
-  if (std::string problem = gone(folder, name); !problem.empty()) return problem;
-  if (sha256_of(path_in(folder, name)) == hash) return "";
-  return path_in(folder, name) + ": changed after the print (its hash is not that in " + list_name +
-         "); restore the original file";
+// A file of the list is there, and unless `fast` what it was.
+void require_listed(const std::string& folder, const RunSums::value_type& file, bool fast) {
+  const std::string path = path_in(folder, file.first);
+  if (!has_regular_file(path)) throw Error{Fault::data, path + ": is gone, but " + list_name + " lists it; restore it"};
+  if (fast || sha256_of(path) == file.second) return;
+  throw Error{Fault::data, path + ": changed after the print (its hash is not that in " + list_name +
+                               "); restore the original file"};
 }
 
-// What is wrong with a file that SHA256SUMS does not list.
-std::string unlisted_problem(const std::string& folder, const std::string& name) {
-  return path_in(folder, name) + ": is not in " + list_name +
-         ": it was added after the print, or the list was cut; remove the file, or restore the list";
+[[noreturn]] void refuse_unlisted(const std::string& folder, const std::string& name) {
+  throw Error{Fault::data, path_in(folder, name) + ": is not in " + list_name +
+                               ": it was added after the print, or the list was cut; remove the file, or restore "
+                               "the list"};
 }
 
 // vam-print leaves a link to the sinogram, in whose place copies of the folder have the file; the events have its hash.
-std::string sinogram_problem(const std::string& folder, bool by_name) {
+void require_sinogram(const std::string& folder, bool by_name) {
   const std::string path = path_in(folder, sinogram_name);
   try {
-    if (!has_regular_file(path) || by_name) return "";
+    if (!has_regular_file(path) || by_name) return;
   } catch (const Error& error) {
-    if (error.fault != Fault::no_input) return problem_of_file(error);
+    if (error.fault != Fault::no_input) throw;
     std::error_code ignored;
-    warn(path + ": links to " + fs::read_symlink(path, ignored).string() +
-         ", which cannot be read, so that the sinogram was not verified; restore it, or remove the link");
-    return "";
+    return warn(path + ": links to " + fs::read_symlink(path, ignored).string() +
+                ", which cannot be read, so that the sinogram was not verified; restore it, or remove the link");
   }
-  try {
-    if (!is_link(path) && !states_sinogram(folder)) return unlisted_problem(folder, sinogram_name);
-    require_sinogram_of(folder, path);
-  } catch (const Error& error) {
-    return problem_of_file(error);
-  }
-  return "";
+  if (!is_link(path) && !states_sinogram(folder)) refuse_unlisted(folder, sinogram_name);
+  require_sinogram_of(folder, path);
 }
 
 // vam-print seals the settings before it is armed; a printer file of a user's own is in no run.
@@ -154,7 +145,8 @@ void require_run_logs(const std::string& folder) {
     const fs::path ending = name.extension();
     const bool is_log = ending == ".jsonl" || ending == ".json" || ending == ".toml";
     if (!is_log || (name.has_parent_path() && name.filename() != "manifest.jsonl")) continue;
-    if (const std::string problem = sum_problem(folder, file); !problem.empty()) throw Error{Fault::data, problem};
+    if (const std::string problem = problem_of([&] { require_listed(folder, file, false); }); !problem.empty())
+      throw Error{Fault::data, problem};
   }
 }
 
@@ -186,21 +178,18 @@ void require_run_versions(const std::string& folder) {
 
 std::vector<std::string> run_damage(const std::string& folder, const RunSums& sums, bool fast) {
   std::vector<std::string> damage;
-  const auto add = [&](const std::string& problem) {
-    if (!problem.empty()) damage.push_back(problem);
+  const auto attempt = [&](const auto& check) {
+    if (const std::string problem = problem_of(check); !problem.empty()) damage.push_back(problem);
   };
-  for (const auto& file : sums) {
-    add(fast ? gone(folder, file.first) : sum_problem(folder, file));
-  }
+  for (const auto& file : sums) attempt([&] { require_listed(folder, file, fast); });
   const bool has_logs = damage.empty();
-  try {
-    if (!sums.contains(resumed_name)) require_resumption(folder);
-  } catch (const Error& error) {
-    add(problem_of_file(error));
-  }
+  if (!sums.contains(resumed_name)) attempt([&] { require_resumption(folder); });
   for (const std::string& name : entries_of(folder)) {
     if (name == list_name || name == resumed_name || sums.contains(name)) continue;
-    add(name == sinogram_name ? sinogram_problem(folder, fast || !has_logs) : unlisted_problem(folder, name));
+    attempt([&] {
+      if (name != sinogram_name) refuse_unlisted(folder, name);
+      require_sinogram(folder, fast || !has_logs);
+    });
   }
   return damage;
 }
