@@ -130,9 +130,8 @@ Renewal::Moment Renewal::look(int number) const {
   fs::copy_file(file("flips.jsonl"), moment.flips, replace);
   io::FlipLog log(moment.flips);
   log.read();
-  const auto last = std::find_if(log.flips().rbegin(), log.flips().rend(),
-                                 [](const io::LoggedFlip& flip) { return flip.frame >= 0; });
-  if (last == log.flips().rend()) hold(unknown);
+  const io::LoggedFlip* const last = log.last_lit();
+  if (last == nullptr) hold(unknown);
   moment.seen_s = *seen_s;
   moment.from_turn = static_cast<int>((last->angle_deg + lead_deg_) / turn_deg) + 1;
   moment.at_s = last->t_s + (turn_deg * moment.from_turn - last->angle_deg) / speed_deg_s_;

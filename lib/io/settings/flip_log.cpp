@@ -24,6 +24,8 @@ namespace {
 
 constexpr double last_run_up_deg = -360;  // from this angle on missed blanks are judged
 
+bool is_lit(const LoggedFlip& flip) { return flip.frame >= 0; }
+
 std::string log_of(const std::string& run) {
   return std::filesystem::is_directory(run) ? (std::filesystem::path(run) / "flips.jsonl").string() : run;
 }
@@ -163,8 +165,11 @@ void FlipLog::extrapolate(double image_s, std::vector<ShownImage>& shown) const 
   }
 }
 
-long FlipLog::lit() const {
-  return std::count_if(flips_.begin(), flips_.end(), [](const LoggedFlip& flip) { return flip.frame >= 0; });
+long FlipLog::lit() const { return std::count_if(flips_.begin(), flips_.end(), is_lit); }
+
+const LoggedFlip* FlipLog::last_lit() const {
+  const auto last = std::find_if(flips_.rbegin(), flips_.rend(), is_lit);
+  return last == flips_.rend() ? nullptr : &*last;
 }
 
 void FlipLog::truncate_at(double t_monotonic_s) { end_s_ = t_monotonic_s; }

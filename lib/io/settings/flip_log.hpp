@@ -61,8 +61,9 @@ class FlipLog {
   /// Vertical blanks from the last run-up turn on: those at which the image changed late, of all.
   [[nodiscard]] long missed() const { return missed_; }
   [[nodiscard]] long blanks() const { return blanks_; }
-  /// Flips to images with light.
+  /// Flips to images with light, and the last of them; null: none.
   [[nodiscard]] long lit() const;
+  [[nodiscard]] const LoggedFlip* last_lit() const;
 
  private:
   struct RunPlace {

@@ -122,8 +122,7 @@ std::vector<std::string> run_facts(const std::string& run) {
   if (has_regular_file(log_path(run, flips_log))) {
     FlipLog log(run);
     log.read();
-    double lit_deg = events.from_deg;
-    for (const LoggedFlip& flip : log.flips()) lit_deg = flip.frame >= 0 ? flip.angle_deg : lit_deg;
+    const double lit_deg = log.last_lit() != nullptr ? log.last_lit()->angle_deg : events.from_deg;
     for (const ShownSinogram& one : log.sinograms()) facts.push_back("sinogram   " + one.name + hash(one.sha256));
     facts.push_back("delivered  turn " + fixed_number(lit_deg / 360, 2) + " of " + format_number(events.turns) +
                     ", from " + fixed_number(events.from_deg / 360, 2) + " on: " + std::to_string(log.lit()) +
