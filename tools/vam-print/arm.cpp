@@ -18,6 +18,7 @@
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-print/commands.hpp"
@@ -34,15 +35,6 @@ std::string stamp() {
   gmtime_r(&now, &utc);
   char text[32];
   return {text, std::strftime(text, sizeof text, "print-%Y%m%dT%H%M%SZ", &utc)};
-}
-
-std::string name_of(const Json& identity) {
-  const Json& device = identity.contains("camera") ? identity["camera"] : identity;
-  std::string name;
-  for (const char* key : {"maker", "model", "serial"}) {
-    if (const std::string text = text_at(device, key); !text.empty()) name += text + " ";
-  }
-  return name;
 }
 
 /// The steps of arming. The first that fails ends it; a plan tells of each in a row, and goes on.
@@ -206,7 +198,7 @@ bool identify_device(Steps& steps, const std::string& name, const std::string& t
     const std::string printed = steps.ask(identify(name, tool, steps.printer));
     const Json identity = parse_json(printed);
     steps.devices[name] = identity;
-    steps.row(name, address + " " + name_of(identity));
+    steps.row(name, address + " " + io::device_name(identity));
     const bool resumed = !run.frozen.empty() && fs::is_regular_file(run.frozen + "/" + name + ".json");
     if (resumed || !run.scans.empty()) io::write_text(run.file(name + ".json"), printed);
     if (resumed) require_same_device(run, name);

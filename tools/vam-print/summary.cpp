@@ -12,6 +12,7 @@
 #include "base/text/json_text.hpp"
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
+#include "io/settings/run_folder.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-print/run.hpp"
 
@@ -36,23 +37,18 @@ long count_of(const std::string& file, const std::string& event) {
 }
 
 Json simulated(const Run& run) {
+  const std::vector<io::UsedDevice> used = io::used_devices(run.folder);
   Json devices = Json::array();
-  for (const auto& [log, event, device] : {std::array{"stage.jsonl", "begin", "stage"},
-                                           {"capture.jsonl", "begin", "camera"},
-                                           {"flips.jsonl", "light", "light"}}) {
-    for (const Json& entry : entries(run.file(log), "\"simulated\":true")) {
-      if (text_at(entry, "event") != event) continue;
-      devices.push_back(device);
-      break;
-    }
+  for (const char* what : {"stage", "camera", "light"}) {
+    const auto is_it = [&](const io::UsedDevice& one) { return one.what == what && one.simulated; };
+    if (std::any_of(used.begin(), used.end(), is_it)) devices.push_back(what);
   }
   return devices;
 }
 
 // As far as the last image.
 Json reached(const Run& run) {
-  double lit_deg = 0;
-  for (const io::LoggedFlip& flip : run.light->flips()) lit_deg = flip.frame >= 0 ? flip.angle_deg : lit_deg;
+  const double lit_deg = run.light->last_lit() != nullptr ? run.light->last_lit()->angle_deg : 0;
   constexpr double digits = 1e4;
   const std::vector<Json> figures = entries(run.file("ost.jsonl"), "\"missing_percent\"");
   return {{"turns", std::round(lit_deg / 360 * digits) / digits},

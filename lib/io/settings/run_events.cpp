@@ -73,6 +73,8 @@ void require_log(const std::string& path, const RunEvents::Log& stated) {
                                stated.chain + "); it was changed; restore it"};
 }
 
+const Json& identity_in(const Json& said) { return said.contains("camera") ? said["camera"] : said; }
+
 std::string records_of(const std::string& run) {
   const std::string path = log_path(run, "calibration.json");
   if (!has_regular_file(path)) return "none";
@@ -86,6 +88,15 @@ std::string records_of(const std::string& run) {
 
 }  // namespace
 
+std::string device_name(const Json& identity) {
+  std::string name;
+  for (const char* key : {"maker", "model", "serial"}) {
+    if (const std::string text = text_at(identity_in(identity), key); !text.empty())
+      name += (name.empty() ? "" : " ") + text;
+  }
+  return name;
+}
+
 std::vector<UsedDevice> used_devices(const std::string& run) {
   std::vector<UsedDevice> devices;
   for (const auto& [log, what] :
@@ -93,9 +104,11 @@ std::vector<UsedDevice> used_devices(const std::string& run) {
     LogLines lines(log_path(run, log));
     Json line;
     for (int n = 0; n < 8 && lines.next(line); ++n) {
-      if (text_at(line, "device").empty()) continue;
-      devices.push_back({*what == '\0' ? text_at(line, "event") : what, text_at(line, "device"),
-                         line.value("simulated", Json()) == true});
+      const Json& identity = identity_in(line);
+      const std::string device = text_at(identity, "device", device_name(identity));
+      if (device.empty()) continue;
+      devices.push_back(
+          {*what == '\0' ? text_at(line, "event") : what, device, identity.value("simulated", Json()) == true});
     }
   }
   return devices;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text/json_fwd.hpp"
+
 namespace vam::io {
 
 /// events.jsonl: what was armed, how it ended, and how much there was of the other logs.
@@ -30,6 +32,9 @@ struct RunEvents {
 
 /// None of a folder without. Throws as LogLines does.
 [[nodiscard]] RunEvents read_events(const std::string& run);
+
+/// Maker, model and serial number of a device, or of the camera in what vam-capture says of it, as far as it has them.
+[[nodiscard]] std::string device_name(const Json& identity);
 
 /// What drove light, stage and camera, as the first lines of their logs name it.
 struct UsedDevice {
