@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     vam::io::InputFile file(source.path);
     vam::io::Sender out(slots);
     std::vector<std::shared_ptr<void>> kept;
-    pass_archives(file, {}, out, kept);
+    pass_archives(file, false, out, kept);
     out.flush();
   });
   shutdown(ends[1], SHUT_RDWR);

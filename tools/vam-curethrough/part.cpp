@@ -53,19 +53,13 @@ void add_part(cli::App& app, PartOptions& options, const std::vector<std::string
 
 PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
     : options_(options), name_(io::input_name(options.path)), least_(static_cast<float>(options.threshold)) {
-  io::read_blocks(options.path, "target", [&](const io::VolumeFacts& facts) {
-    io::check_values(options.path, facts);
-    facts_ = facts;
-    columns_.emplace(grid().nx, grid().ny, grid().nz, exposure);
-    if (facts.background >= least_) {
-      for (std::size_t p = 0; p < columns_->columns(); ++p) columns_->fill(p, 0, grid().nz, true);
-    }
-    return [this](const io::VoxelBlock& block) {
-      io::check_values(options_.path, facts_, block);
-      take(block);
-    };
-  });
-  const double factor = model::stretch_z(facts_.metadata);
+  const io::SparseVolume volume = io::read_volume(options.path, "target");
+  io::check_values(options.path, volume);
+  grid_ = volume.grid();
+  history_ = volume.history;
+  columns_.emplace(grid_.nx, grid_.ny, grid_.nz, exposure);
+  io::for_blocks(volume, [this](const io::VoxelBlock& block) { take(block); });
+  const double factor = model::stretch_z(volume.metadata);
   if (std::fabs(factor - 1) > 1e-6) {
     warn(name_ + ": stretched along z by " + format_number(factor) +
          " for a vial, which vam-curethrough does not model; slice with --stretch-z 1");
@@ -76,10 +70,11 @@ void PartFile::take(const io::VoxelBlock& block) {
   const Box box(block, grid());
   const int count = box.z1 - box.z0;
   const int first = upside_down() ? grid().nz - box.z1 : box.z0;
+  if (block.values == nullptr && block.value < least_) return;
   for (int y = box.y0; y < box.y1 && count > 0; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
       if (block.values == nullptr) {
-        columns_->fill(pixel(x, y), first, count, block.value >= least_);
+        columns_->fill(pixel(x, y), first, count, true);
         continue;
       }
       const int corner = ((x - block.i) * 8 + (y - block.j)) * 8 + (box.z0 - block.k);
@@ -92,7 +87,7 @@ void PartFile::take(const io::VoxelBlock& block) {
 }
 
 model::Grid PartFile::extended(int slices) const {
-  model::Grid grid = facts_.grid;
+  model::Grid grid = grid_;
   if (upside_down()) grid.origin_mm[2] -= (slices - grid.nz) * grid.voxel_mm;
   grid.nz = slices;
   return grid;

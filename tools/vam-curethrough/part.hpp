@@ -25,8 +25,8 @@ class PartFile {
  public:
   PartFile(const PartOptions& options, resin::ExposureMode exposure);
   [[nodiscard]] const resin::PartColumns& columns() const { return *columns_; }
-  [[nodiscard]] const model::Grid& grid() const { return facts_.grid; }
-  [[nodiscard]] const std::vector<std::string>& history() const { return facts_.history; }
+  [[nodiscard]] const model::Grid& grid() const { return grid_; }
+  [[nodiscard]] const std::vector<std::string>& history() const { return history_; }
   [[nodiscard]] double slice_um() const { return grid().voxel_mm * 1e3; }
   [[nodiscard]] double threshold() const { return options_.threshold; }
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -44,7 +44,8 @@ class PartFile {
   PartOptions options_;
   std::string name_;
   float least_;  // value of a voxel in the part
-  io::VolumeFacts facts_;
+  model::Grid grid_;
+  std::vector<std::string> history_;
   std::optional<resin::PartColumns> columns_;
 };
 

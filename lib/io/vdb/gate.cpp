@@ -2,6 +2,7 @@
 #include "io/vdb/gate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 
@@ -10,13 +11,10 @@
 #include "base/text/text.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/facts.hpp"
-#include "io/vdb/private/leaf_store.hpp"
 
 namespace vam::io {
 
 namespace {
-
-using Tree = openvdb::FloatTree;
 
 constexpr float slack = 1e-4F;  // of targets that other programs compute
 constexpr double least_mm = 0.1;
@@ -50,11 +48,11 @@ std::optional<ValueRange> promise_of(const std::string& name, TargetKind target)
   throw Error{Fault::data, input_name(path) + ": grid " + excerpt(name) + " " + why};
 }
 
-[[noreturn]] void refuse_voxel(const std::string& path, const std::string& name, const openvdb::Coord& at, float value,
-                               const ValueRange& promise) {
+[[noreturn]] void refuse_voxel(const std::string& path, const std::string& name, const std::array<int, 3>& at,
+                               float value, const ValueRange& promise) {
   refuse(path, name,
-         "has " + format_number(value) + " in voxel (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
-             std::to_string(at.z()) + "); " + promise.words);
+         "has " + format_number(value) + " in voxel (" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " +
+             std::to_string(at[2]) + "); " + promise.words);
 }
 
 // The first value of a leaf outside what is promised, as its place; 512 when there is none.
@@ -71,57 +69,42 @@ int first_outside(const float* values, const ValueRange& promise) {
   return static_cast<int>(std::find_if(values, values + count, is_outside) - values);
 }
 
-openvdb::Coord in_block(int place) { return {place >> 6, place >> 3 & 7, place & 7}; }
-
-void require_values(const std::string& path, const SparseVolume& volume, const ValueRange& promise) {
-  const Tree& tree = volume.state().sparse->constTree();
-  const openvdb::Coord& first = volume.state().first;
-  auto tile = tree.cbeginValueAll();
-  tile.setMaxDepth(Tree::DEPTH - 2);  // above the leaves
-  for (; tile; ++tile) {
-    if (*tile >= promise.low && *tile <= promise.high) continue;
-    refuse_voxel(path, volume.name(), tile.getCoord() - first, *tile, promise);
+void require_values(const std::string& path, const std::string& name, const VoxelBlock& block,
+                    const ValueRange& promise) {
+  if (block.values == nullptr) {
+    if (block.value >= promise.low && block.value <= promise.high) return;
+    refuse_voxel(path, name, {block.i, block.j, block.k}, block.value, promise);
   }
-  LeafStore::Values room;
-  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
-    const float* values = volume.state().leaves->values(*leaf, room);
-    const int place = first_outside(values, promise);
-    if (place < 512)
-      refuse_voxel(path, volume.name(), leaf->origin() + in_block(place) - first, values[place], promise);
-  }
+  const int place = first_outside(block.values, promise);
+  if (place == 512) return;
+  refuse_voxel(path, name, {block.i + (place >> 6), block.j + (place >> 3 & 7), block.k + (place & 7)},
+               block.values[place], promise);
 }
 
 }  // namespace
 
-void check_values(const std::string& path, const VolumeFacts& facts) {
-  if (!promise_of(facts.name, TargetKind::coverage)) return;
-  if (is_shape(facts.name) && facts.level_set) {
+void check_values(const std::string& path, const SparseVolume& volume, TargetKind target) {
+  const std::string& name = volume.name();
+  const auto promise = promise_of(name, target);
+  if (!promise) return;
+  if (is_shape(name) && volume.level_set) {
     refuse(
-        path, facts.name,
+        path, name,
         "is a level set, distances; make coverage of it: vam-sdf or another program makes a mesh, vam-slice slices it");
   }
-  if (is_shape(facts.name) && facts.background != 0) {
-    refuse(path, facts.name,
-           "has " + format_number(facts.background) +
+  if (is_shape(name) && volume.background() != 0) {
+    refuse(path, name,
+           "has " + format_number(volume.background()) +
                " wherever it stores nothing, solid around the part; its background must be 0");
   }
-  const model::Grid& grid = facts.grid;
+  const model::Grid& grid = volume.grid();
   const double longest = grid.voxel_mm * std::max({grid.nx, grid.ny, grid.nz});
-  if (longest >= least_mm && longest <= most_mm) return;
-  const bool small = longest < least_mm;
-  refuse(path, facts.name,
-         "is " + format_number(longest) + " mm long, from voxels of " + format_number(grid.voxel_mm) +
-             " mm; is it in " + (small ? "metres? Scale it by 1000" : "micrometres? Scale it by 0.001"));
-}
-
-void check_values(const std::string& path, const SparseVolume& volume, TargetKind target) {
-  VolumeFacts facts;
-  facts.name = volume.name();
-  facts.grid = volume.grid();
-  facts.background = volume.state().sparse->background();
-  facts.level_set = volume.level_set;
-  check_values(path, facts);
-  if (const auto promise = promise_of(volume.name(), target)) require_values(path, volume, *promise);
+  if (longest < least_mm || longest > most_mm) {
+    refuse(path, name,
+           "is " + format_number(longest) + " mm long, from voxels of " + format_number(grid.voxel_mm) +
+               " mm; is it in " + (longest < least_mm ? "metres? Scale it by 1000" : "micrometres? Scale it by 0.001"));
+  }
+  for_blocks(volume, [&](const VoxelBlock& block) { require_values(path, name, block, *promise); });
 }
 
 void check_values(const std::string& path, const std::vector<SparseVolume>& volumes, TargetKind target) {
@@ -132,18 +115,6 @@ void check_values(const std::string& path, const std::vector<SparseVolume>& volu
     }
     check_values(path, volume, target);
   }
-}
-
-void check_values(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block) {
-  const auto promise = promise_of(facts.name, TargetKind::coverage);
-  if (!promise) return;
-  const openvdb::Coord corner(block.i, block.j, block.k);
-  if (block.values == nullptr) {
-    if (block.value >= promise->low && block.value <= promise->high) return;
-    refuse_voxel(path, facts.name, corner, block.value, *promise);
-  }
-  const int place = first_outside(block.values, *promise);
-  if (place < 512) refuse_voxel(path, facts.name, corner + in_block(place), block.values[place], *promise);
 }
 
 }  // namespace vam::io

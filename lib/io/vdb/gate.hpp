@@ -21,8 +21,4 @@ void check_values(const std::string& path, const std::vector<SparseVolume>& volu
                   TargetKind target = TargetKind::coverage);
 void check_values(const std::string& path, const SparseVolume& volume, TargetKind target = TargetKind::coverage);
 
-/// The same for a volume read in passing: its facts at the begin, then each block.
-void check_values(const std::string& path, const VolumeFacts& facts);
-void check_values(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block);
-
 }  // namespace vam::io

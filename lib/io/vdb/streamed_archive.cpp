@@ -34,8 +34,7 @@ static_assert(Leaf::SIZE == 512 && Leaf::NodeMaskType::WORD_COUNT == 8, "what a 
 // OpenVDB reads name, metadata, transform and topology of a grid before it calls readBuffers().
 class StreamedGrid : public FloatGrid {
  public:
-  StreamedGrid(std::string unique_name, bool shown, Sender& out)
-      : unique_name_(std::move(unique_name)), shown_(shown), out_(out) {}
+  StreamedGrid(std::string unique_name, Sender& out) : unique_name_(std::move(unique_name)), out_(out) {}
 
   // A sealed grid is held to its seals, the head before its topology is read.
   void readTopology(std::istream& stream) override {
@@ -56,13 +55,11 @@ class StreamedGrid : public FloatGrid {
   void readBuffers(std::istream& stream) override {
     VoxelSealer voxels;
     if (seals_) voxels.begin(constTree());
-    if (shown_) {
-      send("");
-      send_tiles();
-    }
+    send("");
+    send_tiles();
     for (auto leaf = tree().beginLeaf(); leaf; ++leaf) {
       leaf->readBuffers(stream, saveFloatAsHalf());
-      if (shown_ || seals_) send(*leaf, voxels);
+      send(*leaf, voxels);
       Leaf::Buffer gone(openvdb::PartialCreate(), 0.0F);
       leaf->swap(gone);
     }
@@ -119,7 +116,6 @@ class StreamedGrid : public FloatGrid {
   void send(const Leaf& leaf, VoxelSealer& voxels) const {
     const LeafRecord record = record_of(leaf, leaf.buffer().data());
     if (seals_) voxels.add(record);
-    if (!shown_) return;
     if (!all_finite(record.values.data(), Leaf::SIZE)) {
       const auto* const bad =
           std::find_if_not(record.values.begin(), record.values.end(), [](float v) { return std::isfinite(v); });
@@ -130,7 +126,6 @@ class StreamedGrid : public FloatGrid {
   }
 
   std::string unique_name_;
-  bool shown_;
   Sender& out_;
   std::optional<GridSeals> seals_;
   Digest values_;
@@ -140,8 +135,8 @@ class StreamedGrid : public FloatGrid {
 // The grids of one archive after the other.
 class StreamedArchive : public openvdb::io::Archive {
  public:
-  StreamedArchive(const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
-      : wanted_(wanted), out_(out), kept_(kept) {}
+  StreamedArchive(bool heads_alone, Sender& out, std::vector<std::shared_ptr<void>>& kept)
+      : heads_alone_(heads_alone), out_(out), kept_(kept) {}
 
   void pass(std::istream& stream) {
     first_ = nullptr;
@@ -172,19 +167,12 @@ class StreamedArchive : public openvdb::io::Archive {
  private:
   void pass_floats(const openvdb::io::GridDescriptor& about, std::istream& stream,
                    std::map<std::string, StreamedGrid*>& grids) {
-    const bool shown = !wanted_.name || about.gridName() == *wanted_.name;
-    if (wanted_.name && shown && found_) throw std::runtime_error(occurs_twice(*wanted_.name));
-    const auto grid = std::make_shared<StreamedGrid>(about.uniqueName(), shown, out_);
+    const auto grid = std::make_shared<StreamedGrid>(about.uniqueName(), out_);
     kept_.push_back(grid);
     grids[about.uniqueName()] = grid.get();
     grid->setSaveFloatAsHalf(about.saveFloatAsHalf());
-    if (wanted_.name && about.isInstance() && about.gridName() == *wanted_.name) {
-      throw std::runtime_error("grid " + excerpt(*wanted_.name) + " shares the voxels of " +
-                               excerpt(about.instanceParentName()) + "; write it as a grid of its own");
-    }
-    found_ = found_ || shown;
     const bool new_order = openvdb::io::getFormatVersion(stream) >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING;
-    if (wanted_.heads_alone && new_order && about.getEndPos() > stream.tellg()) {
+    if (heads_alone_ && new_order && about.getEndPos() > stream.tellg()) {
       readGridCompression(stream);
       grid->send_head_alone(stream);
       require_seals(*grid);
@@ -194,17 +182,12 @@ class StreamedArchive : public openvdb::io::Archive {
     readGrid(grid, about, stream);
     if (about.isInstance()) grid->take_seals();
     require_seals(*grid);
-    if (!shown) {
-      out_.put(Record::other);
-      out_.put(about.gridName());
-    } else if (about.isInstance()) {
-      const auto parent = grids.find(about.instanceParentName());
-      if (parent == grids.end())
-        throw std::runtime_error("grid " + excerpt(about.gridName()) + " shares unknown voxels");
-      grid->setTree(parent->second->treePtr());
-      grid->judge(parent->second->values());
-      grid->send(about.instanceParentName());
-    }
+    if (!about.isInstance()) return;
+    const auto parent = grids.find(about.instanceParentName());
+    if (parent == grids.end()) throw std::runtime_error("grid " + excerpt(about.gridName()) + " shares unknown voxels");
+    grid->setTree(parent->second->treePtr());
+    grid->judge(parent->second->values());
+    grid->send(about.instanceParentName());
   }
 
   // The tools seal every grid of an archive. Weights and tolerances are also added by other programs.
@@ -218,23 +201,22 @@ class StreamedArchive : public openvdb::io::Archive {
                              " is not; make the file again");
   }
 
-  const WantedGrids& wanted_;
+  bool heads_alone_;
   Sender& out_;
   const StreamedGrid* first_ = nullptr;  // of this archive; on one stream archives of several programs may follow
-  bool found_ = false;
   std::vector<std::shared_ptr<void>>& kept_;
 };
 
 }  // namespace
 
-void pass_archives(InputFile& file, const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept) {
-  StreamedArchive archive(wanted, out, kept);
+void pass_archives(InputFile& file, bool heads_alone, Sender& out, std::vector<std::shared_ptr<void>>& kept) {
+  StreamedArchive archive(heads_alone, out, kept);
   for_archives(file, [&](std::istream& stream) { archive.pass(stream); });
   out.put(Record::end);
 }
 
-void send_archives(InputFile& file, const WantedGrids& wanted, Sender& out) {
-  pass_archives(file, wanted, out, *new std::vector<std::shared_ptr<void>>);  // for ever
+void send_archives(InputFile& file, bool heads_alone, Sender& out) {
+  pass_archives(file, heads_alone, out, *new std::vector<std::shared_ptr<void>>);  // for ever
 }
 
 }  // namespace vam::io

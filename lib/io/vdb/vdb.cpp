@@ -203,6 +203,7 @@ SparseVolume::~SparseVolume() = default;
 
 const std::string& SparseVolume::name() const { return state_->name; }
 const model::Grid& SparseVolume::grid() const { return state_->grid; }
+float SparseVolume::background() const { return state_->sparse->background(); }
 
 void SparseVolume::extend_to(const model::Grid& grid, const std::string& file) {
   const auto place = model::place_in(grid, state_->grid);
@@ -241,6 +242,22 @@ void SparseVolume::read_slices(int k0, int count, float* out) const {
       });
     }
   });
+}
+
+void for_blocks(const SparseVolume& volume, const std::function<void(const VoxelBlock&)>& take) {
+  const SparseVolume::State& state = volume.state();
+  auto tile = state.sparse->constTree().cbeginValueAll();
+  tile.setMaxDepth(Tree::DEPTH - 2);  // above the leaves
+  for (; tile; ++tile) {
+    const CoordBBox box = tile.getBoundingBox();
+    const Coord at = box.min() - state.first;
+    take({at.x(), at.y(), at.z(), box.dim().x(), nullptr, *tile});
+  }
+  LeafStore::Values room;
+  for (auto leaf = state.sparse->constTree().cbeginLeaf(); leaf; ++leaf) {
+    const Coord at = leaf->origin() - state.first;
+    take({at.x(), at.y(), at.z(), edge, state.leaves->values(*leaf, room)});
+  }
 }
 
 model::Volume dense_volume(const SparseVolume& sparse) {

@@ -26,6 +26,7 @@ class SparseVolume {
 
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] const model::Grid& grid() const;
+  [[nodiscard]] float background() const;
 
   /// Copies slices k0 .. k0 + count - 1 out. Several threads may read at once.
   void read_slices(int k0, int count, float* out) const;
@@ -91,13 +92,8 @@ struct VoxelBlock {
   float value = 0;
 };
 
-/// Passes the blocks of one grid by in one reading, in no useful order, file or pipe; voxels in no block have the
-/// background's value. `begin` is called once before the first block and returns who takes them. Memory: what OpenVDB
-/// holds without the voxels, 130 bytes for each block of 8 x 8 x 8 that is not of one value. Throws what read_volume
-/// throws; by then blocks may have been taken.
-using BlockTaker = std::function<void(const VoxelBlock&)>;
-void read_blocks(const std::string& path, const std::string& name,
-                 const std::function<BlockTaker(const VolumeFacts&)>& begin);
+/// Shows the blocks of a volume, in no useful order; voxels in no block have the background's value.
+void for_blocks(const SparseVolume& volume, const std::function<void(const VoxelBlock&)>& take);
 
 /// What the grids of floats are, and whether they are what was written; of a file `fast` looks at their heads alone,
 /// and leaves grid and background out. Throws what read_volumes throws.

@@ -65,25 +65,24 @@ inline void write_by_openvdb(const std::string& path, const openvdb::GridPtrVec&
 inline std::vector<float> by_blocks(const std::string& path, const std::string& name) {
   std::vector<float> values;
   std::vector<int> times;  // that a voxel has come
-  read_blocks(path, name, [&](const VolumeFacts& facts) {
-    const model::Grid grid = facts.grid;
-    if (grid.size() > 10'000'000) return BlockTaker([](const VoxelBlock&) {});  // a damaged shape
-    values.assign(grid.size(), facts.background);
-    times.assign(grid.size(), 0);
-    return BlockTaker([&, grid](const VoxelBlock& block) {
-      for (int x = std::max(block.i, 0); x < std::min(block.i + block.edge, grid.nx); ++x) {
-        for (int y = std::max(block.j, 0); y < std::min(block.j + block.edge, grid.ny); ++y) {
-          for (int z = std::max(block.k, 0); z < std::min(block.k + block.edge, grid.nz); ++z) {
-            const auto at = (static_cast<std::size_t>(z) * grid.ny + static_cast<std::size_t>(y)) *
-                                static_cast<std::size_t>(grid.nx) +
-                            static_cast<std::size_t>(x);
-            const int place = ((x - block.i) * 8 + (y - block.j)) * 8 + (z - block.k);
-            values[at] = block.values != nullptr ? block.values[place] : block.value;
-            ++times[at];
-          }
+  const SparseVolume volume = read_volume(path, name);
+  const model::Grid& grid = volume.grid();
+  if (grid.size() > 10'000'000) return {};  // a damaged shape
+  values.assign(grid.size(), volume.background());
+  times.assign(grid.size(), 0);
+  for_blocks(volume, [&](const VoxelBlock& block) {
+    for (int x = std::max(block.i, 0); x < std::min(block.i + block.edge, grid.nx); ++x) {
+      for (int y = std::max(block.j, 0); y < std::min(block.j + block.edge, grid.ny); ++y) {
+        for (int z = std::max(block.k, 0); z < std::min(block.k + block.edge, grid.nz); ++z) {
+          const auto at = (static_cast<std::size_t>(z) * grid.ny + static_cast<std::size_t>(y)) *
+                              static_cast<std::size_t>(grid.nx) +
+                          static_cast<std::size_t>(x);
+          const int place = ((x - block.i) * 8 + (y - block.j)) * 8 + (z - block.k);
+          values[at] = block.values != nullptr ? block.values[place] : block.value;
+          ++times[at];
         }
       }
-    });
+    }
   });
   CHECK(std::all_of(times.begin(), times.end(), [](int count) { return count <= 1; }));
   return values;

@@ -12,7 +12,6 @@
 #include <functional>
 #include <istream>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -55,16 +54,11 @@ struct LeafRecord {
   std::array<float, 512> values;
 };
 
-/// What is sent of the grids of floats.
-struct WantedGrids {
-  std::optional<std::string> name;  // the first of that name alone
-  bool heads_alone = false;         // in a file; on a pipe they are read to their ends
-};
-
-/// The child's work: sends every archive of the file. Throws what for_archives() throws.
-void send_archives(InputFile& file, const WantedGrids& wanted, Sender& out);
+/// The child's work: sends every archive of the file; heads_alone: of grids of floats in a file, those on a pipe are
+/// read to their ends. Throws what for_archives() throws.
+void send_archives(InputFile& file, bool heads_alone, Sender& out);
 /// The same; `kept` takes what a child must not destroy.
-void pass_archives(InputFile& file, const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept);
+void pass_archives(InputFile& file, bool heads_alone, Sender& out, std::vector<std::shared_ptr<void>>& kept);
 
 inline auto members(GridHead& head) {
   VolumeFacts& facts = head.facts;

@@ -60,10 +60,7 @@ std::string package() {
 
 std::vector<Sample> all_samples(const scratch::Folder& folder) {
   const auto mesh = [](const std::string& path) { (void)read_mesh(path); };
-  const auto volumes = [](const std::string& path) {
-    (void)read_volumes(path);
-    read_blocks(path, "target", [](const VolumeFacts&) { return [](const VoxelBlock&) {}; });
-  };
+  const auto volumes = [](const std::string& path) { (void)read_volumes(path); };
   write_stl(folder / "a.stl", tetrahedron());
   write_ply(folder / "a.ply", tetrahedron());
   const auto grid = model::centred_grid(30, 30, 30, 0.1);
