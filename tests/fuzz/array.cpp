@@ -42,9 +42,10 @@ void read_archive(const std::string& file) {
 }
 
 void read_pages(const std::string& file) {
-  io::TiffPages pages(file);
+  io::TiffPages about;
+  const auto read = io::open_tiff_pages(file, about);
   std::string row(4096, ' ');
-  while (pages.read(row.data(), row.size()) == row.size()) {
+  while (read(row.data(), row.size()) == row.size()) {
   }
 }
 

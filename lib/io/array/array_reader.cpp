@@ -119,12 +119,12 @@ struct ArrayReader::State {
       return send({head, std::move(unpacked), options.axes, options.reversed}, out);
     }
     if (format == Format::tiff) {
-      TiffPages pages(std::move(bytes));
-      Bytes values([&](void* to, std::size_t wanted) { return pages.read(to, wanted); });
+      TiffPages about;
+      Bytes values(open_tiff_pages(std::move(bytes), about));
       arrays::Head head;
-      head.kind = pages.kind();
-      head.bytes = pages.value_bytes();
-      set_shape({pages.pages(), pages.rows(), pages.columns()}, head);
+      head.kind = about.kind;
+      head.bytes = about.value_bytes;
+      set_shape({about.pages, about.rows, about.columns}, head);
       return send({head, std::move(values), options.axes, options.reversed}, out);
     }
     if (format == Format::hdf5) {

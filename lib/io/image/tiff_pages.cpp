@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -93,10 +94,9 @@ bool is_plain(TIFF* tiff) {
          tiff_field(tiff, TIFFTAG_PHOTOMETRIC) == PHOTOMETRIC_MINISBLACK;
 }
 
-}  // namespace
-
-struct TiffPages::State {
-  explicit State(std::string bytes) : file{std::move(bytes)} {
+class PageReader {
+ public:
+  explicit PageReader(std::string bytes) : file{std::move(bytes)} {
     if (!tiff) fail("is a truncated or damaged TIFF");
     constexpr std::uint32_t most_side = 1 << 16;
     layout = layout_of(tiff.get());
@@ -117,9 +117,28 @@ struct TiffPages::State {
     if (found && TIFFLastDirectory(tiff.get()) == 0) fail("is cut off after page " + std::to_string(count));
     if (!found || TIFFSetDirectory(tiff.get(), 0) == 0) fail("is a truncated or damaged TIFF");
     row.resize(std::size_t{layout.columns} * layout.bits / 8);
+    used = row.size();
     require_page();
   }
 
+  [[nodiscard]] TiffPages about() const {
+    const bool whole = layout.format != SAMPLEFORMAT_IEEEFP;
+    const char kind = whole ? (layout.format == SAMPLEFORMAT_INT ? 'i' : 'u') : 'f';
+    return {count, layout.rows, layout.columns, kind, layout.bits / 8};
+  }
+
+  std::size_t read(char* to, std::size_t size) {
+    std::size_t done = 0;
+    while (done < size && (used < row.size() || next_row())) {
+      const std::size_t step = std::min(size - done, row.size() - used);
+      std::memcpy(to + done, row.data() + used, step);
+      used += step;
+      done += step;
+    }
+    return done;
+  }
+
+ private:
   [[noreturn]] static void fail(const std::string& why) { throw std::runtime_error(why); }
 
   void require_page() {
@@ -139,6 +158,7 @@ struct TiffPages::State {
   }
 
   bool next_row() {
+    if (page == count) return false;
     if (line == layout.rows) {
       if (++page == count) return false;
       if (TIFFReadDirectory(tiff.get()) == 0) fail("is cut off after " + std::to_string(page) + " pages");
@@ -149,6 +169,7 @@ struct TiffPages::State {
       fail("row " + std::to_string(line) + " of page " + std::to_string(page) + " is truncated or damaged");
     }
     ++line;
+    used = 0;
     return true;
   }
 
@@ -159,39 +180,15 @@ struct TiffPages::State {
   std::uint32_t page = 0;
   std::uint32_t line = 0;
   std::vector<char> row;
-  std::size_t used = 0;  // of the row; all of it, or none is read yet
-  bool has_row = false;
+  std::size_t used = 0;  // of the row; all of it, also where none is read yet
 };
 
-TiffPages::TiffPages(std::string bytes) : state_(std::make_unique<State>(std::move(bytes))) {}
+}  // namespace
 
-TiffPages::~TiffPages() = default;
-
-std::uint32_t TiffPages::pages() const { return state_->count; }
-std::uint32_t TiffPages::rows() const { return state_->layout.rows; }
-std::uint32_t TiffPages::columns() const { return state_->layout.columns; }
-int TiffPages::value_bytes() const { return state_->layout.bits / 8; }
-
-char TiffPages::kind() const {
-  if (state_->layout.format == SAMPLEFORMAT_IEEEFP) return 'f';
-  return state_->layout.format == SAMPLEFORMAT_INT ? 'i' : 'u';
-}
-
-std::size_t TiffPages::read(void* to, std::size_t size) {
-  State& s = *state_;
-  std::size_t done = 0;
-  while (done < size) {
-    if (!s.has_row || s.used == s.row.size()) {
-      s.has_row = s.page < s.count && s.next_row();
-      if (!s.has_row) break;
-      s.used = 0;
-    }
-    const std::size_t step = std::min(size - done, s.row.size() - s.used);
-    std::memcpy(static_cast<char*>(to) + done, s.row.data() + s.used, step);
-    s.used += step;
-    done += step;
-  }
-  return done;
+std::function<std::size_t(void*, std::size_t)> open_tiff_pages(std::string bytes, TiffPages& about) {
+  const auto reader = std::make_shared<PageReader>(std::move(bytes));
+  about = reader->about();
+  return [reader](void* to, std::size_t size) { return reader->read(static_cast<char*>(to), size); };
 }
 
 namespace {

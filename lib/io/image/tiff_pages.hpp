@@ -4,30 +4,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <string>
 
 namespace vam::io {
 
-class TiffPages {
- public:
-  /// Pages of one size and type; grey, one sample a pixel, in strips. Throws std::runtime_error, to stand behind
-  /// the file's name.
-  explicit TiffPages(std::string bytes);
-  ~TiffPages();
-
-  [[nodiscard]] std::uint32_t pages() const;
-  [[nodiscard]] std::uint32_t rows() const;
-  [[nodiscard]] std::uint32_t columns() const;
-  [[nodiscard]] char kind() const;        // u, i or f
-  [[nodiscard]] int value_bytes() const;  // 1, 2, 4 or 8
-  /// The values of all pages, row by row, in this machine's byte order; fewer than `size` bytes only at the end. Throws
-  /// std::runtime_error for a page that is damaged.
-  std::size_t read(void* to, std::size_t size);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
+struct TiffPages {
+  std::uint32_t pages = 0, rows = 0, columns = 0;
+  char kind = 'u';      // u, i or f
+  int value_bytes = 1;  // 1, 2, 4 or 8
 };
+
+/// Pages of one size and type; grey, one sample a pixel, in strips. What it returns copies the values of all pages, row
+/// by row, in this machine's byte order; fewer than `size` bytes only at the end. Both throw std::runtime_error, to
+/// stand behind the file's name.
+[[nodiscard]] std::function<std::size_t(void* to, std::size_t size)> open_tiff_pages(std::string bytes,
+                                                                                     TiffPages& about);
 
 }  // namespace vam::io
