@@ -58,7 +58,7 @@ class StackWriter {
   ~StackWriter();
   void write(const Image& image);
   /// Facts that come only with the image. Images of one stack all have a measured angle (time), or none has. As they
-  /// stand before the pixels, a pipe then receives the stack at commit(), out of a temporary file in $TMPDIR or /tmp.
+  /// stand before the pixels, a pipe then receives the stack at commit(), out of a ScratchFile.
   void write(const Image& image, const model::ImageInfo& about);
   /// Facts in place of others of the same names and lengths; on a pipe with StackOptions::late only, as above;
   /// without it throws Fault::bug once the header was sent.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "base/compute/parallel.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/scratch_file.hpp"
 #include "base/text/format_version.hpp"
 #include "base/text/text.hpp"
 #include "io/exr/private/attributes.hpp"
@@ -153,8 +153,7 @@ struct StackWriter::State {
     head_bytes = count_head();
     position = head_bytes;
     if (out.is_stream() && late_facts) {
-      spool.reset(std::tmpfile());
-      if (!spool) throw Error{Fault::no_output, out.name() + ": cannot create a temporary file"};
+      spool.emplace();
       return;
     }
     for_head([this](const std::string& bytes) { out.write(bytes); });
@@ -209,11 +208,12 @@ struct StackWriter::State {
   }
 
   void send(const std::string& bytes) {
-    position += bytes.size();
-    if (!spool) return out.write(bytes);
-    if (std::fwrite(bytes.data(), 1, bytes.size(), spool.get()) != bytes.size()) {
-      throw Error{Fault::io, out.name() + ": cannot write a temporary file; check the free space in $TMPDIR"};
+    if (spool) {
+      spool->write(position - head_bytes, bytes.data(), bytes.size());
+    } else {
+      out.write(bytes);
     }
+    position += bytes.size();
   }
 
   void finish() {
@@ -224,12 +224,12 @@ struct StackWriter::State {
     if (count_head() != head_bytes) throw Error{Fault::bug, out.name() + ": the header changed its size"};
     if (spool) {
       for_head([this](const std::string& bytes) { out.write(bytes); });
-      std::rewind(spool.get());
       std::vector<char> buffer(std::size_t{1} << 20);
-      while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), spool.get())) {
-        out.write(buffer.data(), got);
+      for (std::uint64_t at = 0, end = position - head_bytes; at < end; at += buffer.size()) {
+        buffer.resize(std::min<std::uint64_t>(buffer.size(), end - at));
+        spool->read(at, buffer.data(), buffer.size());
+        out.write(buffer.data(), buffer.size());
       }
-      if (std::ferror(spool.get()) != 0) throw Error{Fault::io, out.name() + ": cannot read a temporary file back"};
     } else if (!out.is_stream()) {
       std::size_t at = 0;
       for_head([&](const std::string& bytes) {
@@ -255,7 +255,7 @@ struct StackWriter::State {
   bool settled = false;       // the first image has decided what the headers hold
   std::vector<Image> waiting;
   std::size_t done = 0;  // images taken in
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> spool{nullptr, std::fclose};
+  std::optional<ScratchFile> spool;
 };
 
 StackWriter::StackWriter(const std::string& path, const StackInfo& info, const StackOptions& options)
