@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <iterator>
 
@@ -115,18 +113,14 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
     const std::string text = read_all(path);
     fs::resize_file(path, text.rfind('\n') + 1);
   }
-  directory_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   log_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (directory_ < 0 || log_ < 0) {
-    throw system_error(Fault::no_output, path + ": cannot be written", errno);
-  }
+  if (log_ < 0) throw system_error(Fault::no_output, path + ": cannot be written", errno);
   if (again) return;
   manifest_.sealed = true;  // one that was begun without seals stays so
   write_line(head);
 }
 
 CaptureFolder::~CaptureFolder() {
-  if (directory_ >= 0) close(directory_);
   if (log_ >= 0) close(log_);
 }
 
@@ -153,19 +147,8 @@ bool CaptureFolder::has(long place) const {
 
 void CaptureFolder::keep(CaptureRecord record, const GreyImage& levels) {
   const std::string name = capture_file_name(record.place);
-  const std::string path = (fs::path(folder_) / name).string();
   record.levels = fingerprint(levels);
-  const int file = openat(directory_, name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) throw failed(path);
-  try {
-    write_synced(file, encode_png(levels), path);
-  } catch (...) {
-    close(file);
-    unlinkat(directory_, name.c_str(), 0);
-    throw;
-  }
-  close(file);
-  if (fsync(directory_) != 0 && errno != EINVAL) throw failed(folder_);
+  write_png((fs::path(folder_) / name).string(), levels);
   write_line(to_line(record));
   manifest_.frames[record.place] = record;
   gone_.erase(record.place);

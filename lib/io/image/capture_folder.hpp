@@ -73,7 +73,7 @@ class CaptureFolder {
 
   /// Is there a complete frame at this place?
   [[nodiscard]] bool has(long place) const;
-  /// Of record.levels whatever it says: the fingerprint is that of the image. Throws Fault::io.
+  /// Of record.levels whatever it says: the fingerprint is that of the image. Throws Fault::io, no_output.
   void keep(CaptureRecord record, const GreyImage& levels);
   void dropped(long first, long last);
   /// Writes that the capture has ended, if that is not what the last line says; warns where it joined new images to
@@ -90,7 +90,6 @@ class CaptureFolder {
   long earlier_ = 0;                // images of captures before this one
   std::set<long> fresh_;            // places of those of this one
   std::set<std::string> unlisted_;  // images without a line
-  int directory_ = -1;
   int log_ = -1;
 };
 
