@@ -138,13 +138,15 @@ void OutputFile::commit() {
 void OutputFile::publish() {
   // Without the wait a crash could leave the new name on an empty file.
   if (fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail(Fault::io, name_, "cannot finish", errno);
+  give_name();
+  synchronise_folder_of(target_);
+}
+
+void OutputFile::give_name() {
   if (temporary_.empty()) {
     sweep_folder_of(target_);
     const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
-    if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-      synchronise_folder_of(target_);
-      return;
-    }
+    if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
     if (errno != EEXIST) fail(Fault::no_output, name_, "cannot create", errno);
     // linkat does not replace, rename does: the name in between lives for a moment only.
     if (name_temporary(descriptor_, target_, temporary_, slot_) != 0) {
@@ -152,7 +154,6 @@ void OutputFile::publish() {
     }
   }
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(Fault::no_output, name_, "cannot create", errno);
-  synchronise_folder_of(target_);
   forget_temporary(slot_);
   slot_ = -1;
   temporary_.clear();

@@ -91,6 +91,7 @@ class OutputFile {
   void flush();
   void send(const char* bytes, std::size_t size, std::optional<std::uint64_t> offset = std::nullopt);
   void publish();
+  void give_name();
   void discard() noexcept;
   std::string name_;
   std::string target_;     // final path of a regular file, links followed; empty for a stream

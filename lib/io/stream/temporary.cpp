@@ -20,6 +20,8 @@
 #include <mutex>
 #include <set>
 
+#include "base/system_error.hpp"
+
 namespace vam::io {
 
 namespace fs = std::filesystem;
@@ -211,8 +213,9 @@ void synchronise_folder_of(const std::string& target) {
   const std::string folder = directory_of(target);
   const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
-  (void)fsync(descriptor);
+  const int error = fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
   close(descriptor);
+  if (error != 0) throw system_error(Fault::io, target + ": its folder cannot be brought to the disk", error);
 }
 
 void forget_temporary(int slot) {

@@ -25,7 +25,7 @@ int create_temporary_folder(const std::string& target, std::string& name, int& s
 void sweep_folder_of(const std::string& target);
 
 /// Waits until the disk knows the names in the folder of `target`; what it does not know would be gone after a loss of
-/// power. File systems that cannot are left in peace.
+/// power. File systems that cannot are left in peace; throws Fault::io where the disk fails.
 void synchronise_folder_of(const std::string& target);
 
 /// The name is no longer temporary.
