@@ -20,6 +20,7 @@ struct Projector {
   double min_intensity_mw_cm2 = 0;         // at grey 0: 0 or the contrast limit
   double max_intensity_mw_cm2 = 3.8;       // at full grey
   std::string response;                    // CSV "grey,intensity"; empty = linear
+  std::string flat;                        // flat field (EXR), by which frames are evened; empty = even
   int bits = 8;
   double fps = 16;
   double axis_column = 511.5;            // where the rotation axis appears

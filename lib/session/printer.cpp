@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/printer.hpp"
 
+#include <algorithm>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/log/log.hpp"
 #include "base/printer_path.hpp"
 #include "base/text/text.hpp"
 #include "base/text/utc.hpp"
+#include "io/image/view_source.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/printer_file.hpp"
@@ -64,6 +67,27 @@ void require_settings(const cli::App& app, const model::Printer& printer) {
 resin::Response response_of(const model::Projector& projector) {
   if (projector.response.empty()) return resin::projector_response(projector);
   return resin::Response(io::read_response(projector.response, projector.bits));
+}
+
+Image flat_of(const model::Projector& projector) {
+  if (projector.flat.empty()) return {};
+  Image flat = io::read_field(projector.flat);
+  const auto refuse = [&](const std::string& why) {
+    throw Error{Fault::data, "projector.flat: " + projector.flat + " " + why + "; run vam-calibrate uniformity"};
+  };
+  if (flat.width != projector.columns || flat.height != projector.rows) {
+    refuse("has " + size_text(flat.width, flat.height) + " pixels, the projector " +
+           size_text(projector.columns, projector.rows));
+  }
+  const auto [least, most] = std::minmax_element(flat.values.begin(), flat.values.end());
+  const float unit = *least;
+  constexpr float darkest = 0.2F;
+  if (!(unit > 0 && unit >= darkest * *most)) {
+    refuse("has pixels from " + format_number(unit, 3) + " to " + format_number(*most, 3) +
+           ", and the darkest needs a fifth of the brightest");
+  }
+  for (float& value : flat.values) value /= unit;
+  return flat;
 }
 
 }  // namespace vam::session

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/image.hpp"
 #include "cli/common.hpp"
 #include "model/metadata.hpp"
 #include "model/printer.hpp"
@@ -34,5 +35,9 @@ void require_settings(const cli::App& app, const model::Printer& printer);
 /// The response of its projector: as measured (projector.response), or else linear from min_intensity to max_intensity.
 /// Throws as io::read_response does.
 [[nodiscard]] resin::Response response_of(const model::Projector& projector);
+
+/// Its flat field, the light of every pixel at one grey level, the least 1; empty where it is even. Throws Fault::data
+/// for one of another size, and where a pixel has less than a fifth of the brightest one's light.
+[[nodiscard]] Image flat_of(const model::Projector& projector);
 
 }  // namespace vam::session

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/text/image_size.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/projector_frames.hpp"
 #include "session/printer.hpp"
@@ -53,6 +54,16 @@ void respond(const std::vector<float>& table, Image& image) {
   }
 }
 
+/// The light of pixels that are not even.
+void shine(const Image& flat, Image& frame, const std::string& name) {
+  if (flat.values.empty()) return;
+  if (frame.width != flat.width || frame.height != flat.height) {
+    throw Error{Fault::data, name + ": its frames have " + size_text(frame) + " pixels, projector.flat " +
+                                 size_text(flat) + "; name the printer that showed them, or set projector.flat= to none"};
+  }
+  for (std::size_t i = 0; i < frame.size(); ++i) frame.values[i] *= flat.values[i];
+}
+
 /// As it was before it was turned for the projector.
 void upright(Image& frame, const std::string& orientation) {
   if (orientation == "rotate-90" || orientation == "rotate-270") {
@@ -98,12 +109,14 @@ bool Slices::take(Image& image) {
 
 void Slices::collect(const Options& options, const model::Printer& printer) {
   const std::vector<float> table = source_->is_grey() ? intensities(options, printer) : std::vector<float>{};
+  const Image flat = options.in_vial() ? session::flat_of(printer.projector) : Image{};
   std::pair<int, int> lit{65536, 0};
   Image frame;
   while (take(frame)) {
     peak_ = std::max(peak_, *std::max_element(frame.values.begin(), frame.values.end()));
     upright(frame, options.orientation);
     respond(table, frame);
+    shine(flat, frame, name_);
     for (int y = frame.height - 1; y >= 0; --y) {
       const float* begin = frame.row(y);
       const float* end = begin + frame.width;

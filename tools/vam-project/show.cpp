@@ -36,6 +36,16 @@ void warn_dark(const resin::LightTally& tally) {
        "lower it by --full-scale");
 }
 
+/// Divides by the light that pixels give: brighter ones show less. `at`: where the light is in the frame.
+void even(Image& light, const Image& flat, const PixelRect& at) {
+  if (flat.values.empty()) return;
+  for (int y = 0; y < light.height; ++y) {
+    const float* given = flat.row(at.top + y) + at.left;
+    float* row = light.row(y);
+    for (int x = 0; x < light.width; ++x) row[x] /= given[x];
+  }
+}
+
 /// Frames one after the other, their rows by all threads.
 class DitheredFrames {
  public:
@@ -113,9 +123,11 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
   const resin::GreyLevels levels(session::response_of(projector), projector.bits);
   DitheredFrames dithered(levels, dithering);
   const Whole whole(frames, projector, levels);
+  const Image flat = session::flat_of(projector);
   std::vector<resin::LightTally> tallies(frames.count);
   const auto develop = [&](int n, io::ProjectorFrame& frame) {
     if (!frames.in_order) frame.intensity = frames.light(n, std::move(frame.intensity));
+    even(frame.intensity, flat, frames.lit.value_or(PixelRect{}));
     frame.time_s = n / frames.fps;
     frame.angle_deg = n * frames.step_deg;
     tallies[n] = resin::limit_to_full(frame.intensity, scale);

@@ -46,6 +46,7 @@ const std::vector<PrinterField> fields{
     {"projector", "min_intensity_mw_cm2", at<&Printer::projector, &Projector::min_intensity_mw_cm2>, "intensity at grey 0: black level", 0, most_mw_cm2},
     {"projector", "max_intensity_mw_cm2", at<&Printer::projector, &Projector::max_intensity_mw_cm2>, "intensity at full grey", 0, most_mw_cm2, true},
     {"projector", "response", at<&Printer::projector, &Projector::response>, "response table: CSV file \"grey,intensity\", relative to this file; empty: linear"},
+    {"projector", "flat", at<&Printer::projector, &Projector::flat>, "flat field (EXR): light of the pixels at one grey level, by which frames are evened to the darkest; relative to this file; empty: even"},
     {"projector", "bits", at<&Printer::projector, &Projector::bits>, "number of grey levels = 2^bits", 1, 16, false, {"1", "2", "4", "8", "10", "16"}},
     {"projector", "fps", at<&Printer::projector, &Projector::fps>, "frames per second", 0.001, 1e6},
     {"projector", "axis_column", at<&Printer::projector, &Projector::axis_column>, "column of the rotation axis, from 0 at the left, before orientation; the middle if absent", -65536, 131072},

@@ -69,7 +69,7 @@ std::string printer_toml(const model::Printer& given) {
 }
 
 model::Printer frozen(model::Printer printer) {
-  for (std::string* file : {&printer.projector.response, &printer.camera.flat}) {
+  for (std::string* file : {&printer.projector.response, &printer.projector.flat, &printer.camera.flat}) {
     if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
   }
   printer.calibration.folder.clear();
