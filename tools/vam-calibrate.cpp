@@ -148,7 +148,6 @@ void declare(cli::App& app, ScanOptions& o) {
   calibrate_tool::add_working_curve(app);
   calibrate_tool::add_critical_dose(app);
   calibrate_tool::add_photodiode(app);
-  calibrate_tool::add_uniformity(app);
   calibrate_tool::add_cure_depth(app);
 }
 

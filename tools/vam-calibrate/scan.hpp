@@ -164,7 +164,6 @@ void add_critical_dose(cli::App& app);
 
 /// Light of the projector by grey level: the table of projector.response.
 void add_photodiode(cli::App& app);
-void add_uniformity(cli::App& app);
 
 /// Cured thickness by exposure: the working curve of stereolithography [CURE19 fig 5a].
 void add_cure_depth(cli::App& app);

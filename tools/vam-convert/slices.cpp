@@ -59,7 +59,8 @@ void shine(const Image& flat, Image& frame, const std::string& name) {
   if (flat.values.empty()) return;
   if (frame.width != flat.width || frame.height != flat.height) {
     throw Error{Fault::data, name + ": its frames have " + size_text(frame) + " pixels, projector.flat " +
-                                 size_text(flat) + "; name the printer that showed them, or set projector.flat= to none"};
+                                 size_text(flat) +
+                                 "; name the printer that showed them, or set projector.flat= to none"};
   }
   for (std::size_t i = 0; i < frame.size(); ++i) frame.values[i] *= flat.values[i];
 }

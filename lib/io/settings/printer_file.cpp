@@ -347,8 +347,8 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
     refuse_empty(text, path);
     if (const std::string sign = sign_of_cut(text); !sealed && !sign.empty()) warn(path + ": " + sign);
     const auto beside = std::filesystem::path(path).parent_path();
-    for (std::string* file_name : {&printer.projector.response, &printer.projector.flat, &printer.camera.flat,
-                                   &printer.calibration.folder}) {
+    for (std::string* file_name :
+         {&printer.projector.response, &printer.projector.flat, &printer.camera.flat, &printer.calibration.folder}) {
       if (!file_name->empty()) *file_name = (beside / *file_name).string();
     }
   }
