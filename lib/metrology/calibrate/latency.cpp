@@ -128,6 +128,19 @@ Valley refined(const BlinkScan& scan, const MisfitCurve& all) {
                                 std::log(rough.rise_s / 4), std::log(rough.rise_s * 4))));
 }
 
+// How far the latency goes with time constants that do not fit clearly worse: short exposures see little of the course
+// of the light.
+double unsettled_s(const BlinkScan& scan, const Valley& best) {
+  double farthest_s = 0;
+  for (const double rise_s : {fast_s, 0.001, 0.002, 0.004, 0.008}) {
+    const double about_s = rise_s + coarse_s;
+    const Valley other = valley_between(scan, rise_s, best.latency_s - about_s, best.latency_s + about_s);
+    if (worse_by(other.line, best.line) >= clearly) continue;
+    farthest_s = std::max(farthest_s, std::abs(other.latency_s - best.latency_s));
+  }
+  return farthest_s;
+}
+
 // The deepest but for those in the best one's own: where blinks explain more than half of what the best explain.
 const Valley* runner_up(const MisfitCurve& all, const Valley& best, double unexplained) {
   const double rim = 0.5 * (best.line.misfit + unexplained);
@@ -193,7 +206,8 @@ Latency measure_latency(const BlinkScan& scan) {
   auto found = stats::fit_curve(residuals, {1e3 * best.latency_s, best.line.ground, best.line.light},
                                 {0.02, step, step}, "latency")
                    .measured(0);
-  found.sigma = std::hypot(found.sigma, 1e3 * open.width_s() / std::sqrt(12), rise_sigma_ms);
+  const double alike_ms = 1e3 * std::hypot(open.width_s() / 2, unsettled_s(scan, best));  // on either side
+  found.sigma = std::hypot(found.sigma, alike_ms / std::sqrt(3), rise_sigma_ms);
   return {found, best.line.light / std::max(scatter, 1e-12)};
 }
 
