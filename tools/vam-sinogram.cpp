@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <future>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "base/image.hpp"
 #include "base/index.hpp"
 #include "base/log/progress.hpp"
+#include "cli/app.hpp"
+#include "cli/common.hpp"
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "io/stream/stream.hpp"
@@ -23,11 +26,59 @@
 #include "tomo/fbp.hpp"
 #include "tomo/filtered_projections.hpp"
 #include "tomo/negative_values.hpp"
-#include "vam-sinogram/options.hpp"
-
-namespace vam::sinogram_tool {
 
 namespace {
+
+using namespace vam;
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::string grid = "target";
+  int angles = 360;
+  std::optional<int> bins;
+  std::string filter = "none";
+  std::optional<double> cutoff;
+  std::string negative = "keep";
+  std::optional<double> absorption_per_mm;
+  bool printer_absorption = false;
+  bool at_wall = false;
+  cli::PrinterOptions printer;
+  io::StackOptions stack;
+};
+
+void declare(cli::App& app, Options& options) {
+  app.positional("TARGET", options.input, "Volume (VDB) with values 0...1 and the rotation axis at x = y = 0.").reads();
+  cli::add_output(app, options.output).writes_as({".exr", ".toml"});
+  app.option("--grid", "NAME", options.grid, "Grid to project.");
+  app.option("--angles", "N", options.angles, {1, 1000000}, "Number of angles over 360 degrees, endpoint excluded.");
+  app.option("--detector-bins", "N", options.bins, {1, 65536},
+             "Number of detector bins, each one voxel wide. Fewer than the default truncate the projections.");
+  app.default_is("as many as cover the grid with its corners");
+  app.choice("--filter", options.filter, tomo::window_names(), "Window of the ramp filter.");
+  app.option("--cutoff", "FRACTION", options.cutoff, {0, 1000, true},
+             "Cutoff of the window (scale k0 for gaussian and exponential), as a fraction of the Nyquist frequency.")
+      .excludes({"--filter none"});
+  app.default_is("1");
+  app.choice("--negative", options.negative, tomo::negative_names(),
+             "Negative values: keep them, clip them to 0, or subtract the minimum of the stack from all values.")
+      .excludes({"--filter none"});
+  app.group("Absorption");
+  app.option("--absorption", "PER_MM", options.absorption_per_mm, cli::non_negative,
+             "Absorption coefficient MU of the resin: exponential Radon transform.");
+  app.flag("--printer-absorption", options.printer_absorption, "Use resin.absorption_per_mm of the printer file as MU.")
+      .only_with({"resin.absorption_per_mm"})
+      .excludes({"--absorption"});
+  app.flag("--at-wall", options.at_wall,
+           "Give the values at the inner wall of the printer's vial instead of at the plane through the axis.");
+  app.only_with({"--absorption", "--printer-absorption"});
+  cli::add_printer(app, options.printer);
+  app.group("Output and performance");
+  cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  cli::add_threads(app);
+  app.usual({"--output", "--angles", "--detector-bins", "--filter", "--cutoff", "--negative", "--absorption",
+             "--printer-absorption", "--printer", "--set"});
+}
 
 /// Calls use(slabs, count) for the sinograms of all slices, a pass of up to 64 at a time, the next slices being read
 /// meanwhile.
@@ -82,16 +133,6 @@ std::vector<Image> unpacked(const std::vector<Slab>& slabs, int count) {
   return images;
 }
 
-}  // namespace
-
-}  // namespace vam::sinogram_tool
-
-namespace {
-
-using namespace vam;
-using sinogram_tool::for_each_pass;
-using sinogram_tool::Options;
-
 tomo::ProjectionSpec make_spec(const Options& options, const model::Printer& printer, const model::Grid& grid) {
   tomo::ProjectionSpec spec;
   const double mu =
@@ -144,7 +185,7 @@ void run(const cli::App& app, const Options& options) {
     if (options.negative != "keep") {
       for (Slab& slab : slabs) tomo::raise_and_clip(slab, raise, 0);
     }
-    writer.put(sinogram_tool::unpacked(slabs, count));
+    writer.put(unpacked(slabs, count));
   });
   writer.finish();
   out.commit();

@@ -143,4 +143,8 @@ struct Printer {
 /// Inner radius of the vial.
 [[nodiscard]] double resin_radius_mm(const Vial& vial);
 
+/// The bench at half of the resolution: column c covers columns 2 c and 2 c + 1, row r rows 2 r and 2 r + 1; the lens
+/// stays where it is.
+[[nodiscard]] Printer coarser(const Printer& printer);
+
 }  // namespace vam::model

@@ -7,7 +7,6 @@
 #include "base/index.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
-#include "optimize/target/void_rule.hpp"
 #include "session/grey_target.hpp"
 #include "session/volumes.hpp"
 

@@ -6,7 +6,6 @@
 
 #include "base/text/text.hpp"
 #include "io/settings/recorded_tolerances.hpp"
-#include "model/coarser.hpp"
 #include "model/dose/dose_spread.hpp"
 #include "model/dose/stray_cure.hpp"
 #include "model/light_width.hpp"

@@ -118,6 +118,20 @@ std::vector<SliceData> SliceReader::read(int k, int count) const {
   return slices;
 }
 
+VolumeSource::Read with_void(const VolumeSource::Read& target, const VolumeSource::Read& values, float usual,
+                             std::size_t pixels, const std::function<void(float&)>& change) {
+  return [=](int k, int count, float* out) {
+    const std::size_t all = static_cast<std::size_t>(count) * pixels;
+    std::vector<float> wanted(all);
+    target(k, count, wanted.data());
+    if (values) values(k, count, out);
+    if (!values) std::fill_n(out, all, usual);
+    for (std::size_t i = 0; i < all; ++i) {
+      if (wanted[i] <= model::coverage_rounding) change(out[i]);
+    }
+  };
+}
+
 std::vector<SliceDigest> check(const VolumeSource& source, light::Shape shape, const Circle& circle, bool grey) {
   const SliceReader reader(source, shape);
   std::vector<SliceDigest> digests;

@@ -42,6 +42,11 @@ class SliceReader {
   std::optional<SurfaceBand> band_;
 };
 
+/// A reader of weights or tolerances that are made from the target: `values`, or `usual` everywhere where there are
+/// none, changed wherever the target is 0. `pixels`: of a slice.
+[[nodiscard]] VolumeSource::Read with_void(const VolumeSource::Read& target, const VolumeSource::Read& values,
+                                           float usual, std::size_t pixels, const std::function<void(float&)>& change);
+
 /// Digests of all slices, everything that they hold included. Throws Fault::data for a target that is empty, or full,
 /// or reaches beyond the circle, one that shares voxels with the insert, and weights, tolerances or doses below 0;
 /// `grey`: values are doses, so a full target is as good as any.

@@ -5,7 +5,6 @@
 #include "lib/optimize/parts.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "optimize/target/slice_reader.hpp"
-#include "optimize/target/void_rule.hpp"
 #include "testing.hpp"
 
 using namespace vam;
