@@ -99,8 +99,6 @@ std::string hidden(const Level& level, const EstimateTask& task) {
   return "";
 }
 
-bool may_tell(const Level& level, const EstimateTask& task) { return hidden(level, task).empty(); }
-
 /// What the print of these voxels shows of that of the final ones, or why it does not.
 struct Told {
   std::optional<bool> prints;
@@ -207,7 +205,7 @@ Estimate estimated(const EstimateTask& task) {
   while (true) {
     const Level level = level_of(task, by);
     const bool is_last = by == 1 || voxels(by / 2) > most_finer_voxels;
-    if (is_last || may_tell(level, task)) {
+    if (is_last || hidden(level, task).empty()) {
       Estimate made = estimate_on(level, task);
       if (is_last || !made.is_unknown()) return made;
     }

@@ -47,6 +47,7 @@ Preview preview(const PreviewTask& wanted) {
                                       std::max(wanted.iterations, most_iterations));
   task.limits.until = model::parse_conditions(automatic_until, SliceFigures::names());
   task.limits.least_rate = automatic_rate;
+  task.limits.leaves_open = true;
   task.limits.patience = 0;
   task.limit.of_even = usual_of_even;
   task.raising = usual_raising;

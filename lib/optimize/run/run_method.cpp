@@ -30,12 +30,6 @@ double mean_merit(const Method& method, const Iterate& state, const std::vector<
   return (count > 0 ? sum / count : 0.0) - (surface ? std::max(0.0, surface->rms - true_rms) : 0.0);
 }
 
-model::DoseMetrics mean_of(const std::vector<model::DoseMetrics>& slices) {
-  SliceFigures all;
-  for (const auto& slice : slices) all.add(slice);
-  return all.mean();
-}
-
 bool reached(const std::vector<model::Condition>& until, const model::DoseMetrics& m) {
   return !until.empty() && model::unmet(until, [&](const std::string& name) { return model::figure(m, name); }).empty();
 }
@@ -56,14 +50,14 @@ void note(IterationState& run, double latitude) {
   run.latitude.push_back(run.latitude.empty() ? latitude : std::max(latitude, run.latitude.back()));
 }
 
-/// Outcome::growth so far.
-double growth(const IterationState& run) {
+/// Outcome::growth after so many iterations.
+double growth(const IterationState& run, int iterations) {
   constexpr double begun = 10;  // what comes before the first iteration and after the last takes, in iterations
   constexpr double share = 0.8;
-  const double cost = run.iteration + begun;
+  const double cost = iterations + begun;
   const int before = static_cast<int>(share * cost - begun);
-  if (before < 0 || run.iteration >= count_of(run.latitude) || !(run.latitude[before] > 0)) return no_growth_known;
-  return std::log(run.latitude.back() / run.latitude[before]) / std::log(cost / (before + begun));
+  if (before < 0 || iterations >= count_of(run.latitude) || !(run.latitude[before] > 0)) return no_growth_known;
+  return std::log(run.latitude[iterations] / run.latitude[before]) / std::log(cost / (before + begun));
 }
 
 /// Whether another iteration as long as the mean of those before it, and the rest, fit in.
@@ -83,14 +77,20 @@ std::optional<StopReason> look(const Method& method, const Problem& problem, con
     auto slices = metrics(state.dose, problem);
     if (watch) watch(run.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
-    const model::DoseMetrics mean = mean_of(slices);
+    SliceFigures figures;
+    for (const auto& slice : slices) figures.add(slice);
+    const model::DoseMetrics mean = figures.mean();
     note(run, mean.latitude);
     const bool met = reached(limits.until, mean);
-    const bool counts = run.iteration >= limits.at_least && (limits.least_rate <= 0 || growth(run) < limits.least_rate);
-    const bool goal = met && counts && (!limits.prints || limits.prints(state));
+    const auto counts = [&](int at) {
+      return at >= limits.at_least && (limits.least_rate <= 0 || growth(run, at) < limits.least_rate);
+    };
+    const bool ends = met && counts(run.iteration);
+    const bool goal = ends && (!limits.prints || limits.prints(state));
     const double merit_now = mean_merit(method, state, slices) + (met ? goal_merit : 0) + (goal ? goal_merit : 0);
     const bool lost = lost_patience(run, limits, merit_now, keeps ? &state.g : nullptr);
     if (goal) return StopReason::goal;
+    if (ends && limits.leaves_open && counts(run.iteration / 2)) return StopReason::no_progress;
     if (!last && lost && run.iteration >= limits.at_least) return StopReason::no_progress;
   }
   if (!last && !in_time(limits.deadline, run)) return StopReason::time;
@@ -137,7 +137,7 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
   const bool keeps = limits.patience > 0 && limits.iterations > 1 && !method.asks_more();
   for (;; ++run.iteration) {
     const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, run, keeps, watch);
-    if (stop) return {run.iteration, *stop, growth(run)};
+    if (stop) return {run.iteration, *stop, growth(run, run.iteration)};
     if (pause && pause()) return {run.iteration, StopReason::interrupted};
     method.step(problem, light, state);
     looked = false;

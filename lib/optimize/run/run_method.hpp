@@ -30,6 +30,7 @@ struct Limits {
   int at_least = 0;                                 // iterations before they count, or patience ends
   double least_rate = 0;                  // and growth of the latitude per growth of the cost, in logarithms, above
                                           // which the run goes on; 0: none
+  bool leaves_open = false;               // stop at twice the iterations that count, though it is not the part
   int patience = 10;                      // stop when nothing improved in so many iterations; 0 = never
   double least_gain = 1e-4;               // an improvement of the mean of IoU + latitude smaller than this is none
   bool watch_last = false;                // evaluate the last iterate, too, on which nothing depends

@@ -218,6 +218,25 @@ TEST_CASE("the loop stops at its goal, and when it stagnates") {
   CHECK(run(slices, task).outcome.iterations >= task.limits.at_least);
 }
 
+TEST_CASE("a run that may leave the print open ends at twice the iterations that count") {
+  const auto wheel = vam::oracle::wheel(size);
+  const auto light = parts::parallel_light(size, angles);
+  const Problem problem = parts::make_problem(wheel.data(), 1, size, size, parts::circle(size), {});
+  int asked = 0;
+  Limits limits{.iterations = 30, .at_least = 5, .patience = 0};
+  limits.until = vam::model::parse_conditions("iou>=0", SliceFigures::names());
+  limits.prints = [&](const Iterate&) { return ++asked < 0; };
+  for (const bool leaves_open : {true, false}) {
+    limits.leaves_open = leaves_open;
+    Iterate state;
+    const Outcome outcome = run_method(*make_method("apg", {}), problem, *light, limits, state);
+    CHECK(outcome.stop == (leaves_open ? StopReason::no_progress : StopReason::iterations));
+    CHECK(outcome.iterations == (leaves_open ? 10 : 30));
+    CHECK(asked == outcome.iterations - 4);
+    asked = 0;
+  }
+}
+
 TEST_CASE("without a goal the best iterate is the result, whatever comes after it") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   int later = 0;  // iterations after the best one
