@@ -3,6 +3,7 @@
 #include "base/stats/distributions.hpp"
 #include "base/stats/measured.hpp"
 #include "base/stats/median.hpp"
+#include "base/stats/range.hpp"
 #include "testing.hpp"
 
 using namespace vam;
@@ -119,4 +120,17 @@ TEST_CASE("the median is the upper of the middle two, the normal integral is tha
   CHECK(normal_integral(0) == doctest::Approx(0.5));
   CHECK(normal_integral(1.959964) == doctest::Approx(0.975).epsilon(1e-7));
   CHECK(normal_integral(-1) == doctest::Approx(0.158655254).epsilon(1e-8));
+}
+
+TEST_CASE("the least and the largest of any number of values") {
+  std::mt19937 draw(3);  // NOLINT(cert-msc51-cpp): the same values every time
+  std::uniform_real_distribution<float> value(-5, 5);
+  for (const std::size_t count : {1, 2, 15, 16, 17, 100}) {
+    for (int trial = 0; trial < 50; ++trial) {
+      std::vector<float> values(count);
+      for (float& v : values) v = value(draw);
+      const auto [low, high] = std::minmax_element(values.begin(), values.end());
+      CHECK(range_of(values) == std::pair{*low, *high});
+    }
+  }
 }

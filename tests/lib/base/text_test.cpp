@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/text/text.hpp"
 
+#include <string_view>
+
+#include "base/text/base64.hpp"
+#include "base/text/figure_text.hpp"
+#include "base/text/utc.hpp"
 #include "testing.hpp"
 
 using namespace vam;
@@ -56,4 +61,43 @@ TEST_CASE("texts are trimmed and joined") {
   CHECK(trimmed(" \n").empty());
   CHECK(join({"a", "b"}, ", ") == "a, b");
   CHECK(join({}, ", ").empty());
+}
+
+TEST_CASE("base64 as the examples of RFC 4648, section 10") {
+  CHECK(vam::base64("").empty());
+  CHECK(vam::base64("f") == "Zg==");
+  CHECK(vam::base64("fo") == "Zm8=");
+  CHECK(vam::base64("foo") == "Zm9v");
+  CHECK(vam::base64("foob") == "Zm9vYg==");
+  CHECK(vam::base64("foobar") == "Zm9vYmFy");
+  CHECK(vam::base64(std::string_view("\xff\x00\xfe", 3)) == "/wD+");
+}
+
+TEST_CASE("counts are written in full, other figures in short") {
+  CHECK(format_figure(2085408) == "2085408");
+  CHECK(format_figure(-143728, 5) == "-143728");
+  CHECK(format_figure(0) == "0");
+  CHECK(format_figure(0.1293214) == "0.129321");
+  CHECK(format_figure(1.4373512e5, 5) == "1.4374e+05");
+  CHECK(format_figure(1e300) == "1e+300");
+  CHECK(format_figure(INFINITY) == "inf");
+}
+
+TEST_CASE("times are written and read to the millisecond") {
+  constexpr double now_s = 1795280280.25;
+  CHECK(utc_text(now_s) == "2026-11-21T16:58:00.250Z");
+  CHECK(parse_utc("2026-11-21T16:58:00.250Z", "r") == now_s);
+  CHECK(utc_text(-0.25) == "1969-12-31T23:59:59.750Z");
+  CHECK(utc_text(0.9996) == "1970-01-01T00:00:01.000Z");
+  for (int ms = 0; ms < 1000; ++ms) {
+    const std::string text = utc_text(1795280280 + 0.001 * ms);
+    CHECK(utc_text(parse_utc(text, "r")) == text);
+  }
+}
+
+TEST_CASE("a text that is not a time is refused") {
+  for (const char* text : {"yesterday", "2026-11-21T16:58:00.250Z and more", "2026-99-21T16:58:00.250Z",
+                           "2026-02-30T16:58:00.250Z", "2026-11-21T16:58:00.250", ""}) {
+    CHECK(fault_of([&] { (void)parse_utc(text, "r"); }) == Fault::data);
+  }
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole parts through the camera: glass, resin, noise and 4 x 4 binning.
+// Refinement, volumes of a print that goes on, and whole parts through the camera: glass, resin, noise, 4 x 4 binning.
 #include "lib/metrology/synthetic_views.hpp"
 #include "metrology/ost/ost.hpp"
+#include "metrology/ost/private/mlem.hpp"
+#include "metrology/ost/sliding_turn.hpp"
 #include "solid/mesh/signed_distance.hpp"
 #include "solid/voxel/isosurface.hpp"
 #include "testing.hpp"
@@ -138,4 +140,51 @@ TEST_CASE("struts three voxels apart are resolved with a contrast of 20 % at lea
   const double contrast = (bright - dark) / (bright + dark);
   MESSAGE("contrast ", 100 * contrast, " %");
   CHECK(contrast >= 0.2);
+}
+
+TEST_CASE("the likelihood's maximum of exact sinograms is the image, and pixels that no ray meets stay empty") {
+  tomo::ParallelGeometry geometry;
+  geometry.nx = geometry.ny = 32;
+  geometry.columns = 20;  // the corners are beyond all rays
+  geometry.angles = 40;
+  geometry.axis_x = geometry.axis_y = 15.5;
+  geometry.angle_step_rad = 2 * std::numbers::pi / geometry.angles;
+  std::vector<Slab> disc(1, Slab(32, 32));
+  for (const auto [y, x] : indices(32, 32)) *disc[0].at(x, y) = std::hypot(x - 15.5, y - 15.5) < 6 ? 1.0F : 0.0F;
+  std::vector<Slab> sinograms(1, Slab(geometry.columns, geometry.angles));
+  tomo::forward(geometry, disc, sinograms);
+  std::vector<Slab> images(1, Slab(32, 32));
+  std::fill(images[0].values.begin(), images[0].values.end(), 0.5F);
+  metrology::maximise_likelihood(geometry, sinograms, 60, images);
+  CHECK(*images[0].at(0, 0) < 1e-6F);
+  CHECK(*images[0].at(31, 31) < 1e-6F);
+  CHECK(*images[0].at(15, 15) == doctest::Approx(1).epsilon(0.03));
+  CHECK(*images[0].at(15, 24) < 0.05F);
+  CHECK(std::all_of(images[0].values.begin(), images[0].values.end(), [](float v) { return v >= 0; }));
+}
+
+TEST_CASE("a volume is due after each full turn, of one turn's views") {
+  SlidingTurn turn(360);
+  int volumes = 0;
+  for (int i = 0; i < 3 * 90 + 10; ++i) {
+    if (!turn.push({{}, std::fmod(4.0 * i, 360.0), 50 + 0.1 * i})) continue;
+    ++volumes;
+    CHECK(turn.views().size() == 90);
+    CHECK((i + 1) % 90 == 0);
+    CHECK(turn.turns() == doctest::Approx(volumes));
+    CHECK(turn.turn_s() == doctest::Approx(9));
+  }
+  CHECK(volumes == 3);
+  CHECK(turn.turns() == doctest::Approx((280 * 4) / 360.0));
+  CHECK(SlidingTurn(360).turn_s() == 0);
+}
+
+TEST_CASE("volumes more often than each turn, and in the opposite direction") {
+  SlidingTurn turn(90);
+  std::vector<int> due;
+  for (int i = 0; i < 180; ++i) {
+    if (turn.push({{}, -4.0 * i})) due.push_back(i);
+  }
+  CHECK(due == std::vector<int>{89, 112, 134, 157, 179});
+  CHECK(turn.views().size() == 90);
 }

@@ -3,6 +3,7 @@
 
 #include "base/compute/parallel.hpp"
 #include "testing.hpp"
+#include "tomo/negative_values.hpp"
 #include "tomo/private/fft.hpp"
 
 using namespace vam;
@@ -145,4 +146,12 @@ TEST_CASE("a transform is the shortest of 2^n, 3 2^n and 5 2^n that is long enou
   CHECK(fft_length(17) == 20);
   CHECK(fft_length(21) == 24);
   CHECK(fft_length(25) == 32);
+}
+
+TEST_CASE("negative intensities are offset, then clipped") {
+  Slab slab(3, 1);
+  for (int i = 0; i < 3 * lanes; ++i) slab.at(0, 0)[i] = static_cast<float>(i % 3) - 1;  // -1, 0, 1
+  CHECK(lowest(slab) == -1);
+  raise_and_clip(slab, 0.5F, 0);
+  for (int i = 0; i < 3 * lanes; ++i) CHECK(slab.at(0, 0)[i] == (i % 3 == 0 ? 0.0F : static_cast<float>(i % 3) - 0.5F));
 }
