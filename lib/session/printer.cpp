@@ -81,8 +81,7 @@ Image flat_of(const model::Projector& projector) {
   }
   const auto [least, most] = std::minmax_element(flat.values.begin(), flat.values.end());
   const float unit = *least;
-  constexpr float darkest = 0.2F;
-  if (!(unit > 0 && unit >= darkest * *most)) {
+  if (!(unit > 0 && unit >= 0.2F * *most)) {
     refuse("has pixels from " + format_number(unit, 3) + " to " + format_number(*most, 3) +
            ", and the darkest needs a fifth of the brightest");
   }

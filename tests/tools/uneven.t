@@ -23,6 +23,8 @@ for name in flat nine; do
 done
 fails 65 'stdin: 6 readings; at least 9 are needed, over 0.7' sh -c 'head -n 7 even.csv | vam-calibrate uniformity -o no.exr'
 fails 65 'off a smooth field, more than 2 %; measure again' sh -c 'sed "s/^48,32,.*/48,32,3/" even.csv | vam-calibrate uniformity -o no.exr'
+fails 65 'places of the readings: the readings do not determine' sh -c '{ echo column,row,reading; for n in 0 1 2 3 4 5 6 7 8; do echo $((n * 11)),$((n * 7)),7; done; } | vam-calibrate uniformity -o no.exr'
+fails 64 "'no.png' must end in .exr" vam-calibrate uniformity even.csv -o no.png
 fails 65 'even.csv: reading 1, of column 0 and row 0, is .* above the dark' vam-calibrate uniformity even.csv --dark-reading 9 -o no.exr
 
 vam-slice --shape gyroid:diameter=7,height=3,cell=5 --voxel 0.125 -o part.vdb
@@ -31,9 +33,7 @@ sed '/^fps/a flat = "flat.exr"' printer.toml >uneven.toml
 vam-project light.exr --turns 1 -o plain/
 ok 'frames for it' vam-project light.exr --printer uneven.toml --turns 1 -o evened/
 ok 'a video for it' vam-project light.exr --printer uneven.toml --turns 1 -o evened.mkv
-for frames in plain evened; do
-  vam-convert $frames --geometry vial --set projector.flat= -o shown.exr && vam-convert shown.exr -o $frames.npy
-done
+shown() { vam-convert $1 --geometry vial --set projector.flat= -o shown.exr && vam-convert shown.exr -o $1.npy; }; shown plain; shown evened
 # Slices from below by 60 angles by columns: what pixels show, times their light, is what was to be shown.
 row=$(echo "$light" | sed 's/(n \/\/ 96)/(63 - n \/\/ 5760)/')
 holds 'pixels show less where they are brighter' "$($npy eval "max(abs(a * $row / 0.73454 - b) for n, (a, b) in enumerate(zip(*v)))" \

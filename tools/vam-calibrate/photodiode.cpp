@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From readings of a photodiode: vam-calibrate photodiode, the projector's grey response, and uniformity, its flat
-// field.
+// vam-calibrate photodiode, uniformity: the projector's grey response and flat field from readings of a photodiode.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -107,7 +107,7 @@ void declare_places(cli::App& app, UniformityOptions& options) {
                  "CSV with the columns column,row,reading: projector pixels before orientation, all of one grey level; "
                  "9 places or more, over the whole image.")
       .reads();
-  cli::add_output(app, options.output);
+  cli::add_output(app, options.output).writes_as({".exr", ".toml"});
   add_dark(app, options.dark);
   cli::add_printer(app, options.printer);
 }
@@ -143,8 +143,7 @@ void read_places(const io::CsvTable& csv, double dark, const model::Projector& p
     rows.insert(rows.end(), terms.begin(), terms.end());
     readings.push_back(reading);
   }
-  constexpr double span = 1.4;  // of 2
-  if (readings.size() >= 9 && most[0] - least[0] >= span && most[1] - least[1] >= span) return;
+  if (readings.size() >= 9 && most[0] - least[0] >= 2 * 0.7 && most[1] - least[1] >= 2 * 0.7) return;
   throw Error{Fault::data, csv.source + ": " + std::to_string(readings.size()) +
                                " readings; at least 9 are needed, over 0.7 of the columns and of the rows"};
 }
@@ -156,14 +155,16 @@ Image field_of(const io::CsvTable& csv, double dark, const model::Projector& pro
   std::vector<double> rows, readings;
   read_places(csv, dark, projector, degree, rows, readings);
   const std::size_t count = terms_of(projector, degree, 0, 0).size();
-  const std::vector<double> parts = stats::linear_fit(rows, count, readings), fitted = stats::sums_of(rows, parts);
-  double squares = 0, sum = 0;
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    squares += (fitted[i] - readings[i]) * (fitted[i] - readings[i]);
-    sum += readings[i];
-  }
-  const auto n = static_cast<double>(fitted.size());
-  const double rms = std::sqrt(squares / (n - static_cast<double>(count))) * n / sum;
+  const auto residuals = [&](const std::vector<double>& parts) {
+    std::vector<double> off = stats::sums_of(rows, parts);
+    for (std::size_t i = 0; i < off.size(); ++i) off[i] = readings[i] - off[i];
+    return off;
+  };
+  const auto n = static_cast<double>(readings.size());
+  const double mean = std::accumulate(readings.begin(), readings.end(), 0.0) / n;
+  const auto fit = stats::fit_curve(residuals, std::vector<double>(count, 0.0), std::vector<double>(count, mean),
+                                    csv.source + ": places of the readings");  // a row of them fits any field
+  const double rms = fit.rms / mean * std::sqrt(n / (n - static_cast<double>(count)));
   if (!(rms <= 0.02)) {
     throw Error{Fault::data, csv.source + ": its readings are " + format_number(100 * rms, 2) +
                                  " % (RMS) off a smooth field, more than 2 %; measure again, or more places"};
@@ -171,7 +172,7 @@ Image field_of(const io::CsvTable& csv, double dark, const model::Projector& pro
   Image flat(projector.columns, projector.rows);
   for (int y = 0; y < flat.height; ++y) {
     for (int x = 0; x < flat.width; ++x)
-      flat(x, y) = static_cast<float>(stats::sums_of(terms_of(projector, degree, x, y), parts).front());
+      flat(x, y) = static_cast<float>(stats::sums_of(terms_of(projector, degree, x, y), fit.value).front());
   }
   const float most = *std::max_element(flat.values.begin(), flat.values.end());
   for (float& value : flat.values) value /= most;
